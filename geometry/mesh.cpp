@@ -1,0 +1,52 @@
+#include "geometry/mesh.h"
+
+#include <Eigen/Geometry>
+
+namespace fascia {
+
+namespace {
+
+Vec3 area_vector(const TriangleMesh& mesh, int triangle) {
+  const auto& [a, b, c] = mesh.triangles[triangle];
+  return 0.5 * (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]);
+}
+
+Vec3 unit_or_zero(const Vec3& v) {
+  const double length = v.norm();
+  return length > 0.0 ? Vec3(v / length) : Vec3(Vec3::Zero());
+}
+
+}  // namespace
+
+Vec3 position(const TriangleMesh& mesh, const SurfacePoint& point) {
+  const Triangle& corners = mesh.triangles[point.triangle];
+  return point.barycentric[0] * mesh.vertices[corners[0]] + point.barycentric[1] * mesh.vertices[corners[1]] +
+         point.barycentric[2] * mesh.vertices[corners[2]];
+}
+
+Vec3 triangle_normal(const TriangleMesh& mesh, int triangle) {
+  return unit_or_zero(area_vector(mesh, triangle));
+}
+
+double triangle_area(const TriangleMesh& mesh, int triangle) { return area_vector(mesh, triangle).norm(); }
+
+std::vector<Vec3> vertex_normals(const TriangleMesh& mesh) {
+  std::vector<Vec3> normals(mesh.vertices.size(), Vec3::Zero());
+  for (int t = 0; t < mesh.triangle_count(); ++t) {
+    const Vec3 area = area_vector(mesh, t);
+    for (int corner : mesh.triangles[t]) normals[corner] += area;
+  }
+  for (Vec3& normal : normals) normal = unit_or_zero(normal);
+  return normals;
+}
+
+Bounds bounds(const std::vector<Vec3>& points) {
+  Bounds box;
+  for (const Vec3& point : points) {
+    box.lower = box.lower.cwiseMin(point);
+    box.upper = box.upper.cwiseMax(point);
+  }
+  return box;
+}
+
+}  // namespace fascia

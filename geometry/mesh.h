@@ -1,0 +1,55 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+namespace fascia {
+
+using Vec2 = Eigen::Vector2d;
+using Vec3 = Eigen::Vector3d;
+using Mat3 = Eigen::Matrix3d;
+using Mat4 = Eigen::Matrix4d;
+using Triangle = std::array<int, 3>;
+
+/// A triangle surface: `vertices` in metres unless a function says otherwise, `triangles` as
+/// counter-clockwise vertex indices seen from outside.
+struct TriangleMesh {
+  std::vector<Vec3> vertices;
+  std::vector<Triangle> triangles;
+
+  bool empty() const { return triangles.empty(); }
+  int vertex_count() const { return static_cast<int>(vertices.size()); }
+  int triangle_count() const { return static_cast<int>(triangles.size()); }
+};
+
+/// A point on a triangle mesh: `triangle` index and `barycentric` weights (sum 1) of its corners.
+struct SurfacePoint {
+  int triangle = -1;
+  Vec3 barycentric = Vec3::Zero();
+};
+
+/// Axis-aligned bounds of a set of points.
+struct Bounds {
+  Vec3 lower = Vec3::Constant(1e300);
+  Vec3 upper = Vec3::Constant(-1e300);
+  Vec3 size() const { return upper - lower; }
+  Vec3 centre() const { return 0.5 * (lower + upper); }
+};
+
+/// Position of `point` on `mesh`.
+Vec3 position(const TriangleMesh& mesh, const SurfacePoint& point);
+
+/// Unit normal of triangle `triangle`; zero when the triangle has no area.
+Vec3 triangle_normal(const TriangleMesh& mesh, int triangle);
+
+/// Area of triangle `triangle`, in the square of the mesh's unit.
+double triangle_area(const TriangleMesh& mesh, int triangle);
+
+/// Area-weighted unit vertex normals, one a vertex; zero for vertices without area around them.
+std::vector<Vec3> vertex_normals(const TriangleMesh& mesh);
+
+/// Bounds of `points`; of no points, lower > upper.
+Bounds bounds(const std::vector<Vec3>& points);
+
+}  // namespace fascia
