@@ -1,0 +1,222 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+/// What a face rig is, free of any file format. Everything is in metres, right-handed, +Y up, the
+/// face looking along +Z, in the head's bind pose; single precision, as it is stored and simulated.
+namespace fascia::rig {
+
+using Vec3f = Eigen::Vector3f;
+using Triangle = std::array<uint32_t, 3>;
+using Mat4f = Eigen::Matrix4f;
+
+/// A triangle surface of the anatomy.
+struct Surface {
+  std::vector<Vec3f> positions;
+  std::vector<Triangle> triangles;
+};
+
+/// A named point on the skin and its partner on the bone.
+struct Landmark {
+  std::string name;
+  Vec3f skin = Vec3f::Zero();
+  Vec3f bone = Vec3f::Zero();
+  float depth = 0.0F;       ///< metres along the skin normal
+  float confidence = 1.0F;  ///< 0..1; 1 when given by hand
+};
+
+/// The temporomandibular joint in closed form: where the mandible goes for given jaw channels.
+struct JawJoint {
+  Vec3f origin = Vec3f::Zero();   ///< middle between the condyle centres
+  Vec3f lateral = Vec3f::UnitX();  ///< unit hinge axis, to the subject's left
+  Vec3f forward = Vec3f::UnitZ();  ///< unit, along the condylar path's projection
+  Vec3f up = Vec3f::UnitY();
+  float open_angle = 0.436F;    ///< radians of rotation at jaw_open = 1
+  Vec3f open_glide = Vec3f(0, -0.006F, 0.008F);  ///< (lateral, up, forward) metres of condylar glide at jaw_open = 1
+  float forward_glide = 0.008F;   ///< metres at jaw_forward = 1, along and down the condylar path
+  float forward_drop = 0.003F;    ///< metres downward at jaw_forward = 1
+  float lateral_angle = 0.14F;    ///< radians about `up` at jaw_lateral = 1 (to the subject's left)
+  float lateral_glide = 0.003F;   ///< metres to the subject's left at jaw_lateral = 1
+};
+
+/// An eyeball and how it turns.
+struct Eye {
+  Vec3f centre = Vec3f::Zero();
+  float radius = 0.0F;              ///< metres; 0 when the head has no eye on this side
+  Vec3f gaze = Vec3f::UnitZ();      ///< unit, at rest
+};
+
+struct Skull {
+  Surface cranium, mandible, teeth_upper, teeth_lower;
+  std::vector<Landmark> landmarks;
+  JawJoint jaw;
+  Eye eye_left, eye_right;
+};
+
+/// A ligament that holds the fascia to bone or skin: it resists only being stretched.
+struct Ligament {
+  std::string name;
+  Vec3f bone = Vec3f::Zero();
+  Vec3f skin = Vec3f::Zero();
+  float stiffness = 0.0F;  ///< newton per metre
+};
+
+struct Smas {
+  Surface surface;
+  std::vector<float> depth_to_skin;     ///< #vertices, metres
+  std::vector<float> depth_to_bone;     ///< #vertices, metres; negative where no bone lies behind
+  std::vector<float> skin_attachment;   ///< #vertices, 0 gliding .. 1 firmly attached
+  std::vector<float> bone_attachment;   ///< #vertices, 0 gliding .. 1 firmly attached
+  std::vector<Ligament> ligaments;
+};
+
+/// What an end of a fibre is fastened to.
+enum class FibreEnd : uint8_t { smas = 0, skin = 1, cranium = 2, mandible = 3 };
+
+/// One muscle or named part of one: fibres as polylines bound to the SMAS.
+///
+/// Fibre `f` has the points `fibre_offsets[f] .. fibre_offsets[f+1]`. Each point's place is its SMAS
+/// triangle's point at `barycentrics` plus `offsets` metres along the triangle's unit normal.
+struct Muscle {
+  std::string name;   ///< with side, such as zygomaticus_major_left
+  std::string group;  ///< the whole it is a part of, such as orbicularis_oculi_left
+  std::string kind;   ///< strap, sheet, fan, sphincter_ring or compressor
+  std::vector<uint32_t> fibre_offsets;            ///< #fibres + 1
+  std::vector<Vec3f> points;                      ///< #points, rest place
+  std::vector<uint32_t> triangles;                ///< #points, SMAS triangle
+  std::vector<Vec3f> barycentrics;                ///< #points
+  std::vector<float> offsets;                     ///< #points, metres
+  FibreEnd origin = FibreEnd::cranium;
+  FibreEnd insertion = FibreEnd::smas;
+  std::vector<Vec3f> origin_region;     ///< closed polygon
+  std::vector<Vec3f> insertion_region;  ///< closed polygon
+  float strength = 1.0F;         ///< newtons at full activation, shared by the fibres
+  float peak_shortening = 0.2F;  ///< share of the rest length at full activation
+};
+
+/// Layers of lattice nodes.
+enum class Layer : uint8_t { skin = 0, smas = 1, inner = 2 };
+
+/// How a lattice node is held.
+enum class NodeKind : uint8_t {
+  free = 0,             ///< moves under the energies only
+  fixed = 1,            ///< follows the head rigidly: the rim of the simulated region
+  fixed_cranium = 2,    ///< on the cranium
+  fixed_mandible = 3,   ///< on the mandible
+  gliding_cranium = 4,  ///< slides over the cranium
+  gliding_mandible = 5, ///< slides over the mandible
+  mucosa = 6            ///< free inner surface: no bone behind, contact only
+};
+
+/// The lattice to simulate at one level of detail.
+///
+/// Nodes stand in columns of three (skin, SMAS, inner): node `layer * columns + column`. Stiffness
+/// is in newton per metre unless a line says otherwise. Constraint lists are in solver order.
+struct TissueLevel {
+  std::string name;  ///< low, medium or high
+  uint32_t columns = 0;
+  std::vector<Vec3f> rest;             ///< #nodes = 3 * columns
+  std::vector<NodeKind> kinds;         ///< #nodes
+  std::vector<float> masses;           ///< #nodes, kilogram
+  std::vector<float> jaw_weights;      ///< #nodes, 0 the node's bone is the cranium .. 1 the mandible
+  std::vector<Triangle> triangles;     ///< #prisms, columns, counter-clockwise from outside
+
+  /// Springs along layer edges and across layers: pairs of nodes.
+  std::vector<std::array<uint32_t, 2>> spring_nodes;
+  std::vector<float> spring_stiffness;         ///< up to the limit strain
+  std::vector<float> spring_limit_strain;      ///< where the second stiffness begins; infinity: never
+  std::vector<float> spring_second_stiffness;  ///< beyond it
+  std::vector<uint8_t> spring_one_sided;       ///< 1: resists stretch only
+
+  /// Membranes: the constant-strain triangles of the skin and SMAS layers, two lists of #prisms.
+  std::vector<float> skin_membrane, smas_membrane;  ///< Young's modulus times thickness, N/m
+  std::vector<float> skin_bending, smas_bending;    ///< #columns each, newton metre (flexural rigidity)
+
+  /// Tethers of nodes to the bone or body behind them: weak along `normal`, weaker across it.
+  std::vector<uint32_t> tether_nodes;
+  std::vector<Vec3f> tether_normals;
+  std::vector<float> tether_normal_stiffness, tether_tangential_stiffness;
+
+  std::vector<float> volume_stiffness;  ///< #prisms, pascal
+
+  /// Fibres for this level. Fibre `f` has the points `fibre_offsets[f] .. fibre_offsets[f+1]`; each
+  /// point is a blend of three nodes, or of a bone where `fibre_anchor` says so.
+  std::vector<uint32_t> fibre_muscle;                       ///< #fibres, index of the rig's muscle
+  std::vector<uint32_t> fibre_offsets;                      ///< #fibres + 1
+  std::vector<std::array<uint32_t, 3>> fibre_nodes;         ///< #points
+  std::vector<Vec3f> fibre_weights;                         ///< #points
+  std::vector<Vec3f> fibre_rest;                            ///< #points, rest place
+  std::vector<FibreEnd> fibre_anchor;                       ///< #points; cranium / mandible: fixed to that bone
+  std::vector<float> fibre_strength;                        ///< #fibres, newton at full activation
+
+  /// Carriers: nodes that an actuator turns about an axis (lids about the globe, lips about their roll).
+  std::vector<uint32_t> carrier_channel, carrier_node;
+  std::vector<Vec3f> carrier_origin, carrier_axis;
+  std::vector<float> carrier_angle;      ///< radians at channel value 1
+  std::vector<float> carrier_stiffness;
+
+  /// Pressures: prisms whose inner side a channel presses outward.
+  std::vector<uint32_t> pressure_channel, pressure_prism;
+  std::vector<float> pressure;  ///< pascal at channel value 1
+};
+
+/// How the vertices of one primitive of the user's file follow the lattice, the jaw or an eye.
+///
+/// Vertex displacement = sum of `weights` times the displacement of `nodes`, plus `jaw_weights` times
+/// the jaw's displacement of the vertex; vertices of an eye turn with it instead.
+struct Binding {
+  uint32_t mesh = 0, primitive = 0;  ///< in the glTF file
+  std::string part;                  ///< skin, eye_left, teeth_lower, ...
+  uint32_t vertex_count = 0;
+  uint64_t position_hash = 0;  ///< fingerprint of the primitive's POSITION bytes
+  uint32_t influences = 4;     ///< nodes a vertex
+  std::vector<uint32_t> nodes;     ///< #vertices * influences
+  std::vector<float> weights;      ///< #vertices * influences
+  std::vector<float> jaw_weights;  ///< #vertices
+  std::vector<uint8_t> eye;        ///< #vertices: 0 none, 1 left, 2 right
+};
+
+/// One level of detail with the bindings made for it.
+struct Tissue {
+  std::vector<TissueLevel> levels;
+  std::vector<std::vector<Binding>> bindings;  ///< one list a level
+};
+
+/// One writable value of the face.
+struct Channel {
+  std::string name;
+  std::string group;  ///< muscle, jaw, eye, lid, lip or pressure
+  float minimum = 0.0F, maximum = 1.0F, rest = 0.0F;
+  int32_t muscle = -1;  ///< index of the muscle it contracts, or -1
+  std::string unit;     ///< "1", "rad"
+};
+
+/// A named vocabulary (arkit, au, viseme, vrm) as a sparse matrix onto the channels.
+struct NamedSet {
+  std::string name;
+  std::vector<std::string> members;
+  std::vector<uint32_t> member_indices;   ///< #entries
+  std::vector<uint32_t> channel_indices;  ///< #entries
+  std::vector<float> weights;             ///< #entries
+};
+
+struct Actuation {
+  std::vector<Channel> channels;
+  std::vector<NamedSet> sets;
+};
+
+/// A whole rig: the anatomy, the lattice and the channels that drive it.
+struct Rig {
+  Skull skull;
+  Smas smas;
+  std::vector<Muscle> muscles;
+  Tissue tissue;
+  Actuation actuation;
+  Mat4f input_to_metres = Mat4f::Identity();  ///< from the user's axes and units to the rig's
+};
+
+}  // namespace fascia::rig
