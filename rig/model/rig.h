@@ -173,6 +173,7 @@ struct Binding {
   std::string part;                  ///< skin, eye_left, teeth_lower, ...
   uint32_t vertex_count = 0;
   uint64_t position_hash = 0;  ///< fingerprint of the primitive's POSITION bytes
+  Mat4f to_rig = Mat4f::Identity();  ///< from the primitive's own coordinates to the rig's metres
   uint32_t influences = 4;     ///< nodes a vertex
   std::vector<uint32_t> nodes;     ///< #vertices * influences
   std::vector<float> weights;      ///< #vertices * influences
