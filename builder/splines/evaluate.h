@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cstddef>
+
+#include "builder/splines/spline.h"
+
+namespace fascia::splines {
+
+/// Values of all outputs at `count` points in user coordinates; output k of point i goes to
+/// values[i + k * value_stride]. Chooses the widest vector unit of the machine at run time.
+void evaluate_points(const SplineCoefficients& spline, const Vec3* points, size_t count, double* values,
+                     size_t value_stride);
+
+/// Value of one output at local point `q` (see SplineCoefficients) and its gradient in user units.
+double evaluate_gradient(const SplineCoefficients& spline, int output, const Vec3& q, Vec3& gradient);
+
+}  // namespace fascia::splines
