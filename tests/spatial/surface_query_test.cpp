@@ -1,0 +1,126 @@
+#include "builder/spatial/surface_query.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "builder/spatial/triangle.h"
+#include "geometry/error.h"
+
+namespace fascia::spatial {
+namespace {
+
+// Axis-aligned cube [0, 1]^3 whose faces do not share vertices, as a mesh with texture seams.
+TriangleMesh seamed_cube() {
+  TriangleMesh mesh;
+  for (int axis = 0; axis < 3; ++axis)
+    for (int side = 0; side < 2; ++side) {
+      const int base = mesh.vertex_count();
+      for (int k = 0; k < 4; ++k) {
+        Vec3 p = Vec3::Zero();
+        p[axis] = side;
+        p[(axis + 1) % 3] = k == 1 || k == 2;
+        p[(axis + 2) % 3] = k >= 2;
+        mesh.vertices.push_back(p);
+      }
+      if (side == 1) {
+        mesh.triangles.push_back({base, base + 1, base + 2});
+        mesh.triangles.push_back({base, base + 2, base + 3});
+      } else {
+        mesh.triangles.push_back({base, base + 2, base + 1});
+        mesh.triangles.push_back({base, base + 3, base + 2});
+      }
+    }
+  return mesh;
+}
+
+double box_distance(const Vec3& p) {
+  const Vec3 q = (p - Vec3::Constant(0.5)).cwiseAbs() - Vec3::Constant(0.5);
+  return q.cwiseMax(0).norm() + std::min(q.maxCoeff(), 0.0);
+}
+
+TEST(SurfaceQuery, SignedDistanceOfACubeIsExactAtFacesEdgesAndCorners) {
+  const SurfaceQuery cube(seamed_cube());
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> uniform(-1, 2);
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 p(uniform(random), uniform(random), uniform(random));
+    const ClosestPoint closest = cube.closest(p);
+    EXPECT_NEAR(closest.signed_distance, box_distance(p), 1e-14);
+    EXPECT_NEAR((closest.position - p).norm(), closest.distance, 1e-14);
+    EXPECT_NEAR(closest.surface.barycentric.sum(), 1, 1e-14);
+    EXPECT_EQ(cube.inside(p), box_distance(p) < 0);
+  }
+}
+
+TEST(SurfaceQuery, FarFromTheOriginNothingIsLostToSinglePrecision) {
+  TriangleMesh mesh = seamed_cube();
+  const Vec3 offset(1e5, -2e5, 3e5);
+  for (Vec3& v : mesh.vertices)
+    v += offset;
+  const SurfaceQuery cube(mesh);
+  const Vec3 p(0.3, 0.4, 1.25);
+  EXPECT_NEAR(cube.closest(p + offset).distance, 0.25, 1e-10);
+  const auto hit = cube.first_hit(p + offset, Vec3(0, 0, -3));
+  ASSERT_TRUE(hit.has_value());
+  EXPECT_NEAR(hit->distance, 0.25, 1e-10);
+}
+
+TEST(SurfaceQuery, RangeLimitsTheSearch) {
+  const SurfaceQuery cube(seamed_cube());
+  EXPECT_FALSE(cube.closest(Vec3(0.5, 0.5, 3), 1.9).found());
+  EXPECT_TRUE(cube.closest(Vec3(0.5, 0.5, 3), 2.1).found());
+  EXPECT_FALSE(cube.first_hit(Vec3(0.5, 0.5, 3), Vec3(0, 0, -1), 1.9).has_value());
+  EXPECT_TRUE(cube.first_hit(Vec3(0.5, 0.5, 3), Vec3(0, 0, -1), 2.1).has_value());
+  EXPECT_NEAR(cube.first_hit(Vec3(0.4, 0.5, 3), Vec3(0, 0, -1), 10, 2.5)->distance, 3, 1e-14);
+}
+
+TEST(SurfaceQuery, RaysPassThroughFrontThenBack) {
+  const SurfaceQuery cube(seamed_cube());
+  const auto hits = cube.all_hits(Vec3(0.3, 0.6, -2), Vec3(0, 0.01, 1));
+  ASSERT_EQ(hits.size(), 2u);
+  EXPECT_TRUE(hits[0].from_outside);
+  EXPECT_FALSE(hits[1].from_outside);
+  EXPECT_NEAR(hits[0].position.z(), 0, 1e-14);
+  EXPECT_NEAR(hits[1].position.z(), 1, 1e-14);
+  EXPECT_FALSE(cube.first_hit(Vec3(0.3, 0.6, -2), Vec3(0, 0, -1)).has_value());
+}
+
+TEST(SurfaceQuery, WindingNumberFallsBesideAnOpening) {
+  TriangleMesh open = seamed_cube();
+  open.triangles.resize(10);  // no face at z = 1
+  const SurfaceQuery box(open);
+  EXPECT_NEAR(box.winding_number(Vec3(0.5, 0.5, 0.5)), 5.0 / 6, 1e-12);
+  EXPECT_TRUE(box.inside(Vec3(0.5, 0.5, 0.5)));
+  EXPECT_FALSE(box.inside(Vec3(0.5, 0.5, 1.5)));
+}
+
+TEST(SurfaceQuery, RefusesWhatIsNoSurface) {
+  EXPECT_THROW(SurfaceQuery(TriangleMesh{}), Error);
+  TriangleMesh mesh = seamed_cube();
+  mesh.triangles[0][1] = 99;
+  EXPECT_THROW(SurfaceQuery{mesh}, Error);
+  mesh = seamed_cube();
+  mesh.vertices[3].x() = std::nan("");
+  EXPECT_THROW(SurfaceQuery{mesh}, Error);
+  EXPECT_THROW(SurfaceQuery(seamed_cube()).first_hit(Vec3(0, 0, 0), Vec3(0, 0, 0)), Error);
+  EXPECT_THROW(SurfaceQuery(seamed_cube()).closest(Vec3(std::nan(""), 0, 0)), Error);
+}
+
+TEST(Triangle, DegenerateTrianglesAreTheirLongestEdge) {
+  const Vec3 a(0, 0, 0), b(1, 0, 0), c(3, 0, 0);
+  const Vec3 weights = closest_barycentric(Vec3(2, 1, 0), a, b, c);
+  EXPECT_NEAR((weights[0] * a + weights[1] * b + weights[2] * c - Vec3(2, 0, 0)).norm(), 0, 1e-14);
+  EXPECT_EQ(closest_barycentric(Vec3(2, 1, 0), a, a, a), Vec3(1, 0, 0));
+}
+
+TEST(Triangle, OctantHasAnEighthOfTheSphere) {
+  EXPECT_NEAR(solid_angle(Vec3::Zero(), Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()), std::numbers::pi / 2,
+              1e-14);
+}
+
+}  // namespace
+}  // namespace fascia::spatial
