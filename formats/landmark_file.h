@@ -1,0 +1,24 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "geometry/mesh.h"
+
+namespace fascia::formats {
+
+/// Landmarks as a file gives them: points on the skin in the head file's axes.
+struct LandmarkFile {
+  std::string units;  ///< "m", "cm", "mm" or empty when the file does not say (the head file's own)
+  std::map<std::string, Vec3> points;
+};
+
+/// Reads 3D Slicer Markups (`.mrk.json`; LPS taken as is, RAS with x and y negated) or
+/// `{"units":"mm","landmarks":{NAME:[x,y,z]}}`, where a landmark may also be `{"skin":[x,y,z]}` as `fascia export` writes it.
+///
+/// Throws fascia::Error naming the file and the entry when it is missing, not JSON, of another form,
+/// or a coordinate is not a finite number.
+LandmarkFile read_landmarks(const std::filesystem::path& path);
+
+}  // namespace fascia::formats

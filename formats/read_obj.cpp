@@ -1,0 +1,79 @@
+#include <tiny_obj_loader.h>
+
+#include <map>
+#include <sstream>
+
+#include "formats/detail.h"
+
+namespace fascia::formats::detail {
+
+namespace {
+
+/// Vertices of one object, taken in the order in which its faces first name them.
+struct ObjectVertices {
+  std::map<std::pair<int, int>, int> index;  // (position, texture coordinate) -> vertex
+};
+
+int vertex_of(const tinyobj::attrib_t& attributes, const tinyobj::index_t& corner, SceneMesh& mesh,
+              ObjectVertices& vertices) {
+  const auto [entry, is_new] =
+      vertices.index.try_emplace({corner.vertex_index, corner.texcoord_index}, static_cast<int>(mesh.positions.size()));
+  if (is_new) {
+    const double* p = &attributes.vertices[3 * static_cast<size_t>(corner.vertex_index)];
+    mesh.positions.emplace_back(p[0], p[1], p[2]);
+    mesh.source_vertices.push_back(corner.vertex_index);
+    if (!attributes.texcoords.empty()) {
+      Vec2 uv(0, 0);
+      const size_t t = 2 * static_cast<size_t>(std::max(0, corner.texcoord_index));
+      if (corner.texcoord_index >= 0 && t + 1 < attributes.texcoords.size())
+        uv = Vec2(attributes.texcoords[t], 1.0 - attributes.texcoords[t + 1]);
+      mesh.uvs.push_back(uv);
+    }
+  }
+  return entry->second;
+}
+
+void read_object(const Scene& scene, const tinyobj::attrib_t& attributes, const tinyobj::shape_t& shape,
+                 const std::vector<tinyobj::material_t>& materials, SceneMesh& mesh) {
+  ObjectVertices vertices;
+  size_t corner = 0;
+  const int count = static_cast<int>(attributes.vertices.size() / 3);
+  for (unsigned face_size : shape.mesh.num_face_vertices) {
+    std::vector<int> polygon;
+    for (unsigned k = 0; k < face_size; ++k, ++corner) {
+      const tinyobj::index_t& at = shape.mesh.indices[corner];
+      if (at.vertex_index < 0 || at.vertex_index >= count)
+        fail(scene, "object '" + shape.name + "' has a face that names vertex " +
+                        std::to_string(at.vertex_index + 1) + " of " + std::to_string(count));
+      polygon.push_back(vertex_of(attributes, at, mesh, vertices));
+    }
+    triangulate(mesh.positions, polygon, mesh.triangles);
+    mesh.polygons.push_back(std::move(polygon));
+  }
+  if (!shape.mesh.material_ids.empty() && shape.mesh.material_ids[0] >= 0 &&
+      shape.mesh.material_ids[0] < static_cast<int>(materials.size()))
+    mesh.material = materials[shape.mesh.material_ids[0]].name;
+}
+
+}  // namespace
+
+void read_obj(Scene& scene) {
+  tinyobj::ObjReaderConfig config;
+  config.triangulate = false;
+  config.vertex_color = false;
+  tinyobj::ObjReader reader;
+  // Materials are the file's own business; only the geometry is read.
+  if (!reader.ParseFromString(std::string(scene.bytes.begin(), scene.bytes.end()), "", config))
+    fail(scene, "it is not a readable OBJ file: " + reader.Error());
+  const tinyobj::attrib_t& attributes = reader.GetAttrib();
+  if (attributes.vertices.empty()) fail(scene, "it holds no vertices (no 'v' lines)");
+  for (const tinyobj::shape_t& shape : reader.GetShapes()) {
+    if (shape.mesh.indices.empty()) continue;
+    SceneMesh mesh;
+    mesh.name = shape.name.empty() ? "object_" + std::to_string(scene.meshes.size()) : shape.name;
+    read_object(scene, attributes, shape, reader.GetMaterials(), mesh);
+    scene.meshes.push_back(std::move(mesh));
+  }
+}
+
+}  // namespace fascia::formats::detail
