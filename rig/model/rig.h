@@ -135,6 +135,7 @@ struct TissueLevel {
   /// Membranes: the constant-strain triangles of the skin and SMAS layers, two lists of #prisms.
   std::vector<float> skin_membrane, smas_membrane;  ///< Young's modulus times thickness, N/m
   std::vector<float> skin_bending, smas_bending;    ///< #columns each, newton metre (flexural rigidity)
+  float poisson_ratio = 0.35F;                      ///< of both membranes
 
   /// Tethers of nodes to the bone or body behind them: weak along `normal`, weaker across it.
   std::vector<uint32_t> tether_nodes;
@@ -146,22 +147,31 @@ struct TissueLevel {
   /// Fibres for this level. Fibre `f` has the points `fibre_offsets[f] .. fibre_offsets[f+1]`; each
   /// point is a blend of three nodes, or of a bone where `fibre_anchor` says so.
   std::vector<uint32_t> fibre_muscle;                       ///< #fibres, index of the rig's muscle
+  std::vector<uint32_t> fibre_channel;                      ///< #fibres, index of the actuation channel that contracts it
   std::vector<uint32_t> fibre_offsets;                      ///< #fibres + 1
   std::vector<std::array<uint32_t, 3>> fibre_nodes;         ///< #points
   std::vector<Vec3f> fibre_weights;                         ///< #points
   std::vector<Vec3f> fibre_rest;                            ///< #points, rest place
   std::vector<FibreEnd> fibre_anchor;                       ///< #points; cranium / mandible: fixed to that bone
-  std::vector<float> fibre_strength;                        ///< #fibres, newton at full activation
+  std::vector<float> fibre_taper;     ///< #points, share of the tension that the segment to the next point bears
+  std::vector<float> fibre_strength;  ///< #fibres, newton at full activation and rest length
+  std::vector<float> fibre_shortest;  ///< #fibres, share of the rest length at which the pull has fallen to nothing
 
   /// Carriers: nodes that an actuator turns about an axis (lids about the globe, lips about their roll).
   std::vector<uint32_t> carrier_channel, carrier_node;
   std::vector<Vec3f> carrier_origin, carrier_axis;
   std::vector<float> carrier_angle;      ///< radians at channel value 1
-  std::vector<float> carrier_stiffness;
+  std::vector<float> carrier_stiffness;  ///< pulls the node back to where its bones carry it
+  std::vector<float> carrier_drive;      ///< force per metre of the carrier's own motion
 
   /// Pressures: prisms whose inner side a channel presses outward.
   std::vector<uint32_t> pressure_channel, pressure_prism;
   std::vector<float> pressure;  ///< pascal at channel value 1
+
+  /// Eyeballs that lids lie on, and the nodes that may touch them.
+  std::vector<Vec3f> globe_centre;
+  std::vector<float> globe_radius;
+  std::vector<uint32_t> globe_contact_node, globe_contact_globe;  ///< pairs
 };
 
 /// How the vertices of one primitive of the user's file follow the lattice, the jaw or an eye.

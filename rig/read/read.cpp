@@ -1,0 +1,195 @@
+#include "rig/read/read.h"
+
+#include <set>
+#include <string>
+
+#include "geometry/error.h"
+#include "rig/model/extensions.h"
+#include "rig/read/accessors.h"
+#include "rig/read/container.h"
+#include "rig/read/visitor.h"
+
+namespace fascia::rig {
+namespace {
+
+/// Root object of extension `name`. Throws when it is not there or of a version this build does not know.
+const tinygltf::Value& root_object(const tinygltf::Model& model, const std::string& name, const std::string& file) {
+  const auto found = model.extensions.find(name);
+  if (found == model.extensions.end())
+    throw Error(file + ": no " + name + " extension: this is not a Fascia rig; make one with `fascia build`");
+  const tinygltf::Value& object = found->second;
+  if (!object.IsObject() || !object.Has("specVersion") || !object.Get("specVersion").IsString())
+    throw Error(file + ": " + name + "/specVersion: missing");
+  const auto version = object.Get("specVersion").Get<std::string>();
+  if (version != spec_version)
+    throw Error(file + ": " + name + "/specVersion: version " + version + " is not known to this build, which reads " +
+                spec_version + "; update Fascia or build the rig again");
+  return object;
+}
+
+void check_unique(const std::vector<Channel>& channels, const std::string& path) {
+  std::set<std::string> seen;
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    const Channel& channel = channels[i];
+    const std::string at = path + "/channels/" + std::to_string(i);
+    if (channel.name.empty()) throw Error(at + "/name: empty");
+    if (!seen.insert(channel.name).second) throw Error(at + "/name: " + channel.name + " is there twice");
+    if (!(channel.minimum <= channel.rest && channel.rest <= channel.maximum))
+      throw Error(at + ": the rest value of " + channel.name + " lies outside its range");
+  }
+}
+
+/// Index of buffer view `name` of `object`, as bytes; nothing when it is left out.
+std::vector<uint8_t> stored_bytes(const tinygltf::Model& model, const tinygltf::Value& object, const char* name,
+                                  const std::string& path) {
+  if (!object.Has(name)) return {};
+  const int index = object.Get(name).IsInt() ? object.Get(name).Get<int>() : -1;
+  if (index < 0 || static_cast<std::size_t>(index) >= model.bufferViews.size())
+    throw Error(path + "/" + name + ": no such buffer view");
+  const tinygltf::BufferView& view = model.bufferViews[static_cast<std::size_t>(index)];
+  if (view.buffer != 0 || model.buffers.empty() || view.byteOffset > model.buffers[0].data.size() ||
+      view.byteLength > model.buffers[0].data.size() - view.byteOffset)
+    throw Error(path + "/" + name + ": the buffer view reaches beyond the file");
+  const uint8_t* data = model.buffers[0].data.data() + view.byteOffset;
+  return {data, data + view.byteLength};
+}
+
+SourceRecord source_record(const tinygltf::Model& model, const tinygltf::Value& tissue, const std::string& path) {
+  SourceRecord record;
+  if (!tissue.Has("source")) return record;
+  const tinygltf::Value& source = tissue.Get("source");
+  if (!source.IsObject()) throw Error(path + ": not an object");
+  if (source.Has("format") && source.Get("format").IsString()) record.format = source.Get("format").Get<std::string>();
+  const std::vector<uint8_t> notes = stored_bytes(model, source, "notes", path);
+  record.json.assign(notes.begin(), notes.end());
+  record.bytes = stored_bytes(model, source, "file", path);
+  return record;
+}
+
+Tissue tissue_of(const tinygltf::Model& model, const tinygltf::Value& object, const std::string& path,
+                 const TissueLimits& limits, Mat4f& input_to_metres) {
+  Tissue tissue;
+  Reader reader(model, object, path);
+  reader.matrix("inputToMetres", input_to_metres);
+  reader.array("levels", tissue.levels, [&](Reader& inner, TissueLevel& level, std::size_t index) {
+    tissue_level_fields(inner, level, limits);
+    tissue.bindings.resize(index + 1);
+    inner.array("bindings", tissue.bindings[index], [&](Reader& bound, Binding& binding, std::size_t) {
+      binding_fields(bound, binding, 3 * std::size_t{level.columns});
+    });
+  });
+  if (tissue.levels.empty()) throw Error(path + "/levels: none");
+  return tissue;
+}
+
+std::vector<Vec3f> vec3_attribute(const tinygltf::Model& model, int accessor, std::size_t count,
+                                  const std::string& path) {
+  const std::vector<float> numbers = decode_floats(model, accessor, path);
+  if (count != any && numbers.size() != 3 * count) throw Error(path + ": not as many as positions");
+  std::vector<Vec3f> vectors(numbers.size() / 3);
+  for (std::size_t i = 0; i < vectors.size(); ++i) {
+    vectors[i] = {numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]};
+    if (!Element<Vec3f>::finite(vectors[i])) throw Error(path + ": a value is not finite");
+  }
+  return vectors;
+}
+
+/// The geometry `binding` names, its fingerprint checked.
+Primitive bound_primitive(const tinygltf::Model& model, const Binding& binding, const std::string& path) {
+  if (binding.mesh >= model.meshes.size() ||
+      binding.primitive >= model.meshes[binding.mesh].primitives.size())
+    throw Error(path + ": mesh " + std::to_string(binding.mesh) + " primitive " + std::to_string(binding.primitive) +
+                " is not in the file");
+  const tinygltf::Mesh& mesh = model.meshes[binding.mesh];
+  const tinygltf::Primitive& primitive = mesh.primitives[binding.primitive];
+  const auto position = primitive.attributes.find("POSITION");
+  if (position == primitive.attributes.end()) throw Error(path + ": the primitive has no POSITION");
+  if (accessor_view(model, position->second, path).components != 3) throw Error(path + ": POSITION is not a VEC3");
+  Primitive result;
+  result.mesh = binding.mesh;
+  result.primitive = binding.primitive;
+  result.name = mesh.name;
+  result.positions = vec3_attribute(model, position->second, any, path);
+  const std::string remedy =
+      "; another tool has changed the mesh since the rig was built: build the rig again from the changed head";
+  if (result.positions.size() != binding.vertex_count)
+    throw Error(path + ": mesh \"" + mesh.name + "\" has " + std::to_string(result.positions.size()) +
+                " vertices where the rig was built for " + std::to_string(binding.vertex_count) + remedy);
+  if (attribute_hash(model, position->second, path) != binding.position_hash)
+    throw Error(path + ": the positions of mesh \"" + mesh.name + "\" are not those the rig was built for" + remedy);
+  result.triangles = decode_triangles(model, primitive, result.positions.size(), path);
+  const auto normal = primitive.attributes.find("NORMAL");
+  if (normal != primitive.attributes.end() && accessor_view(model, normal->second, path).components == 3)
+    result.normals = vec3_attribute(model, normal->second, result.positions.size(), path);
+  return result;
+}
+
+void read_primitives(const tinygltf::Model& model, RigFile& file, const std::string& path) {
+  for (std::size_t level = 0; level < file.rig.tissue.bindings.size(); ++level)
+    for (std::size_t b = 0; b < file.rig.tissue.bindings[level].size(); ++b) {
+      const Binding& binding = file.rig.tissue.bindings[level][b];
+      const std::string at = path + "/levels/" + std::to_string(level) + "/bindings/" + std::to_string(b);
+      const std::size_t known = file.primitive_of(binding);
+      if (known == file.primitives.size()) {
+        file.primitives.push_back(bound_primitive(model, binding, at));
+      } else if (file.primitives[known].positions.size() != binding.vertex_count) {
+        throw Error(at + "/vertexCount: disagrees with another level's");
+      }
+    }
+}
+
+}  // namespace
+
+std::size_t RigFile::primitive_of(const Binding& binding) const {
+  std::size_t i = 0;
+  while (i < primitives.size() &&
+         (primitives[i].mesh != binding.mesh || primitives[i].primitive != binding.primitive))
+    ++i;
+  return i;
+}
+
+bool is_rig(std::span<const uint8_t> bytes) {
+  if (!is_glb(bytes)) return false;
+  try {
+    return glb_chunks(bytes, "").json.find("\"FASCIA_") != std::string_view::npos;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+RigFile read(std::span<const uint8_t> bytes, const std::string& name) {
+  tinygltf::Model model = load_gltf(bytes, name);
+  const std::string prefix = name + ": ";
+  RigFile file;
+  Rig& rig = file.rig;
+  Reader skull(model, root_object(model, skull_extension, name), prefix + skull_extension);
+  skull_fields(skull, rig.skull);
+  Reader smas(model, root_object(model, smas_extension, name), prefix + smas_extension);
+  smas_fields(smas, rig.smas);
+
+  Reader muscles(model, root_object(model, muscles_extension, name), prefix + muscles_extension);
+  MuscleTable table;
+  muscle_table_fields(muscles, table, rig.smas.surface.triangles.size());
+  rig.muscles = unpack_muscles(std::move(table));
+
+  const std::string actuation_path = prefix + actuation_extension;
+  Reader actuation(model, root_object(model, actuation_extension, name), actuation_path);
+  actuation_fields(actuation, rig.actuation);
+  check_unique(rig.actuation.channels, actuation_path);
+  for (const Channel& channel : rig.actuation.channels)
+    if (channel.muscle < -1 || channel.muscle >= static_cast<int64_t>(rig.muscles.size()))
+      throw Error(actuation_path + ": channel " + channel.name + " contracts a muscle that does not exist");
+
+  const std::string tissue_path = prefix + tissue_extension;
+  const tinygltf::Value& tissue = root_object(model, tissue_extension, name);
+  rig.tissue = tissue_of(model, tissue, tissue_path, {rig.muscles.size(), rig.actuation.channels.size()},
+                         rig.input_to_metres);
+  file.source = source_record(model, tissue, tissue_path + "/source");
+  read_primitives(model, file, tissue_path);
+
+  file.json = glb_chunks(bytes, name).json;
+  if (!model.buffers.empty()) file.bin = std::move(model.buffers[0].data);
+  return file;
+}
+
+}  // namespace fascia::rig

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "rig/model/rig.h"
+
+namespace fascia::rig {
+
+/// What the head was before it became glTF: kept in the rig so that it can be given back as it came.
+struct SourceRecord {
+  std::string format;          ///< gltf, glb, obj, ply or stl; empty when nothing is recorded
+  std::string json;            ///< the writer's own notes (vertex order, polygons, axes, units)
+  std::vector<uint8_t> bytes;  ///< the source file itself, or nothing
+
+  bool operator==(const SourceRecord&) const = default;
+};
+
+/// The geometry of one primitive that the rig binds, in the primitive's own coordinates.
+struct Primitive {
+  uint32_t mesh = 0, primitive = 0;
+  std::string name;  ///< of its mesh
+  std::vector<Vec3f> positions;
+  std::vector<Vec3f> normals;  ///< #positions, or none when the file has none
+  std::vector<Triangle> triangles;
+};
+
+/// A rig file, read: the rig, the file's own JSON and binary chunk, and the geometry it binds.
+struct RigFile {
+  Rig rig;
+  std::string json;           ///< JSON chunk as it is in the file
+  std::vector<uint8_t> bin;   ///< binary chunk, as long as buffer 0 says
+  SourceRecord source;
+  std::vector<Primitive> primitives;  ///< in the order in which the levels' bindings first name them
+
+  /// Position in `primitives` of a binding's geometry.
+  std::size_t primitive_of(const Binding& binding) const;
+};
+
+/// True when the GLB file `bytes` names any of the FASCIA extensions.
+bool is_rig(std::span<const uint8_t> bytes);
+
+/// Reads a rig from the bytes of a GLB file (rig/spec has the format).
+///
+/// Every index, accessor and length is checked, numbers are finite, and each binding's fingerprint must
+/// fit the primitive it names. Throws fascia::Error that begins with `name` and says which extension and
+/// property is at fault.
+RigFile read(std::span<const uint8_t> bytes, const std::string& name = "rig");
+
+}  // namespace fascia::rig
