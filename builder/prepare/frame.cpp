@@ -1,0 +1,183 @@
+#include "builder/prepare/frame.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
+#include <array>
+#include <cmath>
+
+#include "builder/spatial/surface_query.h"
+#include "geometry/error.h"
+
+namespace fascia::prepare {
+
+namespace {
+
+struct Unit {
+  const char* name;
+  double metres;
+};
+constexpr std::array<Unit, 5> known_units = {{{"m", 1.0}, {"dm", 0.1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}}};
+
+double declared_metres(const std::string& units) {
+  for (const Unit& unit : known_units)
+    if (units == unit.name) return unit.metres;
+  char* end = nullptr;
+  const double value = std::strtod(units.c_str(), &end);
+  if (*end == 0 && std::isfinite(value) && value > 0) return value;
+  throw Error("units '" + units + "' are unknown: give auto, m, cm, mm or the metres of one unit as a number");
+}
+
+std::string unit_name(double metres) {
+  for (const Unit& unit : known_units)
+    if (std::abs(std::log(metres / unit.metres)) < 1e-9) return unit.name;
+  return std::to_string(metres);
+}
+
+TriangleMesh joined(const formats::Scene& scene) {
+  TriangleMesh all;
+  for (const formats::SceneMesh& mesh : scene.meshes) {
+    const int base = all.vertex_count();
+    all.vertices.insert(all.vertices.end(), mesh.positions.begin(), mesh.positions.end());
+    for (const Triangle& t : mesh.triangles) all.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
+  }
+  return all;
+}
+
+/// Brings the landmarks' numbers to the file's: a landmark file may be in millimetres for a head in
+/// metres. Of the decimal ratios the one that puts them on the surface is the right one.
+std::map<std::string, Vec3> in_file_units(const formats::LandmarkFile& given, const spatial::SurfaceQuery& surface) {
+  double best = 1e300, ratio = 1.0;
+  for (double candidate : {1.0, 1e-3, 1e3, 1e-2, 1e2, 1e-1, 1e1}) {
+    double sum = 0.0;
+    for (const auto& [name, p] : given.points) sum += surface.closest(candidate * p).distance;
+    if (sum < 0.5 * best) {
+      best = sum;
+      ratio = candidate;
+    }
+  }
+  std::map<std::string, Vec3> points;
+  for (const auto& [name, p] : given.points) points[name] = ratio * p;
+  return points;
+}
+
+struct Similarity {
+  double scale = 1.0;
+  Mat3 rotation = Mat3::Identity();
+};
+
+/// Least-squares similarity that carries `from` onto `to` (Umeyama 1991).
+Similarity procrustes(const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
+  Eigen::Matrix3Xd a(3, from.size()), b(3, to.size());
+  for (size_t i = 0; i < from.size(); ++i) {
+    a.col(static_cast<Eigen::Index>(i)) = from[i];
+    b.col(static_cast<Eigen::Index>(i)) = to[i];
+  }
+  const Mat4 map = Eigen::umeyama(a, b, true);
+  Similarity result;
+  result.scale = map.topLeftCorner<3, 1>().norm();
+  result.rotation = map.topLeftCorner<3, 3>() / result.scale;
+  return result;
+}
+
+/// The axis permutation with signs that is nearest to `rotation`.
+Mat3 nearest_axes(const Mat3& rotation) {
+  Mat3 axes = Mat3::Zero();
+  Mat3 left = rotation;
+  for (int round = 0; round < 3; ++round) {
+    Eigen::Index row, column;
+    left.cwiseAbs().maxCoeff(&row, &column);
+    axes(row, column) = left(row, column) > 0 ? 1.0 : -1.0;
+    left.row(row).setZero();
+    left.col(column).setZero();
+  }
+  return axes;
+}
+
+bool are_collinear(const std::vector<Vec3>& points) {
+  Eigen::Matrix3Xd centred(3, points.size());
+  Vec3 mean = Vec3::Zero();
+  for (const Vec3& p : points) mean += p / static_cast<double>(points.size());
+  for (size_t i = 0; i < points.size(); ++i) centred.col(static_cast<Eigen::Index>(i)) = points[i] - mean;
+  const Eigen::JacobiSVD<Eigen::Matrix3Xd> svd(centred);
+  return svd.singularValues()[1] < 1e-3 * svd.singularValues()[0];
+}
+
+double snapped_unit(double scale, std::vector<std::string>& warnings) {
+  for (const Unit& unit : known_units)
+    if (std::abs(std::log(scale / unit.metres)) < std::log(1.45)) return unit.metres;
+  warnings.push_back("the landmarks fit none of m, dm, cm, mm and inch; the head was scaled to adult size (one unit = " +
+                     std::to_string(scale) + " m); give --units to set it");
+  return scale;
+}
+
+Mat4 compose(double scale, const Mat3& rotation) {
+  Mat4 map = Mat4::Identity();
+  map.topLeftCorner<3, 3>() = scale * rotation;
+  return map;
+}
+
+Frame from_landmarks(const formats::Scene& scene, const formats::LandmarkFile& given,
+                     const std::map<std::string, Vec3>& reference, const PrepareOptions& options) {
+  Frame frame;
+  const spatial::SurfaceQuery surface(joined(scene));
+  frame.landmarks = in_file_units(given, surface);
+  std::vector<Vec3> here, generic;
+  for (const auto& [name, p] : frame.landmarks)
+    if (const auto known = reference.find(name); known != reference.end()) {
+      here.push_back(p);
+      generic.push_back(known->second);
+    }
+  if (here.size() < 3 || are_collinear(here))
+    throw Error("'" + scene.path.string() + "': " + std::to_string(here.size()) +
+                " landmarks with known names do not fix size and facing; give at least three that are not in a line");
+  const Similarity fit = procrustes(here, generic);
+  const double metres =
+      options.units == "auto" ? snapped_unit(fit.scale, frame.warnings) : declared_metres(options.units);
+  // A head that stands along the axes keeps them to the last digit; only a turned one is turned.
+  const Mat3 axes = nearest_axes(fit.rotation);
+  const double angle = Eigen::AngleAxisd(Mat3(fit.rotation * axes.transpose())).angle();
+  const bool is_upright = axes.determinant() > 0 && angle < 25.0 * EIGEN_PI / 180.0;
+  frame.input_to_metres = compose(metres, is_upright ? axes : fit.rotation);
+  frame.units = unit_name(metres);
+  return frame;
+}
+
+/// One unit in metres for something `height` units high: a head or bust is 0.18 to 0.6 m, a body about 1.7 m.
+double likely_unit(double height) {
+  double best = 1e300, metres = 1.0;
+  for (const Unit& unit : known_units)
+    for (double expected : {0.3, 1.7}) {
+      const double off = std::abs(std::log(height * unit.metres / expected));
+      if (off < best) {
+        best = off;
+        metres = unit.metres;
+      }
+    }
+  return metres;
+}
+
+Frame from_convention(const formats::Scene& scene, const PrepareOptions& options) {
+  Frame frame;
+  const Vec3 size = bounds(joined(scene).vertices).size();
+  const bool is_gltf = scene.kind == formats::FileKind::glb || scene.kind == formats::FileKind::gltf;
+  const bool z_up = options.up == "z" || (options.up == "auto" && !is_gltf && size[2] > 1.4 * size[1]);
+  Mat3 axes = Mat3::Identity();
+  // Z up faces along -Y (3D Slicer, Blender): left stays +X.
+  if (z_up) axes << 1, 0, 0, 0, 0, 1, 0, -1, 0;
+  const double metres =
+      options.units == "auto" ? likely_unit(z_up ? size[2] : size[1]) : declared_metres(options.units);
+  frame.input_to_metres = compose(metres, axes);
+  frame.units = unit_name(metres);
+  return frame;
+}
+
+}  // namespace
+
+Frame find_frame(const formats::Scene& scene, const formats::LandmarkFile& given,
+                 const std::map<std::string, Vec3>& reference, const PrepareOptions& options) {
+  if (options.up != "auto" && options.up != "y" && options.up != "z")
+    throw Error("up axis '" + options.up + "' is unknown: give auto, y or z");
+  return given.points.empty() ? from_convention(scene, options) : from_landmarks(scene, given, reference, options);
+}
+
+}  // namespace fascia::prepare

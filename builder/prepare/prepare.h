@@ -1,0 +1,79 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "formats/landmark_file.h"
+#include "formats/scene.h"
+#include "geometry/mesh.h"
+
+/// The first stage: from a mesh file as it came to a head whose units, axes and parts are known.
+namespace fascia::prepare {
+
+/// What a piece of the input is; it decides what the piece follows when the face moves.
+enum class Part {
+  skin,
+  eye_left,
+  eye_right,
+  eye_surround,  ///< lacrimal, tear line, occlusion and blend meshes that lie on the lids
+  teeth_upper,
+  teeth_lower,
+  mouth_interior,  ///< gums, palate, floor of the mouth: between cranium and mandible
+  tongue,
+  lashes,
+  brows,
+  hair,
+  other  ///< rest of a body, clothes, glasses: stays where it is
+};
+
+/// Name as it stands in files: skin, eye_left, teeth_upper, ...
+const char* part_name(Part part);
+
+/// One mesh of the scene, vertex order kept.
+struct PreparedMesh {
+  std::string name;
+  std::vector<Vec3> positions;  ///< metres, rig frame
+  std::vector<Triangle> triangles;
+  std::vector<Part> parts;         ///< one a vertex
+  std::vector<int> skin_vertices;  ///< vertex of PreparedHead::skin, -1 for other parts
+};
+
+/// An eyeball found in the input.
+struct Eyeball {
+  Vec3 centre = Vec3::Zero();
+  double radius = 0.0;  ///< metres
+  Vec3 gaze = Vec3::UnitZ();
+};
+
+struct PreparedHead {
+  std::vector<PreparedMesh> meshes;       ///< one for each mesh of the scene, same order
+  TriangleMesh skin;                      ///< welded, metres, rig frame
+  std::map<std::string, Vec3> landmarks;  ///< the given ones, on the skin, metres, rig frame
+  std::optional<Eyeball> eye_left, eye_right;
+  Mat4 input_to_metres = Mat4::Identity();  ///< from file coordinates to the rig frame
+  std::string units;                        ///< "m", "dm", "cm", "mm", "in" or metres a unit
+  std::vector<std::string> warnings;
+};
+
+struct PrepareOptions {
+  std::string units = "auto";  ///< auto, m, cm, mm, or metres a unit as a number
+  std::string up = "auto";     ///< auto, y or z
+  std::string skin;            ///< name of the mesh that is the skin; empty: found
+};
+
+/// Finds units, axes and parts of `scene`, and welds its skin.
+///
+/// `given` are the landmarks by hand, `reference` the generic head's skin landmarks by the same names (metres,
+/// rig frame): size, up and facing follow from comparing the two, so at least three common ones that are not
+/// in line are needed when `given` is not empty. Without landmarks glTF's own convention (metres, +Y up,
+/// +Z front) holds, other files are judged by their extent.
+///
+/// Vertices are welded only where the mesh has open edges, so lips and lids that touch stay apart.
+/// Throws fascia::Error naming file and landmark when a landmark lies off the surface, units or axes
+/// cannot be told, or the named skin is not there.
+PreparedHead prepare(const formats::Scene& scene, const formats::LandmarkFile& given,
+                     const std::map<std::string, Vec3>& reference, const PrepareOptions& options);
+
+}  // namespace fascia::prepare
