@@ -40,6 +40,10 @@ std::vector<Vec3> vertex_normals(const TriangleMesh& mesh) {
   return normals;
 }
 
+Vec3 transform_point(const Mat4& map, const Vec3& point) {
+  return map.topLeftCorner<3, 3>() * point + map.topRightCorner<3, 1>();
+}
+
 Bounds bounds(const std::vector<Vec3>& points) {
   Bounds box;
   for (const Vec3& point : points) {

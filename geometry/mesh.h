@@ -49,6 +49,9 @@ double triangle_area(const TriangleMesh& mesh, int triangle);
 /// Area-weighted unit vertex normals, one a vertex; zero for vertices without area around them.
 std::vector<Vec3> vertex_normals(const TriangleMesh& mesh);
 
+/// `point` carried by the affine map `map`.
+Vec3 transform_point(const Mat4& map, const Vec3& point);
+
 /// Bounds of `points`; of no points, lower > upper.
 Bounds bounds(const std::vector<Vec3>& points);
 

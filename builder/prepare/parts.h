@@ -1,0 +1,34 @@
+#pragma once
+
+#include "builder/prepare/prepare.h"
+
+namespace fascia::prepare {
+
+/// All meshes of a scene as one surface in the rig frame, welded along open edges.
+struct WeldedScene {
+  TriangleMesh surface;
+  std::vector<std::vector<int>> vertex_map;  ///< mesh, vertex -> surface vertex
+  std::vector<int> triangle_mesh;            ///< surface triangle -> mesh
+  std::vector<int> component;                ///< surface triangle -> connected component
+  int component_count = 0;
+};
+
+/// Joins and welds. Only vertices on open edges are merged, and only within one glTF mesh or among the
+/// objects of an OBJ: texture seams close, lips and lids that merely touch stay two.
+WeldedScene weld_scene(const formats::Scene& scene, const Mat4& input_to_metres);
+
+/// What every connected component of `welded` is, and the eyeballs among them.
+///
+/// `landmarks` in the rig frame may be empty: the largest component is then the skin and only names tell
+/// the rest apart. Throws fascia::Error when `options.skin` names no mesh.
+struct Parts {
+  std::vector<Part> component_parts;
+  std::optional<Eyeball> eye_left, eye_right;
+};
+Parts recognise_parts(const formats::Scene& scene, const WeldedScene& welded,
+                      const std::map<std::string, Vec3>& landmarks, const PrepareOptions& options);
+
+/// Least-squares sphere through `points`; `rms` receives the radial residual, metres.
+Eyeball fit_sphere(const std::vector<Vec3>& points, double* rms);
+
+}  // namespace fascia::prepare

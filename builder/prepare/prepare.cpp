@@ -1,0 +1,73 @@
+#include "builder/prepare/prepare.h"
+
+#include "builder/prepare/frame.h"
+#include "builder/prepare/parts.h"
+#include "builder/spatial/surface_query.h"
+#include "geometry/connectivity.h"
+#include "geometry/error.h"
+
+namespace fascia::prepare {
+
+namespace {
+
+/// Landmarks drawn by hand lie a little off the surface; far off, they belong to another mesh.
+std::map<std::string, Vec3> onto_skin(const formats::Scene& scene, const TriangleMesh& skin,
+                                      const std::map<std::string, Vec3>& landmarks, std::vector<std::string>& warnings) {
+  const spatial::SurfaceQuery surface(skin);
+  std::map<std::string, Vec3> projected;
+  for (const auto& [name, p] : landmarks) {
+    const spatial::ClosestPoint hit = surface.closest(p);
+    const double off_mm = 1e3 * hit.distance;
+    const std::string where = "landmark '" + name + "' lies " + std::to_string(static_cast<int>(off_mm + 0.5)) +
+                              " mm from the skin of '" + scene.path.string() + "'";
+    if (off_mm > 20.0)
+      throw Error(where + ": place it on the skin, or check that landmarks and head are in the same axes");
+    if (off_mm > 5.0) warnings.push_back(where + "; its nearest skin point is used");
+    projected[name] = hit.position;
+  }
+  return projected;
+}
+
+}  // namespace
+
+PreparedHead prepare(const formats::Scene& scene, const formats::LandmarkFile& given,
+                     const std::map<std::string, Vec3>& reference, const PrepareOptions& options) {
+  Frame frame = find_frame(scene, given, reference, options);
+  PreparedHead head;
+  head.input_to_metres = frame.input_to_metres;
+  head.units = frame.units;
+  head.warnings = std::move(frame.warnings);
+  std::map<std::string, Vec3> landmarks;
+  for (const auto& [name, p] : frame.landmarks) landmarks[name] = transform_point(head.input_to_metres, p);
+
+  const WeldedScene welded = weld_scene(scene, head.input_to_metres);
+  const Parts parts = recognise_parts(scene, welded, landmarks, options);
+  head.eye_left = parts.eye_left;
+  head.eye_right = parts.eye_right;
+
+  std::vector<Part> vertex_part(welded.surface.vertices.size(), Part::other);
+  std::vector<bool> is_skin(welded.surface.triangles.size(), false);
+  for (size_t t = 0; t < welded.surface.triangles.size(); ++t) {
+    const Part part = parts.component_parts[static_cast<size_t>(welded.component[t])];
+    is_skin[t] = part == Part::skin;
+    for (int v : welded.surface.triangles[t]) vertex_part[static_cast<size_t>(v)] = part;
+  }
+  std::vector<int> skin_vertex;
+  head.skin = submesh(welded.surface, is_skin, &skin_vertex);
+  for (size_t m = 0; m < scene.meshes.size(); ++m) {
+    PreparedMesh mesh;
+    mesh.name = scene.meshes[m].name;
+    mesh.triangles = scene.meshes[m].triangles;
+    for (size_t v = 0; v < scene.meshes[m].positions.size(); ++v) {
+      const size_t at = static_cast<size_t>(welded.vertex_map[m][v]);
+      mesh.positions.push_back(transform_point(head.input_to_metres, scene.meshes[m].positions[v]));
+      mesh.parts.push_back(vertex_part[at]);
+      mesh.skin_vertices.push_back(skin_vertex[at]);
+    }
+    head.meshes.push_back(std::move(mesh));
+  }
+  head.landmarks = onto_skin(scene, head.skin, landmarks, head.warnings);
+  return head;
+}
+
+}  // namespace fascia::prepare
