@@ -1,0 +1,82 @@
+#include "view/image.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "geometry/error.h"
+
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#define STB_EASY_FONT_IMPLEMENTATION
+#if defined(__GNUC__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
+#pragma GCC diagnostic ignored "-Wunused-but-set-variable"
+#endif
+#include <stb/stb_easy_font.h>
+#include <stb/stb_image_write.h>
+#if defined(__GNUC__)
+#pragma GCC diagnostic pop
+#endif
+
+namespace fascia::view {
+
+Image::Image(int image_width, int image_height, Colour background) : width(image_width), height(image_height) {
+  pixels.resize(static_cast<size_t>(width) * static_cast<size_t>(height) * 3);
+  for (size_t i = 0; i < pixels.size(); ++i) pixels[i] = background[i % 3];
+}
+
+void write_png(const std::filesystem::path& path, const Image& image) {
+  std::error_code status;
+  if (!path.parent_path().empty()) std::filesystem::create_directories(path.parent_path(), status);
+  std::filesystem::path beside = path;
+  beside += ".part";
+  if (!stbi_write_png(beside.c_str(), image.width, image.height, 3, image.pixels.data(), image.width * 3))
+    throw Error("'" + path.string() + "' cannot be written: check the folder, its permissions and free space");
+  std::filesystem::rename(beside, path, status);
+  if (status) throw Error("'" + path.string() + "' cannot be written: " + status.message());
+}
+
+void paste(Image& target, const Image& source, int x, int y) {
+  const int first = std::max(0, -x), last = std::min(source.width, target.width - x);
+  if (first >= last) return;
+  for (int row = std::max(0, -y); row < std::min(source.height, target.height - y); ++row) {
+    const size_t from = 3 * (static_cast<size_t>(row) * static_cast<size_t>(source.width) + static_cast<size_t>(first));
+    const size_t to = 3 * (static_cast<size_t>(row + y) * static_cast<size_t>(target.width) + static_cast<size_t>(first + x));
+    std::memcpy(&target.pixels[to], &source.pixels[from], 3 * static_cast<size_t>(last - first));
+  }
+}
+
+void write_label(Image& image, const std::string& text, int x, int y, int scale, Colour colour) {
+  // The font comes as quads of four vertices (x, y, z, colour), 16 bytes each, one unit a dot.
+  std::vector<char> buffer(text.size() * 300 + 1024);
+  std::string copy = text;
+  const int quads = stb_easy_font_print(0, 0, copy.data(), nullptr, buffer.data(), static_cast<int>(buffer.size()));
+  for (int q = 0; q < quads; ++q) {
+    float corners[16];
+    std::memcpy(corners, &buffer[static_cast<size_t>(q) * 64], 64);
+    const int left = x + static_cast<int>(corners[0]) * scale, top = y + static_cast<int>(corners[1]) * scale;
+    const int right = x + static_cast<int>(corners[8]) * scale, bottom = y + static_cast<int>(corners[9]) * scale;
+    for (int row = std::max(0, top); row < std::min(bottom, image.height); ++row)
+      for (int column = std::max(0, left); column < std::min(right, image.width); ++column)
+        std::copy(colour.begin(), colour.end(),
+                  image.pixels.begin() + 3 * (static_cast<std::ptrdiff_t>(row) * image.width + column));
+  }
+}
+
+Image contact_sheet(const std::vector<Tile>& tiles, int columns) {
+  if (tiles.empty()) return {};
+  const int caption_height = 26, gap = 6;
+  const int width = tiles[0].image.width, height = tiles[0].image.height + caption_height;
+  const int rows = (static_cast<int>(tiles.size()) + columns - 1) / columns;
+  Image sheet(columns * (width + gap) + gap, rows * (height + gap) + gap, {30, 33, 38});
+  for (size_t i = 0; i < tiles.size(); ++i) {
+    const int x = gap + static_cast<int>(i) % columns * (width + gap), y = gap + static_cast<int>(i) / columns * (height + gap);
+    paste(sheet, tiles[i].image, x, y);
+    const int scale = static_cast<int>(tiles[i].caption.size()) * 12 < width ? 2 : 1;
+    write_label(sheet, tiles[i].caption, x + 6, y + tiles[i].image.height + 6, scale, {225, 225, 225});
+  }
+  return sheet;
+}
+
+}  // namespace fascia::view

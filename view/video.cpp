@@ -1,0 +1,70 @@
+#include "view/video.h"
+
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+
+#include "geometry/error.h"
+
+namespace fascia::view {
+
+struct Video::State {
+  std::filesystem::path path, beside;
+  int width = 0, height = 0;
+  FILE* pipe = nullptr;
+  bool is_broken = false;
+};
+
+namespace {
+
+/// A path as one word for the shell.
+std::string quoted(const std::string& path) {
+  std::string word = "'";
+  for (char c : path) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return word + "'";
+}
+
+}  // namespace
+
+Video::Video(const std::filesystem::path& path, int width, int height, double frames_per_second)
+    : state_(std::make_unique<State>()) {
+  if (std::system("command -v ffmpeg >/dev/null 2>&1") != 0)
+    throw Error("films are made by ffmpeg, which is not installed (Debian: apt-get install ffmpeg)");
+  state_->path = path;
+  state_->beside = path;
+  state_->beside += ".part.mp4";
+  state_->width = width;
+  state_->height = height;
+  std::signal(SIGPIPE, SIG_IGN);
+  const std::string command = "ffmpeg -y -loglevel error -f rawvideo -pix_fmt rgb24 -s " + std::to_string(width) + "x" +
+                              std::to_string(height) + " -r " + std::to_string(frames_per_second) +
+                              " -i - -an -c:v libx264 -crf 20 -pix_fmt yuv420p -movflags +faststart -threads 1 " +
+                              quoted(state_->beside.string());
+  state_->pipe = popen(command.c_str(), "w");
+  if (!state_->pipe) throw Error("ffmpeg cannot be started");
+}
+
+Video::~Video() {
+  if (!state_->pipe) return;
+  pclose(state_->pipe);
+  std::error_code ignored;
+  std::filesystem::remove(state_->beside, ignored);
+}
+
+void Video::add(const Image& frame) {
+  if (frame.width != state_->width || frame.height != state_->height) throw Error("a frame has another size than its film");
+  state_->is_broken |= std::fwrite(frame.pixels.data(), 1, frame.pixels.size(), state_->pipe) != frame.pixels.size();
+}
+
+void Video::finish() {
+  const int status = pclose(state_->pipe);
+  state_->pipe = nullptr;
+  std::error_code failure;
+  if (status == 0 && !state_->is_broken) std::filesystem::rename(state_->beside, state_->path, failure);
+  if (status != 0 || state_->is_broken || failure) {
+    std::filesystem::remove(state_->beside, failure);
+    throw Error("'" + state_->path.string() + "' cannot be written: ffmpeg failed");
+  }
+}
+
+}  // namespace fascia::view
