@@ -1,0 +1,241 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "geometry/mesh.h"
+
+/// What is true of every human face: its named points, tissue depths, muscles, layers, channels and
+/// expression tables, and a generic head and skull. The data are files a specialist can read and
+/// correct (anatomy/data); this is their reader. Everything here is in metres and radians, right-handed,
+/// +X to the subject's left, +Y up, the face looking along +Z; the files are in millimetres and degrees.
+namespace fascia::anatomy {
+
+enum class Side { midline, left, right };
+
+/// A named point of the face or the skull.
+struct Landmark {
+  std::string name;          ///< with its side, such as zygion_left
+  std::string abbreviation;  ///< such as zy
+  std::string definition;
+  Side side = Side::midline;
+  bool craniometric = false;  ///< defined on bone; else cephalometric, defined on skin
+  bool required = false;      ///< of the few a person has to place on a head of theirs
+  std::optional<Vec3> skin;   ///< on the generic head's skin
+  Vec3 normal = Vec3::Zero();  ///< unit outward skin normal; zero without a skin point
+  std::optional<Vec3> bone;   ///< on the generic skull
+  bool bone_from_depth = false;  ///< bone = skin - depth * normal; else measured on a skull
+  std::string depth;          ///< its key in the tissue depth tables; empty when none knows it
+};
+
+/// A named curve of the face or the skull, as points in order along it.
+struct Curve {
+  std::string name;
+  std::string definition;
+  Side side = Side::midline;
+  std::string on;  ///< skin, cranium or mandible
+  bool closed = false;
+  std::vector<Vec3> points;
+};
+
+/// Thickness of the soft tissue over one landmark.
+struct TissueDepth {
+  std::string key;          ///< bone landmark abbreviation, the `depth` of a Landmark
+  double mean = 0.0;        ///< metres
+  double deviation = 0.0;   ///< standard deviation, metres; 0 when the source gives none
+};
+
+struct TissueDepthTable {
+  std::string name;
+  std::string population;  ///< whom it was measured on
+  std::string source;
+  std::vector<TissueDepth> depths;
+
+  /// The depth with this key, or null.
+  const TissueDepth* find(std::string_view key) const;
+};
+
+/// One object of the generic head or skull.
+struct MeshObject {
+  std::string name;  ///< as in the file: skin, eye_left, cranium, mandible, teeth_upper, ...
+  TriangleMesh mesh;
+  std::vector<std::array<Vec2, 3>> corner_uvs;  ///< #triangles, or empty when the file has no UVs
+};
+
+/// Where one end of a muscle is fastened.
+enum class Attachment { cranium, mandible, hyoid, galea, smas, skin, modiolus, tarsus, fascia };
+
+/// A patch in which fibres begin or end: corners in order around it, near the surface named.
+struct Region {
+  Attachment on = Attachment::smas;
+  std::vector<Vec3> polygon;
+};
+
+/// A band around an orifice, for muscles that run around it. Distances are along the skin from the
+/// line where the lips (lids) meet, not from the mesh's edge loop. Angles are seen from the front
+/// about the orifice's centre: 0 to the subject's left, pi/2 upward.
+struct OrificeBand {
+  std::string orifice;  ///< mouth, eye_left or eye_right
+  double inner = 0.0, outer = 0.0;        ///< metres
+  double begin_angle = 0.0, end_angle = 0.0;  ///< radians, begin < end
+  bool upper() const { return begin_angle + end_angle > 0.0; }
+};
+
+enum class MuscleKind { strap, sheet, fan, sphincter_ring, compressor };
+
+struct Variant {
+  std::string name;         ///< absent, bifid, ...
+  double prevalence = 0.0;  ///< share of faces, 0..1
+  std::string note;
+};
+
+/// A muscle, or the part of one that has a channel of its own.
+struct Muscle {
+  std::string name;   ///< with its side, such as frontalis_medial_left
+  std::string whole;  ///< the muscle it is a part of, with its side; its own name when it has no parts
+  std::string title;  ///< for people
+  std::string group;  ///< mimic, masticatory or lid
+  Side side = Side::midline;
+  MuscleKind kind = MuscleKind::strap;
+  Region origin, insertion;        ///< polygons empty for rings and compressors
+  std::vector<Vec3> waypoints;     ///< the central fibre passes through these, in order from the origin
+  std::optional<OrificeBand> band;  ///< of sphincter rings and compressors
+  /// Depth along the course, evenly spaced from origin to insertion: 0 at the skin .. 1 at the bone.
+  std::vector<double> depth_fraction;
+  std::string layer;             ///< F1 (superficial) .. F4 (Freilinger 1987), galea, deep, orbit
+  double peak_shortening = 0.2;  ///< share of the rest length at full activation
+  /// Physiological cross-section, square metres. Times a muscle stress of about 0.3 MPa it is the force.
+  double cross_section = 0.0;
+  int bundles = 1;               ///< sub-bundles side by side that the fibres should make
+  double prevalence = 1.0;       ///< share of faces that have it
+  std::vector<Variant> variants;
+  std::vector<int> action_units;  ///< FACS; negative: relaxes in that unit
+  std::string source;
+};
+
+/// A layer of the soft tissue, from the skin inward.
+struct TissueLayer {
+  std::string name;
+  double thickness = 0.0;      ///< metres, typical
+  double thinnest = 0.0, thickest = 0.0;  ///< metres, over the face
+  double young_modulus = 0.0;  ///< pascal, at small strain
+  double stiff_modulus = 0.0;  ///< pascal, beyond `limit_strain`; equal to young_modulus when not biphasic
+  double limit_strain = 0.0;
+  double density = 0.0;        ///< kg per cubic metre
+  std::string source;
+};
+
+/// A labelled area of the skin: the polygon in order around it, on the generic head's skin.
+struct Zone {
+  std::string name;  ///< with its side
+  Side side = Side::midline;
+  std::vector<Vec3> polygon;
+  double value = 0.0;    ///< meaning and unit: see the list it is in
+  double falloff = 0.0;  ///< metres over which the value fades outside the polygon
+  std::string note;
+};
+
+/// A band of ligament from bone or deep fascia through the SMAS to the skin. `bone` and `skin` are the
+/// two ends of the same fibres, point by point along the ligament.
+struct RetainingLigament {
+  std::string name;
+  Side side = Side::midline;
+  std::string type;  ///< osteocutaneous, fascial or septum
+  std::string from;  ///< cranium, mandible or deep fascia
+  std::vector<Vec3> bone, skin;
+  double stiffness = 0.0;  ///< newton per metre, of the whole ligament
+  std::string source;
+};
+
+struct Tissue {
+  std::vector<TissueLayer> layers;          ///< from the skin inward
+  double smas_depth_fraction = 0.0;         ///< where no zone says otherwise: 0 skin .. 1 bone
+  double skin_attachment = 0.0;             ///< where no zone says otherwise
+  double glide = 0.0;                       ///< where no zone says otherwise, metres
+  std::vector<Zone> smas_depth;             ///< value: depth fraction of the SMAS
+  std::vector<Zone> skin_attachments;       ///< value: SMAS to skin, 0 gliding .. 1 firm
+  std::vector<Zone> gliding_planes;         ///< value: free travel of the SMAS over bone, metres
+  std::vector<Zone> fat_compartments;       ///< value: thickness, metres
+  std::vector<Zone> aesthetic_units;        ///< value: unused
+  std::vector<Zone> tarsal_plates;          ///< value: Young's modulus, pascal
+  std::vector<RetainingLigament> ligaments;
+};
+
+/// One writable value of the face: a muscle part's activation, or a motion that is not a muscle's.
+struct Actuator {
+  std::string name;
+  std::string group;  ///< muscle, jaw, eye, lid, lip or pressure
+  double minimum = 0.0, maximum = 1.0, rest = 0.0;
+  std::string unit;   ///< "1" or "rad"
+  std::string note;   ///< what the positive direction is
+  bool is_muscle = false;  ///< then a Muscle bears the same name
+};
+
+/// A name that stands for several actuators at once, such as orbicularis_oculi_left.
+struct Whole {
+  std::string name;
+  std::vector<std::string> members;  ///< actuator names
+};
+
+/// One name of a vocabulary as a linear combination of actuators.
+struct Expression {
+  std::string name;
+  std::string corrects;  ///< the expression it is added to, when it is a corrective; else empty
+  std::string note;
+  std::vector<std::pair<std::string, double>> weights;  ///< actuator name and weight; negative relaxes
+};
+
+struct ExpressionSet {
+  std::string name;  ///< arkit, au, viseme, vrm, smile
+  std::string title;
+  std::string source;
+  std::vector<Expression> expressions;
+
+  /// The expression of this name, or null.
+  const Expression* find(std::string_view expression) const;
+};
+
+struct GenericAnatomy {
+  std::vector<Landmark> landmarks;
+  std::vector<Curve> curves;
+  std::vector<TissueDepthTable> depth_tables;  ///< the first is the default
+  std::vector<MeshObject> head;                ///< skin, eyes, ... of the generic head
+  std::vector<MeshObject> skull;               ///< cranium, mandible, teeth
+  std::vector<Muscle> muscles;                 ///< both sides
+  Tissue tissue;
+  std::vector<Actuator> actuators;
+  std::vector<Whole> wholes;
+  std::vector<ExpressionSet> expression_sets;
+
+  /// Each returns the entry of that name, or null.
+  const Landmark* landmark(std::string_view name) const;
+  const Curve* curve(std::string_view name) const;
+  const TissueDepthTable* depth_table(std::string_view name) const;
+  const MeshObject* head_object(std::string_view name) const;
+  const MeshObject* skull_object(std::string_view name) const;
+  const Muscle* muscle(std::string_view name) const;
+  const Actuator* actuator(std::string_view name) const;
+  const Whole* whole(std::string_view name) const;
+  const ExpressionSet* expression_set(std::string_view name) const;
+};
+
+/// The anatomy built into the library; needs no file on the machine.
+GenericAnatomy load_generic();
+
+/// The anatomy in `directory`, laid out as anatomy/data: to work with a corrected copy of it.
+/// Throws fascia::Error naming the file, the entry and the remedy when a file is missing or malformed
+/// or a reference does not resolve.
+GenericAnatomy load_generic(const std::filesystem::path& directory);
+
+/// Names of the data files built in, such as "landmarks.json" or "expressions/arkit.json".
+std::vector<std::string> embedded_files();
+
+/// The bytes of a data file built in; throws fascia::Error for a name that is not among them.
+std::string_view embedded_file(std::string_view name);
+
+}  // namespace fascia::anatomy

@@ -1,0 +1,151 @@
+#include "anatomy/fields.h"
+
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+namespace fascia::anatomy {
+namespace {
+
+constexpr double metres = 1e-3;
+
+Vec3 triple(const Json& value, const Fields& fields, const char* key) {
+  if (!value.is_array() || value.size() != 3) fields.fail(std::string("\"") + key + "\" must be three numbers");
+  Vec3 point;
+  for (int i = 0; i < 3; ++i) {
+    if (!value[static_cast<size_t>(i)].is_number()) fields.fail(std::string("\"") + key + "\" must be three numbers");
+    point[i] = value[static_cast<size_t>(i)].get<double>();
+  }
+  return point;
+}
+
+}  // namespace
+
+bool DataFiles::has(const std::string& name) const {
+  if (!directory_.empty()) return std::filesystem::exists(directory_ / name);
+  for (const std::string& file : embedded_files())
+    if (file == name) return true;
+  return false;
+}
+
+std::string DataFiles::read(const std::string& name) const {
+  if (directory_.empty()) return std::string(embedded_file(name));
+  std::ifstream stream(directory_ / name, std::ios::binary);
+  if (!stream)
+    throw Error((directory_ / name).string() +
+                ": cannot be read; an anatomy directory holds the same files as anatomy/data");
+  std::ostringstream bytes;
+  bytes << stream.rdbuf();
+  return bytes.str();
+}
+
+Json DataFiles::json(const std::string& name) const {
+  try {
+    Json document = Json::parse(read(name));
+    if (!document.is_object()) throw Error(name + ": must hold one JSON object");
+    return document;
+  } catch (const Json::exception& problem) {
+    throw Error(name + ": is not JSON: " + problem.what());
+  }
+}
+
+Fields::Fields(const Json& object, std::string where) : object_(&object), where_(std::move(where)) {
+  if (!object.is_object()) fail("must be a JSON object");
+}
+
+void Fields::fail(const std::string& what) const { throw Error(where_ + ": " + what); }
+
+const Json& Fields::raw(const char* key) const {
+  const auto found = object_->find(key);
+  if (found == object_->end()) fail(std::string("\"") + key + "\" is missing");
+  return *found;
+}
+
+std::string Fields::text(const char* key) const {
+  const Json& value = raw(key);
+  if (!value.is_string()) fail(std::string("\"") + key + "\" must be a string");
+  return value.get<std::string>();
+}
+
+std::string Fields::text_or(const char* key, const std::string& fallback) const {
+  return has(key) ? text(key) : fallback;
+}
+
+double Fields::number(const char* key) const {
+  const Json& value = raw(key);
+  if (!value.is_number() || !std::isfinite(value.get<double>()))
+    fail(std::string("\"") + key + "\" must be a number");
+  return value.get<double>();
+}
+
+double Fields::number_or(const char* key, double fallback) const { return has(key) ? number(key) : fallback; }
+
+bool Fields::flag(const char* key) const {
+  if (!has(key)) return false;
+  const Json& value = raw(key);
+  if (!value.is_boolean()) fail(std::string("\"") + key + "\" must be true or false");
+  return value.get<bool>();
+}
+
+std::vector<double> Fields::numbers(const char* key) const {
+  const Json& value = raw(key);
+  std::vector<double> result;
+  if (!value.is_array()) fail(std::string("\"") + key + "\" must be a list of numbers");
+  for (const Json& element : value) {
+    if (!element.is_number()) fail(std::string("\"") + key + "\" must be a list of numbers");
+    result.push_back(element.get<double>());
+  }
+  return result;
+}
+
+Vec3 Fields::point_mm(const char* key) const { return triple(raw(key), *this, key) * metres; }
+
+Vec3 Fields::direction(const char* key) const {
+  const Vec3 vector = triple(raw(key), *this, key);
+  if (vector.norm() < 1e-9) fail(std::string("\"") + key + "\" must not be zero");
+  return vector.normalized();
+}
+
+std::vector<Vec3> Fields::points_mm(const char* key) const {
+  const Json& value = raw(key);
+  if (!value.is_array()) fail(std::string("\"") + key + "\" must be a list of points");
+  std::vector<Vec3> points;
+  for (const Json& element : value) points.push_back(triple(element, *this, key) * metres);
+  return points;
+}
+
+std::vector<Fields> Fields::list(const char* key) const {
+  const Json& value = raw(key);
+  if (!value.is_array()) fail(std::string("\"") + key + "\" must be a list");
+  std::vector<Fields> entries;
+  for (size_t i = 0; i < value.size(); ++i) {
+    const Json& element = value[i];
+    std::string name = std::string(key) + "[" + std::to_string(i) + "]";
+    if (element.is_object() && element.contains("name") && element["name"].is_string())
+      name = element["name"].get<std::string>();
+    entries.emplace_back(element, where_ + ", " + name);
+  }
+  return entries;
+}
+
+Fields Fields::object(const char* key) const { return Fields(raw(key), where_ + ", " + key); }
+
+Vec3 mirrored(const Vec3& point) { return Vec3(-point.x(), point.y(), point.z()); }
+
+std::vector<Vec3> mirrored(std::vector<Vec3> points) {
+  for (Vec3& point : points) point = mirrored(point);
+  return points;
+}
+
+std::string with_side(const std::string& name, Side side) {
+  if (side == Side::left) return name + "_left";
+  if (side == Side::right) return name + "_right";
+  return name;
+}
+
+std::vector<Side> sides_of(const Fields& fields) {
+  if (fields.flag("midline")) return {Side::midline};
+  return {Side::left, Side::right};
+}
+
+}  // namespace fascia::anatomy

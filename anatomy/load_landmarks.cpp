@@ -1,0 +1,83 @@
+#include "anatomy/fields.h"
+
+namespace fascia::anatomy {
+namespace {
+
+Side side_named(const Fields& fields) {
+  const std::string side = fields.text("side");
+  if (side == "midline") return Side::midline;
+  if (side == "left") return Side::left;
+  if (side == "right") return Side::right;
+  fields.fail("\"side\" must be midline, left or right");
+}
+
+Landmark landmark_of(const Fields& fields) {
+  Landmark landmark;
+  landmark.name = fields.text("name");
+  landmark.abbreviation = fields.text("abbreviation");
+  landmark.definition = fields.text("definition");
+  landmark.side = side_named(fields);
+  landmark.craniometric = fields.text("kind") == "craniometric";
+  landmark.required = fields.flag("required");
+  if (fields.has("skin")) {
+    landmark.skin = fields.point_mm("skin");
+    landmark.normal = fields.direction("normal");
+  }
+  if (fields.has("bone")) {
+    landmark.bone = fields.point_mm("bone");
+    landmark.bone_from_depth = fields.text("bone_source") == "depth";
+  }
+  landmark.depth = fields.text_or("depth", "");
+  if (!landmark.skin && !landmark.bone) fields.fail("has neither a skin nor a bone point");
+  if (landmark.required && !landmark.skin) fields.fail("is required but has no skin point to place");
+  return landmark;
+}
+
+void add_curve(const Fields& fields, std::vector<Curve>& curves) {
+  for (const Side side : sides_of(fields)) {
+    Curve curve;
+    curve.name = with_side(fields.text("name"), side);
+    curve.definition = fields.text("definition");
+    curve.side = side;
+    curve.on = fields.text("on");
+    curve.closed = fields.flag("closed");
+    curve.points = fields.points_mm("points");
+    if (curve.points.size() < 2) fields.fail("needs two points or more");
+    if (side == Side::right) curve.points = mirrored(curve.points);
+    curves.push_back(curve);
+  }
+}
+
+}  // namespace
+
+void load_landmarks(const DataFiles& files, GenericAnatomy& anatomy) {
+  const Json document = files.json("landmarks.json");
+  const Fields root(document, "landmarks.json");
+  for (const Fields& entry : root.list("landmarks")) anatomy.landmarks.push_back(landmark_of(entry));
+  if (root.has("curves"))
+    for (const Fields& entry : root.list("curves")) add_curve(entry, anatomy.curves);
+}
+
+void load_tissue_depths(const DataFiles& files, GenericAnatomy& anatomy) {
+  const Json document = files.json("tissue_depths.json");
+  const Fields root(document, "tissue_depths.json");
+  for (const Fields& entry : root.list("tables")) {
+    TissueDepthTable table;
+    table.name = entry.text("name");
+    table.population = entry.text("population");
+    table.source = entry.text("source");
+    for (const Fields& row : entry.list("depths")) {
+      TissueDepth depth;
+      depth.key = row.text("key");
+      depth.mean = row.number("mean_mm") * 1e-3;
+      depth.deviation = row.number_or("sd_mm", 0.0) * 1e-3;
+      if (depth.mean <= 0.0 || depth.deviation < 0.0) row.fail("depths are positive");
+      if (table.find(depth.key)) row.fail("the key \"" + depth.key + "\" stands twice in " + table.name);
+      table.depths.push_back(depth);
+    }
+    anatomy.depth_tables.push_back(table);
+  }
+  if (anatomy.depth_tables.empty()) root.fail("holds no table");
+}
+
+}  // namespace fascia::anatomy

@@ -1,0 +1,85 @@
+#include "anatomy/fields.h"
+
+namespace fascia::anatomy {
+namespace {
+
+TissueLayer layer_of(const Fields& fields) {
+  TissueLayer layer;
+  layer.name = fields.text("name");
+  layer.thickness = fields.number("thickness_mm") * 1e-3;
+  const std::vector<double> range = fields.numbers("thickness_range_mm");
+  if (range.size() != 2 || range[0] > range[1]) fields.fail("\"thickness_range_mm\" must be two rising numbers");
+  layer.thinnest = range[0] * 1e-3;
+  layer.thickest = range[1] * 1e-3;
+  layer.young_modulus = fields.number("young_modulus_pa");
+  layer.stiff_modulus = fields.number_or("stiff_modulus_pa", layer.young_modulus);
+  layer.limit_strain = fields.number_or("limit_strain", 0.0);
+  layer.density = fields.number("density_kg_m3");
+  layer.source = fields.text("source");
+  if (!(layer.thickness > 0.0 && layer.young_modulus > 0.0 && layer.density > 0.0))
+    fields.fail("thickness, modulus and density must be positive");
+  return layer;
+}
+
+/// `value_key` names the zone's value; `scale` turns it into SI.
+std::vector<Zone> zones_of(const Fields& root, const char* list, const char* value_key, double scale) {
+  std::vector<Zone> zones;
+  for (const Fields& entry : root.list(list)) {
+    for (const Side side : sides_of(entry)) {
+      Zone zone;
+      zone.name = with_side(entry.text("name"), side);
+      zone.side = side;
+      zone.polygon = entry.points_mm("polygon");
+      if (zone.polygon.size() < 3) entry.fail("\"polygon\" needs three corners or more");
+      if (side == Side::right) zone.polygon = mirrored(zone.polygon);
+      zone.value = value_key ? entry.number(value_key) * scale : 0.0;
+      zone.falloff = entry.number_or("falloff_mm", 0.0) * 1e-3;
+      zone.note = entry.text_or("note", "");
+      zones.push_back(zone);
+    }
+  }
+  return zones;
+}
+
+void add_ligament(const Fields& entry, std::vector<RetainingLigament>& ligaments) {
+  for (const Side side : sides_of(entry)) {
+    RetainingLigament ligament;
+    ligament.name = with_side(entry.text("name"), side);
+    ligament.side = side;
+    ligament.type = entry.text("type");
+    ligament.from = entry.text("from");
+    ligament.bone = entry.points_mm("bone");
+    ligament.skin = entry.points_mm("skin");
+    ligament.stiffness = entry.number("stiffness_n_m");
+    ligament.source = entry.text("source");
+    if (ligament.bone.empty() || ligament.bone.size() != ligament.skin.size())
+      entry.fail("\"bone\" and \"skin\" must have the same number of points");
+    if (side == Side::right) {
+      ligament.bone = mirrored(ligament.bone);
+      ligament.skin = mirrored(ligament.skin);
+    }
+    ligaments.push_back(ligament);
+  }
+}
+
+}  // namespace
+
+void load_tissue(const DataFiles& files, GenericAnatomy& anatomy) {
+  const Json document = files.json("tissue.json");
+  const Fields root(document, "tissue.json");
+  Tissue& tissue = anatomy.tissue;
+  for (const Fields& entry : root.list("layers")) tissue.layers.push_back(layer_of(entry));
+  const Fields elsewhere = root.object("elsewhere");
+  tissue.smas_depth_fraction = elsewhere.number("smas_depth_fraction");
+  tissue.skin_attachment = elsewhere.number("skin_attachment");
+  tissue.glide = elsewhere.number("glide_mm") * 1e-3;
+  tissue.smas_depth = zones_of(root, "smas_depth", "depth_fraction", 1.0);
+  tissue.skin_attachments = zones_of(root, "skin_attachments", "strength", 1.0);
+  tissue.gliding_planes = zones_of(root, "gliding_planes", "travel_mm", 1e-3);
+  tissue.fat_compartments = zones_of(root, "fat_compartments", "thickness_mm", 1e-3);
+  tissue.aesthetic_units = zones_of(root, "aesthetic_units", nullptr, 1.0);
+  tissue.tarsal_plates = zones_of(root, "tarsal_plates", "young_modulus_pa", 1.0);
+  for (const Fields& entry : root.list("ligaments")) add_ligament(entry, tissue.ligaments);
+}
+
+}  // namespace fascia::anatomy
