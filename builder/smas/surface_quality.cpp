@@ -37,6 +37,7 @@ class Improver {
   void collapse();
   void flip();
   void smooth(bool exact);
+  void relax_worst(double below);
   void settle();
   long evaluations() const { return evaluations_; }
 
@@ -335,6 +336,46 @@ void Improver::settle() {
   }
 }
 
+// Moves vertices of the worst triangles to wherever nearby the smallest angle around them is largest.
+void Improver::relax_worst(double below) {
+  const Connectivity links = connectivity(mesh_);
+  const std::vector<bool> boundary = boundary_vertices(links);
+  const auto worst_around = [&](int v, const Vec3& point) {
+    double worst = 4.0;
+    for (int i = links.vertex_offsets[v]; i < links.vertex_offsets[v + 1]; ++i) {
+      const Triangle& t = mesh_.triangles[links.vertex_triangles[i]];
+      Vec3 p[3];
+      for (int k = 0; k < 3; ++k) p[k] = t[k] == v ? point : at(t[k]);
+      if (!upright(t[0], t[1], t[2], p[0], p[1], p[2])) return -1.0;
+      worst = std::min(worst, smallest_angle(p[0], p[1], p[2]));
+    }
+    return worst;
+  };
+  for (int round = 0; round < 6; ++round) {
+    std::vector<bool> poor(mesh_.vertices.size(), false);
+    bool any = false;
+    for (const Triangle& t : mesh_.triangles)
+      if (smallest_angle(at(t[0]), at(t[1]), at(t[2])) < below) poor[t[0]] = poor[t[1]] = poor[t[2]] = any = true;
+    if (!any) return;
+    for (int v = 0; v < mesh_.vertex_count(); ++v) {
+      if (!poor[v] || (boundary[v] && !options_.move_boundary)) continue;
+      const Vec3 x = normals_[v].unitOrthogonal(), y = normals_[v].cross(x);
+      double best = worst_around(v, at(v));
+      Vec3 best_point = at(v), best_normal = normals_[v];
+      for (double length : {0.06, 0.15, 0.3})
+        for (int k = 0; k < 8; ++k) {
+          const Vec3 step = length * sizes_[v] * (std::cos(k * M_PI / 4.0) * x + std::sin(k * M_PI / 4.0) * y);
+          Vec3 point, normal;
+          follow_curvature(links, v, step, &point, &normal);
+          const double worst = worst_around(v, point);
+          if (worst > best + 1e-3) best = worst, best_point = point, best_normal = normal;
+        }
+      mesh_.vertices[v] = best_point;
+      normals_[v] = best_normal;
+    }
+  }
+}
+
 // Whether vertex `v` can move to `point` without turning over or flattening a triangle that was sound.
 bool Improver::fits(const Connectivity& links, int v, const Vec3& point) const {
   double before = 4.0, after = 4.0;
@@ -381,8 +422,8 @@ long improve_triangles(const ImplicitFunction& function, const QualityOptions& o
     improver.smooth(false);
   }
   improver.flip();
+  improver.relax_worst(0.6);
   improver.settle();
-  // What moving onto the surface has spoilt, and the worst angles that are left.
   improver.flip();
   return improver.evaluations();
 }

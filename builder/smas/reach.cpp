@@ -1,0 +1,260 @@
+#include "builder/smas/reach.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+
+#include "builder/spatial/surface_query.h"
+#include "geometry/connectivity.h"
+#include "geometry/error.h"
+
+namespace fascia::smas {
+
+namespace {
+
+const Vec3& landmark(const Landmarks& landmarks, const std::string& name) {
+  const auto found = landmarks.find(name);
+  if (found == landmarks.end())
+    throw Error("SMAS: landmark '" + name + "' is missing; find or give the landmarks of the face first");
+  if (!found->second.allFinite()) throw Error("SMAS: landmark '" + name + "' is not a finite point");
+  return found->second;
+}
+
+// The landmark, or nothing when it is not among them.
+const Vec3* maybe(const Landmarks& landmarks, const std::string& name) {
+  const auto found = landmarks.find(name);
+  return found == landmarks.end() || !found->second.allFinite() ? nullptr : &found->second;
+}
+
+Vec3 perpendicular(const Vec3& v, const Vec3& axis) { return (v - axis * axis.dot(v)).normalized(); }
+
+}  // namespace
+
+double face_scale(const Landmarks& landmarks) {
+  // Of the mean adult: outer canthi 89 mm apart, 110 mm from between them to gnathion.
+  const Vec3 &left = landmark(landmarks, "exocanthion_left"), &right = landmark(landmarks, "exocanthion_right");
+  const double height = (landmark(landmarks, "gnathion") - 0.5 * (left + right)).norm();
+  const double scale = 0.5 * ((left - right).norm() / 0.089 + height / 0.110);
+  if (!(scale > 1e-3)) throw Error("SMAS: exocanthion_left, exocanthion_right and gnathion lie at one point");
+  return scale;
+}
+
+double ReachField::Opening::distance(const Vec3& point) const {
+  const double depth = (point - centre).dot(z);
+  return depth < near || depth > far ? 1.0 : across(point);
+}
+
+double ReachField::Opening::across(const Vec3& point) const {
+  const Vec3 r = point - centre;
+  const double u = r.dot(x), v = r.dot(y) - bend * u * u;
+  const double height = v > 0.0 ? up : down;
+  const Vec2 scaled(u / half_width, v / height);
+  const double level = scaled.norm();
+  // First-order distance (F - 1) / |grad F| of F = |scaled|.
+  const Vec2 gradient(scaled[0] / half_width, scaled[1] / height);
+  const double slope = gradient.norm() / std::max(level, 1e-9);
+  return slope > 0.0 ? std::max((level - 1.0) / slope, -std::min(up, down)) : -std::min(up, down);
+}
+
+ReachField::ReachField(const Landmarks& landmarks, const ReachOptions& options, double band)
+    : scale_(face_scale(landmarks)), band_(band) {
+  for (const char* side : {"_left", "_right"}) add_eye(landmarks, side, options.lid_margin * scale_);
+  add_mouth(landmarks, std::clamp(options.lip_part, 0.1, 1.0));
+  if (options.nostrils) add_nostrils(landmarks);
+  add_limits(landmarks, options);
+}
+
+void ReachField::add_eye(const Landmarks& landmarks, const std::string& side, double margin) {
+  const Vec3 &outer = landmark(landmarks, "exocanthion" + side), &inner = landmark(landmarks, "endocanthion" + side);
+  const Vec3 &above = landmark(landmarks, "palpebrale_superius" + side), &below = landmark(landmarks, "palpebrale_inferius" + side);
+  Opening eye;
+  eye.centre = 0.5 * (outer + inner);
+  eye.x = (side == "_left" ? outer - inner : inner - outer).normalized();
+  // The globe bulges between the canthi: up is across them towards the upper lid, as seen from the front.
+  const Vec3 up = landmark(landmarks, "nasion") - landmark(landmarks, "subnasale");
+  eye.y = perpendicular(up, eye.x);
+  eye.z = eye.x.cross(eye.y);
+  eye.half_width = 0.5 * (outer - inner).norm() + 1.3 * margin;
+  const double least = 0.0025 * scale_;
+  eye.up = std::max((above - eye.centre).dot(eye.y), least) + margin;
+  eye.down = std::max(-(below - eye.centre).dot(eye.y), least) + margin;
+  eye.bend = 0.0;
+  eye.near = -0.020 * scale_, eye.far = 0.020 * scale_;
+  openings_.push_back(eye);
+}
+
+void ReachField::add_mouth(const Landmarks& landmarks, double part) {
+  const Vec3 &left = landmark(landmarks, "cheilion_left"), &right = landmark(landmarks, "cheilion_right");
+  const Vec3 &between = landmark(landmarks, "stomion");
+  const Vec3 &above = landmark(landmarks, "labiale_superius"), &below = landmark(landmarks, "labiale_inferius");
+  Opening mouth;
+  mouth.x = (left - right).normalized();
+  mouth.y = perpendicular(above - below, mouth.x);
+  mouth.z = mouth.x.cross(mouth.y);
+  mouth.centre = between + mouth.x * mouth.x.dot(0.5 * (left + right) - between);
+  const double corner = 0.5 * (left - right).norm();
+  mouth.bend = (0.5 * (left + right) - mouth.centre).dot(mouth.y) / (corner * corner);
+  mouth.half_width = corner + 0.0022 * scale_;
+  const double least = 0.0025 * scale_;
+  mouth.up = std::max(part * (above - between).dot(mouth.y), least);
+  mouth.down = std::max(part * (between - below).dot(mouth.y), least);
+  mouth.near = -0.030 * scale_, mouth.far = 0.020 * scale_;
+  openings_.push_back(mouth);
+}
+
+// One opening for both nostrils: the columella between them is narrower than two triangles.
+void ReachField::add_nostrils(const Landmarks& landmarks) {
+  const Vec3 &under = landmark(landmarks, "subnasale"), &tip = landmark(landmarks, "pronasale");
+  const Vec3* columella = maybe(landmarks, "columella");
+  const Vec3 front = columella ? *columella : Vec3(0.6 * under + 0.4 * tip);
+  Vec3 centres[2];
+  double length = 0.0;
+  for (int k = 0; k < 2; ++k) {
+    const std::string side = k == 0 ? "_left" : "_right";
+    const Vec3& ala = landmark(landmarks, "alare" + side);
+    const Vec3* subalare = maybe(landmarks, "subalare" + side);
+    const Vec3 rear = subalare ? *subalare : Vec3(0.75 * ala + 0.25 * under);
+    centres[k] = 0.35 * rear + 0.5 * front + 0.15 * ala;
+    length += 0.5 * (front - rear).norm();
+  }
+  Opening nose;
+  nose.centre = 0.5 * (centres[0] + centres[1]);
+  nose.x = (centres[0] - centres[1]).normalized();
+  // Out of the nostrils is down and forward, across the line from lip to tip.
+  nose.z = nose.x.cross(tip - under).normalized();
+  if (nose.z.dot(under - landmark(landmarks, "nasion")) < 0.0) nose.z = -nose.z;
+  nose.y = nose.z.cross(nose.x);
+  nose.half_width = 0.5 * (centres[0] - centres[1]).norm() + 0.24 * length;
+  nose.up = nose.down = 0.23 * length;
+  // Bent, so that it passes in front of subnasale and back into the nostrils beside it.
+  const double ahead = std::max((under - nose.centre).dot(nose.y) + 1.2 * nose.down, 0.0);
+  nose.centre += ahead * nose.y;
+  nose.bend = -1.5 * ahead / (nose.half_width * nose.half_width);
+  nose.near = -0.006 * scale_, nose.far = 0.006 * scale_;
+  openings_.push_back(nose);
+}
+
+void ReachField::add_limits(const Landmarks& landmarks, const ReachOptions& options) {
+  const Vec3 &left = landmark(landmarks, "exocanthion_left"), &right = landmark(landmarks, "exocanthion_right");
+  const Vec3 side = (left - right).normalized();
+  const Vec3 &chin = landmark(landmarks, "gnathion"), &root = landmark(landmarks, "nasion");
+  const Vec3 up = perpendicular(root - chin, side), front = side.cross(up);
+  // In front of the ears: a plane across the head through the foremost of the ears' landmarks.
+  double foremost = -1e300;
+  for (const char* name : {"tragion_left", "tragion_right"})
+    foremost = std::max(foremost, landmark(landmarks, name).dot(front));
+  for (const char* name : {"preaurale_left", "preaurale_right", "otobasion_superius_left", "otobasion_superius_right"})
+    if (const Vec3* ear = maybe(landmarks, name)) foremost = std::max(foremost, ear->dot(front));
+  limits_.push_back({front * (foremost + options.ear_gap * scale_), front});
+  // Behind the hairline.
+  if (const Vec3* hairline = maybe(landmarks, "trichion")) {
+    const Vec3* top = maybe(landmarks, "vertex");
+    const Vec3 crown = top ? *top : Vec3(*hairline + scale_ * (0.040 * up - 0.095 * front));
+    const Vec3 along = perpendicular(crown - *hairline, side);
+    limits_.push_back({*hairline + options.galea * (crown - *hairline), -along});
+  } else {
+    const Vec3& brow = landmark(landmarks, "glabella");
+    limits_.push_back({brow + (0.048 + 0.1 * options.galea) * scale_ * up, -up});
+  }
+  // Along the neck: down from the angle of chin and neck.
+  const Vec3* angle = maybe(landmarks, "cervicale");
+  const Vec3 throat = angle ? *angle : Vec3(chin - scale_ * (0.011 * up + 0.04 * front));
+  limits_.push_back({throat - options.neck * scale_ * up, up});
+}
+
+double ReachField::within_limits(const Vec3& skin) const {
+  double value = 1.0;
+  for (const Limit& limit : limits_) value = std::min(value, (skin - limit.at).dot(limit.inward));
+  return value;
+}
+
+double ReachField::outside_openings(const Vec3& skin) const {
+  double value = 1.0;
+  for (const Opening& opening : openings_) {
+    double distance = opening.distance(skin);
+    // Stretched inside, so that every opening leaves its skin before its middle.
+    if (distance < 0.0) distance *= band_ / std::min(band_, 0.55 * std::min(opening.up, opening.down));
+    value = std::min(value, distance);
+  }
+  return value;
+}
+
+bool ReachField::may_be_lining(const Vec3& point, const Vec3& normal) const {
+  for (const Opening& opening : openings_) {
+    const double depth = (point - opening.centre).dot(opening.z);
+    if (normal.dot(opening.z) < 0.35 && depth > -0.035 * scale_ && depth < 0.01 * scale_ &&
+        opening.across(point) < 0.005 * scale_)
+      return true;
+  }
+  return false;
+}
+
+bool ReachField::near_opening(const Vec3& point) const {
+  for (const Opening& opening : openings_)
+    if ((point - opening.centre).norm() < opening.half_width + 0.04 * scale_) return true;
+  return false;
+}
+
+FacialSkin facial_skin(const TriangleMesh& skin, const Landmarks& landmarks, const ReachField& field, double band) {
+  std::vector<double> limits(skin.vertices.size()), openings(skin.vertices.size());
+  for (size_t v = 0; v < limits.size(); ++v) {
+    limits[v] = field.within_limits(skin.vertices[v]);
+    openings[v] = field.outside_openings(skin.vertices[v]);
+  }
+  // Large triangles may reach far over the outer limit, but must not bridge an opening.
+  std::vector<bool> keep(skin.triangles.size(), false);
+  for (int t = 0; t < skin.triangle_count(); ++t) {
+    const auto& [a, b, c] = skin.triangles[t];
+    keep[t] = std::max({limits[a], limits[b], limits[c]}) > -band && std::min({openings[a], openings[b], openings[c]}) > -band;
+  }
+  // Lining looks at other skin close by: only the skin around the openings matters for that.
+  std::vector<bool> around(skin.triangles.size(), false);
+  for (int t = 0; t < skin.triangle_count(); ++t) around[t] = field.near_opening(skin.vertices[skin.triangles[t][0]]);
+  if (std::find(around.begin(), around.end(), true) == around.end())
+    throw Error("SMAS: no skin near eyes and mouth; check that the landmarks lie on the head");
+  const spatial::SurfaceQuery query(submesh(skin, around, nullptr));
+  const double near = 1e-4 * field.scale(), far = 0.03 * field.scale();
+  for (int t = 0; t < skin.triangle_count(); ++t) {
+    if (!keep[t]) continue;
+    const Triangle& c = skin.triangles[t];
+    const Vec3 middle = (skin.vertices[c[0]] + skin.vertices[c[1]] + skin.vertices[c[2]]) / 3.0;
+    const Vec3 normal = triangle_normal(skin, t);
+    if (field.may_be_lining(middle, normal) && normal.norm() > 0.5 &&
+        query.first_hit(middle + near * normal, normal, far))
+      keep[t] = false;
+  }
+  // The part that holds the triangle next to glabella.
+  const Connectivity links = connectivity(skin);
+  const Vec3& start = landmark(landmarks, "glabella");
+  int first = -1;
+  double nearest = 1e300;
+  for (int t = 0; t < skin.triangle_count(); ++t) {
+    if (!keep[t]) continue;
+    const Triangle& c = skin.triangles[t];
+    const double d = ((skin.vertices[c[0]] + skin.vertices[c[1]] + skin.vertices[c[2]]) / 3.0 - start).squaredNorm();
+    if (d < nearest) nearest = d, first = t;
+  }
+  if (first < 0)
+    throw Error("SMAS: no skin of the face between ears, hairline and neck; check that the landmarks lie on the head");
+  std::vector<bool> reached(skin.triangles.size(), false);
+  std::vector<int> stack = {first};
+  reached[first] = true;
+  while (!stack.empty()) {
+    const int t = stack.back();
+    stack.pop_back();
+    for (int n : links.neighbours[t])
+      if (n >= 0 && keep[n] && !reached[n]) reached[n] = true, stack.push_back(n);
+  }
+  FacialSkin face;
+  std::vector<int> map;
+  face.mesh = submesh(skin, reached, &map);
+  face.field.resize(face.mesh.vertices.size());
+  for (size_t v = 0; v < map.size(); ++v)
+    if (map[v] >= 0) face.field[map[v]] = std::min(limits[v], openings[v]);
+  for (int t = 0; t < skin.triangle_count(); ++t)
+    if (reached[t]) face.skin_triangle.push_back(t);
+  return face;
+}
+
+}  // namespace fascia::smas
