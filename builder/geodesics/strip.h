@@ -5,8 +5,8 @@
 namespace fascia::geodesics {
 
 /// Fills `workspace.strip` with the edges crossed on the way from `from` to `to` by steps towards `to`
-/// projected into each triangle. Returns false when the walk stalls: at a boundary or when it returns
-/// to a triangle it has left.
+/// projected into each triangle, sliding along ridges, valleys and rims. Returns false when the walk
+/// stalls: in the corner of a rim, or when it returns to a triangle it has left.
 bool trace_strip(const Surface& surface, const SurfacePoint& from, const SurfacePoint& to, Workspace& workspace);
 
 /// Fills `workspace.strip` with the strip that is shortest through edge midpoints (A*). Both ends must
