@@ -1,0 +1,101 @@
+#pragma once
+
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "anatomy/anatomy.h"
+#include "builder/spatial/surface_query.h"
+#include "builder/splines/warp.h"
+#include "geometry/mesh.h"
+
+namespace fascia::muscles {
+
+/// A point of a fibre, where it lies and how it hangs on the SMAS.
+struct FibrePoint {
+  Vec3 position = Vec3::Zero();  ///< metres
+  /// Nearest place of the SMAS, and the height over it along the SMAS' smooth normal (negative: deeper),
+  /// metres. `position` is that place moved by `offset`, except where `bound` is false: at bones, in the
+  /// opening of an orifice and for muscles that run far from the SMAS it is only the nearest place.
+  SurfacePoint smas;
+  double offset = 0.0;
+  bool bound = true;
+};
+
+struct Fibre {
+  std::vector<FibrePoint> points;  ///< from origin to insertion, evenly spaced
+  double rest_length = 0.0;        ///< metres
+  int bundle = 0;                  ///< sub-bundle it belongs to, from 0
+};
+
+/// A muscle of this head.
+struct Muscle {
+  std::string name, whole, title, group, layer;  ///< as in anatomy::Muscle
+  anatomy::Side side = anatomy::Side::midline;
+  anatomy::MuscleKind kind = anatomy::MuscleKind::strap;
+  anatomy::Attachment origin_on = anatomy::Attachment::smas, insertion_on = anatomy::Attachment::smas;
+  std::vector<Vec3> origin, insertion;  ///< the regions carried to this head, metres; empty for rings
+  std::vector<Fibre> fibres;            ///< side by side, no two of them cross
+  int bundles = 1;
+  double peak_shortening = 0.0;
+  double strength = 0.0;       ///< force at full activation, newton, all fibres together
+  double cross_section = 0.0;  ///< square metres
+  double mean_length = 0.0, shortest = 0.0, longest = 0.0;  ///< of the fibres, metres
+  double area = 0.0;       ///< of the sheet the fibres span, square metres
+  double volume = 0.0;     ///< cross-section times mean length, cubic metres
+  double thickness = 0.0;  ///< volume over area, metres; 0 without an area
+};
+
+/// What the muscles are laid on. Meshes and landmarks in metres, in this head's frame: face along +Z, +Y up.
+struct Inputs {
+  const TriangleMesh* smas = nullptr;
+  const spatial::SurfaceQuery* skin = nullptr;
+  const spatial::SurfaceQuery* cranium = nullptr;   ///< may be null: bone ends then hang at their depth
+  const spatial::SurfaceQuery* mandible = nullptr;  ///< likewise
+  const spatial::SurfaceQuery* teeth = nullptr;     ///< may be null; the lips' depth ends on them
+  const splines::Warp* warp = nullptr;  ///< generic anatomy -> this head; null: they are the same
+  /// Landmarks on this head's skin. Rings need cheilion of both sides, stomion and, for each eye,
+  /// exocanthion, endocanthion, palpebrale_superius and palpebrale_inferius.
+  std::map<std::string, Vec3> landmarks;
+  std::span<const anatomy::Muscle> muscles;
+};
+
+/// A region drawn on this head that stands for the generic one.
+struct RegionEdit {
+  std::string muscle;  ///< name with side
+  bool origin = true;  ///< else the insertion
+  std::vector<Vec3> polygon;  ///< metres, on or near the surface, in order
+};
+
+struct Options {
+  double spacing = 0.002;  ///< between fibres, metres on an adult face
+  int fewest_fibres = 3, most_fibres = 9;
+  double point_spacing = 0.004;  ///< between the points of a fibre, metres
+  int fewest_points = 5, most_points = 25;
+  /// Where in a region a fibre ends: 0 at the side that faces the other region, 1 at the far side.
+  double region_share = 0.5;
+  double stress = 3.0e5;           ///< of muscle at full activation, pascal
+  double least_prevalence = 0.0;   ///< leave out muscles that fewer people have
+  std::vector<std::string> absent; ///< names or wholes to leave out
+  std::map<std::string, double> strength_scale;  ///< by name
+  std::vector<RegionEdit> regions;
+};
+
+struct Result {
+  std::vector<Muscle> muscles;  ///< in the order of the input
+  std::vector<std::string> warnings;
+};
+
+/// Lays every muscle of `inputs.muscles` on this head (thesis section 7.2): its regions are carried over
+/// by the warp, their geodesic hulls on the SMAS joined by mutual tangents, and fibres drawn between the
+/// facing arcs as boundary-value geodesics, each point at its depth between skin and bone. Sphincters are
+/// rings at constant distance from the orifice, compressors run across them. Muscles that lie deep or
+/// away from the SMAS (chewing, tongue base, orbit) run from bone to bone through their waypoints.
+/// Throws `Error` naming the muscle when inputs are missing or a region makes no sense.
+Result build(const Inputs& inputs, const Options& options = {});
+
+/// Sets lengths, area, volume and thickness of `muscle` from its fibres.
+void measure(Muscle& muscle);
+
+}  // namespace fascia::muscles

@@ -1,0 +1,141 @@
+#include <algorithm>
+
+#include "builder/muscles/parts.h"
+#include "builder/muscles/tangents.h"
+
+namespace fascia::muscles {
+
+namespace {
+
+std::vector<SurfacePoint> projected(const Carrier& smas, const std::vector<Vec3>& points) {
+  std::vector<SurfacePoint> places;
+  for (const Vec3& point : points) places.push_back(smas.closest(point));
+  return places;
+}
+
+/// Where the fibres of a muscle begin and end on the SMAS, in order side by side.
+struct Ends {
+  std::vector<Vec3> origin, insertion;
+};
+
+/// Between two hulls: from arc to arc, both run from the right tangent to the left one.
+Ends ends_between(const Hull& origin, const Hull& insertion, const FacingArcs& arcs, int bundles, const Options& options) {
+  const double width = 0.5 * (std::max(arc_length(origin, arcs.first_near), arc_length(origin, arcs.first_far)) +
+                              std::max(arc_length(insertion, arcs.second_near), arc_length(insertion, arcs.second_far)));
+  const int count = fibre_count(0.7 * width, bundles, options);
+  Ends ends;
+  for (int i = 0; i < count; ++i) {
+    const double s = (i + 0.5) / count;
+    const auto between = [&](const Hull& hull, const Arc& near, const Arc& far) {
+      return Vec3((1.0 - options.region_share) * along_arc(hull, near, s) +
+                  options.region_share * along_arc(hull, far, s));
+    };
+    ends.origin.push_back(between(origin, arcs.first_near, arcs.first_far));
+    ends.insertion.push_back(between(insertion, arcs.second_near, arcs.second_far));
+  }
+  return ends;
+}
+
+/// One region inside the other: fibres from the inner outline straight out to the outer one.
+Ends ends_radial(const Hull& origin, const Hull& insertion, int bundles, const Options& options) {
+  const auto around = [](const Hull& hull, const Vec3& centre, const Vec3& direction) {
+    int best = 0;
+    for (int i = 1; i < hull.size(); ++i)
+      if ((hull.positions[i] - centre).normalized().dot(direction) >
+          (hull.positions[best] - centre).normalized().dot(direction))
+        best = i;
+    return hull.positions[best];
+  };
+  const auto outline = [](const Hull& hull) {
+    Arc arc;
+    for (int i = 0; i <= hull.size(); ++i) arc.push_back(i % hull.size());
+    return arc;
+  };
+  const bool origin_larger = arc_length(origin, outline(origin)) > arc_length(insertion, outline(insertion));
+  const Hull &outer = origin_larger ? origin : insertion, &inner = origin_larger ? insertion : origin;
+  Vec3 centre = Vec3::Zero();
+  for (const Vec3& p : inner.positions) centre += p / inner.size();
+  const Arc ring = outline(outer);
+  const int count = fibre_count(arc_length(outer, ring), bundles, options);
+  Ends ends;
+  for (int i = 0; i < count; ++i) {
+    const Vec3 out = along_arc(outer, ring, double(i) / count);
+    const Vec3 in = around(inner, centre, (out - centre).normalized());
+    ends.origin.push_back(origin_larger ? out : in);
+    ends.insertion.push_back(origin_larger ? in : out);
+  }
+  return ends;
+}
+
+Ends find_ends(Carrier& smas, const Course& course, const Options& options) {
+  const std::string& name = course.muscle.name;
+  const Hull origin = geodesic_hull(smas, projected(smas, course.origin.polygon), name + ": origin");
+  const Hull insertion = geodesic_hull(smas, projected(smas, course.insertion.polygon), name + ": insertion");
+  const auto left = mutual_tangent(smas, origin, insertion, HullSide::right, HullSide::right);
+  const auto right = mutual_tangent(smas, origin, insertion, HullSide::left, HullSide::left);
+  if (!left || !right) return ends_radial(origin, insertion, course.muscle.bundles, options);
+  return ends_between(origin, insertion, facing_arcs(origin, insertion, *left, *right), course.muscle.bundles, options);
+}
+
+/// The carrier's polyline from `from` over `through` to `to`, geodesic leg by leg.
+std::vector<Vec3> geodesic_course(Carrier& smas, const Vec3& from, const std::vector<Vec3>& through, const Vec3& to) {
+  std::vector<Vec3> line;
+  SurfacePoint at = smas.closest(from);
+  const auto leg = [&](const Vec3& goal) {
+    const SurfacePoint next = smas.closest(goal);
+    const geodesics::Path& path = smas.connect(at, next);
+    line.insert(line.end(), path.positions.begin() + (line.empty() ? 0 : 1), path.positions.end());
+    at = next;
+  };
+  for (const Vec3& point : through) leg(point);
+  leg(to);
+  return line;
+}
+
+/// Rounds off the corners that waypoints leave, ends fixed.
+void smooth(std::vector<Vec3>& line, int rounds) {
+  std::vector<Vec3> last;
+  for (int round = 0; round < rounds; ++round) {
+    last = line;
+    for (size_t i = 1; i + 1 < line.size(); ++i) line[i] = 0.5 * last[i] + 0.25 * (last[i - 1] + last[i + 1]);
+  }
+}
+
+}  // namespace
+
+std::vector<Fibre> lay_on_smas(Carrier& smas, const Depths& depths, const Course& course, const Options& options) {
+  const Ends ends = find_ends(smas, course, options);
+  const size_t count = ends.origin.size();
+  const Vec3 &middle_origin = ends.origin[count / 2], &middle_insertion = ends.insertion[count / 2];
+  std::vector<Fibre> fibres;
+  for (size_t i = 0; i < count; ++i) {
+    std::vector<Vec3> through;
+    for (size_t k = 0; k < course.waypoints.size(); ++k) {
+      // A neighbour of the central fibre passes the waypoint as far to the side as its ends lie.
+      const double share = double(k + 1) / double(course.waypoints.size() + 1);
+      through.push_back(course.waypoints[k] + (1.0 - share) * (ends.origin[i] - middle_origin) +
+                        share * (ends.insertion[i] - middle_insertion));
+    }
+    std::vector<Vec3> line = geodesic_course(smas, ends.origin[i], through, ends.insertion[i]);
+    const int points = point_count(polyline_length(line), options);
+    line = resampled(line, points);
+    if (!through.empty()) {
+      smooth(line, 2 + points / 2);
+      line = resampled(line, points);
+    }
+    Fibre fibre;
+    fibre.bundle = static_cast<int>(i) * course.muscle.bundles / static_cast<int>(count);
+    for (int k = 0; k < points; ++k)
+      fibre.points.push_back(
+          depths.at(smas.closest(line[k]), sampled(course.muscle.depth_fraction, double(k) / (points - 1))));
+    const auto fasten = [&](const Place& place, FibrePoint& end) {
+      if (place.bone) end = unbound(smas, place.bone->closest(end.position).position);
+    };
+    fasten(course.origin, fibre.points.front());
+    fasten(course.insertion, fibre.points.back());
+    fibres.push_back(std::move(fibre));
+  }
+  return fibres;
+}
+
+}  // namespace fascia::muscles

@@ -1,0 +1,256 @@
+#include "builder/muscles/muscles.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+
+#include "geometry/error.h"
+#include "tests/geodesics/surfaces.h"
+
+namespace fascia::muscles {
+namespace {
+
+using anatomy::Attachment;
+using anatomy::MuscleKind;
+using geodesics::kPi;
+
+constexpr double kSkin = 0.1, kSmas = 0.095, kBone = 0.088;
+
+TriangleMesh shell(double radius) {
+  TriangleMesh mesh = geodesics::sphere(5);
+  for (Vec3& p : mesh.vertices) p *= radius;
+  return mesh;
+}
+
+/// The point of the front of a sphere seen at (x, y).
+Vec3 front(double radius, double x, double y) { return Vec3(x, y, std::sqrt(radius * radius - x * x - y * y)); }
+
+std::vector<Vec3> patch(double radius, double x, double y, double half_width, double half_height) {
+  return {front(radius, x - half_width, y - half_height), front(radius, x + half_width, y - half_height),
+          front(radius, x + half_width, y + half_height), front(radius, x - half_width, y + half_height)};
+}
+
+anatomy::Muscle strap(const std::string& name, double side) {
+  anatomy::Muscle muscle;
+  muscle.name = muscle.whole = name;
+  muscle.group = "mimic";
+  muscle.origin = {Attachment::cranium, patch(kBone, side * 0.045, 0.03, 0.006, 0.004)};
+  muscle.insertion = {Attachment::modiolus, patch(kSmas, side * 0.022, -0.02, 0.004, 0.004)};
+  muscle.depth_fraction = {1.0, 0.6, 0.4};
+  muscle.peak_shortening = 0.2;
+  muscle.cross_section = 2e-5;
+  muscle.bundles = 2;
+  return muscle;
+}
+
+anatomy::Muscle ring(const std::string& name, MuscleKind kind, double inner, double outer, double begin, double end) {
+  anatomy::Muscle muscle;
+  muscle.name = muscle.whole = name;
+  muscle.group = "mimic";
+  muscle.kind = kind;
+  muscle.band = anatomy::OrificeBand{"mouth", inner, outer, begin, end};
+  muscle.depth_fraction = kind == MuscleKind::compressor ? std::vector<double>{0.1, 0.9} : std::vector<double>{0.4, 0.4};
+  muscle.cross_section = 1e-5;
+  return muscle;
+}
+
+/// Concentric spheres for skin, SMAS and skull.
+struct BallHead {
+  TriangleMesh smas = shell(kSmas);
+  spatial::SurfaceQuery skin{shell(kSkin)}, cranium{shell(kBone)};
+  std::vector<anatomy::Muscle> muscles;
+
+  Inputs inputs() const {
+    Inputs in;
+    in.smas = &smas;
+    in.skin = &skin;
+    in.cranium = &cranium;
+    in.muscles = muscles;
+    in.landmarks = {{"cheilion_left", front(kSkin, 0.025, -0.03)},
+                    {"cheilion_right", front(kSkin, -0.025, -0.03)},
+                    {"stomion", front(kSkin, 0.0, -0.03)}};
+    return in;
+  }
+};
+
+bool segments_cross(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  const auto area = [](const Vec3& p, const Vec3& q, const Vec3& r) {
+    return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
+  };
+  return area(a, b, c) * area(a, b, d) < 0 && area(c, d, a) * area(c, d, b) < 0;
+}
+
+int crossings(const Muscle& muscle) {
+  int count = 0;
+  for (size_t i = 0; i < muscle.fibres.size(); ++i)
+    for (size_t j = i + 1; j < muscle.fibres.size(); ++j)
+      for (size_t k = 0; k + 1 < muscle.fibres[i].points.size(); ++k)
+        for (size_t l = 0; l + 1 < muscle.fibres[j].points.size(); ++l)
+          count += segments_cross(muscle.fibres[i].points[k].position, muscle.fibres[i].points[k + 1].position,
+                                  muscle.fibres[j].points[l].position, muscle.fibres[j].points[l + 1].position);
+  return count;
+}
+
+TEST(BuildMuscles, LaysAStrapFromBoneToTheModiolus) {
+  BallHead head;
+  head.muscles = {strap("zygomaticus_major_left", 1.0)};
+  const Result result = build(head.inputs());
+  ASSERT_EQ(result.muscles.size(), 1u);
+  const Muscle& muscle = result.muscles[0];
+  EXPECT_GE(muscle.fibres.size(), 3u);
+  EXPECT_LE(muscle.fibres.size(), 9u);
+  EXPECT_EQ(crossings(muscle), 0);
+  EXPECT_NEAR(muscle.strength, 6.0, 1e-12);
+  EXPECT_EQ(muscle.origin_on, Attachment::cranium);
+  EXPECT_EQ(muscle.fibres.front().bundle, 0);
+  EXPECT_EQ(muscle.fibres.back().bundle, 1);
+  for (const Fibre& fibre : muscle.fibres) {
+    EXPECT_NEAR(fibre.points.front().position.norm(), kBone, 2e-4);
+    // Depth .4 between skin and bone at the insertion, .6 half way.
+    EXPECT_NEAR(fibre.points.back().position.norm(), kSkin - 0.4 * (kSkin - kBone), 3e-4);
+    EXPECT_NEAR(fibre.points[fibre.points.size() / 2].position.norm(), kSkin - 0.6 * (kSkin - kBone), 8e-4);
+    for (const FibrePoint& point : fibre.points) {
+      if (!point.bound) continue;
+      const spatial::SurfaceQuery smas(head.smas);
+      EXPECT_LT((position(head.smas, point.smas) + point.offset * smas.smooth_normal(point.smas) - point.position).norm(),
+                1e-12);
+    }
+  }
+  // Great circle between the regions' middles at the mean radius.
+  const Vec3 a = front(kBone, 0.045, 0.03).normalized(), b = front(kSmas, 0.022, -0.02).normalized();
+  EXPECT_NEAR(muscle.mean_length, std::acos(a.dot(b)) * 0.5 * (kBone + 0.0952), 0.05 * muscle.mean_length);
+}
+
+TEST(BuildMuscles, AreMirroredOnTheOtherSide) {
+  BallHead head;
+  head.muscles = {strap("left", 1.0), strap("right", -1.0)};
+  const Result result = build(head.inputs());
+  EXPECT_NEAR(result.muscles[0].mean_length, result.muscles[1].mean_length, 0.02 * result.muscles[0].mean_length);
+  EXPECT_EQ(result.muscles[0].fibres.size(), result.muscles[1].fibres.size());
+}
+
+TEST(BuildMuscles, PassesItsWaypoints) {
+  BallHead head;
+  head.muscles = {strap("m", 1.0)};
+  const Vec3 waypoint = front(kSmas, 0.05, 0.0);
+  head.muscles[0].waypoints = {waypoint};
+  const Result result = build(head.inputs());
+  const Muscle& muscle = result.muscles[0];
+  EXPECT_EQ(crossings(muscle), 0);
+  double nearest = 1.0;
+  for (const Fibre& fibre : muscle.fibres)
+    for (const FibrePoint& point : fibre.points) nearest = std::min(nearest, (point.position - waypoint).norm());
+  EXPECT_LT(nearest, 0.005);
+}
+
+TEST(BuildMuscles, RingsKeepTheirDistanceFromTheMouth) {
+  BallHead head;
+  head.muscles = {ring("upper", MuscleKind::sphincter_ring, 0.004, 0.012, 0.0, kPi),
+                  ring("lower", MuscleKind::sphincter_ring, 0.004, 0.012, -kPi, 0.0)};
+  const Result result = build(head.inputs());
+  for (const Muscle& muscle : result.muscles) {
+    EXPECT_EQ(crossings(muscle), 0);
+    const size_t count = muscle.fibres.size();
+    for (size_t i = 0; i < count; ++i) {
+      const double distance = 0.004 + 0.008 * (i + 0.5) / count;
+      for (const FibrePoint& point : muscle.fibres[i].points) {
+        // To the lip line, over the sphere: within a fifth of the distance.
+        double nearest = 1.0;
+        for (int k = 0; k <= 100; ++k)
+          nearest = std::min(nearest,
+                             std::acos(std::min(1.0, front(kSkin, -0.025 + 0.05 * k / 100, -0.03).normalized().dot(
+                                                         point.position.normalized()))) * 0.0975);
+        EXPECT_NEAR(nearest, distance, 0.2 * distance + 2e-4);
+        EXPECT_NEAR(point.position.norm(), kSkin - 0.4 * (kSkin - kBone), 1e-3);
+      }
+    }
+  }
+  // From the subject's left corner over the upper lip to the right corner; the lower the other way round.
+  EXPECT_GT(result.muscles[0].fibres[0].points.front().position[0], 0.02);
+  EXPECT_LT(result.muscles[0].fibres[0].points.back().position[0], -0.02);
+  EXPECT_LT(result.muscles[1].fibres[0].points.front().position[0], -0.02);
+  const Muscle& upper = result.muscles[0];
+  EXPECT_GT(upper.fibres[0].points[upper.fibres[0].points.size() / 2].position[1], -0.03);
+}
+
+TEST(BuildMuscles, CompressorsRunInwardsAcrossTheRings) {
+  BallHead head;
+  head.muscles = {ring("compressor", MuscleKind::compressor, 0.001, 0.009, 0.0, kPi)};
+  const Result result = build(head.inputs());
+  for (const Fibre& fibre : result.muscles[0].fibres) {
+    EXPECT_GT(fibre.points.front().position.norm(), fibre.points.back().position.norm() + 0.005);
+    EXPECT_LT(fibre.rest_length, 0.02);
+  }
+}
+
+TEST(BuildMuscles, DeepMusclesRunFromBoneToBone) {
+  BallHead head;
+  anatomy::Muscle deep = strap("masseter_left", 1.0);
+  deep.group = "masticatory";
+  deep.insertion = {Attachment::cranium, patch(kBone, 0.05, -0.03, 0.006, 0.004)};
+  deep.waypoints = {front(0.0905, 0.055, 0.0)};
+  head.muscles = {deep};
+  const Muscle muscle = build(head.inputs()).muscles[0];
+  EXPECT_EQ(crossings(muscle), 0);
+  for (const Fibre& fibre : muscle.fibres) {
+    EXPECT_NEAR(fibre.points.front().position.norm(), kBone, 2e-4);
+    EXPECT_NEAR(fibre.points.back().position.norm(), kBone, 2e-4);
+    for (const FibrePoint& point : fibre.points) EXPECT_GT(point.position.norm(), kBone - 2e-4);
+  }
+}
+
+TEST(BuildMuscles, TakesOptionsAndEdits) {
+  BallHead head;
+  head.muscles = {strap("a", 1.0), strap("b", -1.0)};
+  head.muscles[1].prevalence = 0.06;
+  Options options;
+  options.least_prevalence = 0.5;
+  options.spacing = 0.004;
+  options.strength_scale["a"] = 2.0;
+  options.regions = {{"a", false, patch(kSmas, 0.0, -0.05, 0.004, 0.004)}};
+  const Result coarse = build(head.inputs(), options);
+  ASSERT_EQ(coarse.muscles.size(), 1u);
+  EXPECT_NEAR(coarse.muscles[0].strength, 12.0, 1e-12);
+  EXPECT_LT(coarse.muscles[0].fibres[0].points.back().position[1], -0.04);
+  options.spacing = 0.001;
+  EXPECT_GT(build(head.inputs(), options).muscles[0].fibres.size(), coarse.muscles[0].fibres.size());
+  options.absent = {"a"};
+  EXPECT_TRUE(build(head.inputs(), options).muscles.empty());
+}
+
+TEST(BuildMuscles, CarriesRegionsByTheWarp) {
+  BallHead head;
+  head.muscles = {strap("a", 1.0)};
+  const std::vector<Vec3> from = {Vec3(0, 0, 0), Vec3(.1, 0, 0), Vec3(0, .1, 0), Vec3(0, 0, .1)};
+  std::vector<Vec3> to = from;
+  for (Vec3& p : to) p[0] = -p[0];  // the mirror: the muscle comes out on the right
+  const splines::Warp warp = splines::fit_warp(from, to);
+  Inputs inputs = head.inputs();
+  inputs.warp = &warp;
+  const Result result = build(inputs);
+  for (const Fibre& fibre : result.muscles[0].fibres) EXPECT_LT(fibre.points[0].position[0], -0.03);
+}
+
+TEST(BuildMuscles, SaysWhatIsMissing) {
+  BallHead head;
+  head.muscles = {ring("o", MuscleKind::sphincter_ring, 0.004, 0.012, 0.0, kPi)};
+  Inputs inputs = head.inputs();
+  inputs.landmarks.erase("stomion");
+  try {
+    build(inputs);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("stomion"), std::string::npos);
+  }
+  EXPECT_THROW(build({}), Error);
+  head.muscles = {strap("a", 1.0), strap("a", -1.0)};
+  EXPECT_THROW(build(head.inputs()), Error);
+  head.muscles = {strap("a", 1.0)};
+  Options options;
+  options.regions = {{"unknown", true, {}}};
+  EXPECT_THROW(build(head.inputs(), options), Error);
+}
+
+}  // namespace
+}  // namespace fascia::muscles
