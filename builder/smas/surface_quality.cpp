@@ -358,7 +358,7 @@ void Improver::relax_worst(double below) {
       if (smallest_angle(at(t[0]), at(t[1]), at(t[2])) < below) poor[t[0]] = poor[t[1]] = poor[t[2]] = any = true;
     if (!any) return;
     for (int v = 0; v < mesh_.vertex_count(); ++v) {
-      if (!poor[v] || (boundary[v] && !options_.move_boundary)) continue;
+      if (!poor[v] || boundary[v]) continue;
       const Vec3 x = normals_[v].unitOrthogonal(), y = normals_[v].cross(x);
       double best = worst_around(v, at(v));
       Vec3 best_point = at(v), best_normal = normals_[v];
