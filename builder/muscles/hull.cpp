@@ -160,7 +160,10 @@ Hull geodesic_hull(Carrier& carrier, const std::vector<SurfacePoint>& points, co
   while (remove_reflex(carrier, hull)) {
   }
   for (int i = 0; i < hull.size(); ++i) hull.turning += M_PI - inner_angle(carrier, hull, i);
-  if (hull.turning < 0.3)
+  // A sliver, such as a region pressed flat on the surface's rim, has no reliable angles: the size tells.
+  double reach = 0.0;
+  for (const Vec2& p : flat) reach = std::max(reach, p.norm());
+  if (hull.turning < 0.3 && reach > 0.25 * bounds(carrier.surface.mesh.vertices).size().norm())
     throw Error(what + ": the region covers half of the surface or more, so it has no convex hull; make it smaller");
   return hull;
 }
