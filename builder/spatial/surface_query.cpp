@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <numbers>
 #include <numeric>
 #include <string>
@@ -59,8 +60,10 @@ struct SurfaceQuery::State {
   double size = 1;             // largest coordinate relative to `origin`
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
-  std::vector<Vec3> face_normals, vertex_normals;
-  std::vector<std::array<Vec3, 3>> edge_normals;
+  // Made when first asked for: rays alone need none.
+  mutable std::once_flag normals_made;
+  mutable std::vector<Vec3> face_normals, vertex_normals;
+  mutable std::vector<std::array<Vec3, 3>> edge_normals;
 
   State() = default;
   State(const State&) = delete;
@@ -70,8 +73,11 @@ struct SurfaceQuery::State {
     if (device) rtcReleaseDevice(device);
   }
   void build_scene();
-  void build_normals();
-  void sum_edge_normals(const std::vector<int>& representative);
+  void need_normals() const {
+    std::call_once(normals_made, [this] { build_normals(); });
+  }
+  void build_normals() const;
+  void sum_edge_normals(const std::vector<int>& representative) const;
   Vec3 corner(int triangle, int k) const { return mesh.vertices[mesh.triangles[triangle][k]]; }
   Vec3 pseudonormal(int triangle, const Vec3& barycentric) const;
 };
@@ -102,7 +108,7 @@ void SurfaceQuery::State::build_scene() {
   rtcCommitScene(scene);
 }
 
-void SurfaceQuery::State::build_normals() {
+void SurfaceQuery::State::build_normals() const {
   const std::vector<int> representative = merged_vertices(mesh.vertices);
   face_normals.resize(mesh.triangles.size());
   vertex_normals.assign(mesh.vertices.size(), Vec3::Zero());
@@ -120,7 +126,7 @@ void SurfaceQuery::State::build_normals() {
   sum_edge_normals(representative);
 }
 
-void SurfaceQuery::State::sum_edge_normals(const std::vector<int>& representative) {
+void SurfaceQuery::State::sum_edge_normals(const std::vector<int>& representative) const {
   struct Edge {
     int from, to, triangle, side;
   };
@@ -164,7 +170,6 @@ SurfaceQuery::SurfaceQuery(TriangleMesh mesh) {
   auto state = std::make_shared<State>();
   state->mesh = std::move(mesh);
   state->build_scene();
-  state->build_normals();
   state_ = std::move(state);
 }
 
@@ -219,6 +224,7 @@ ClosestPoint SurfaceQuery::closest(const Vec3& point, double range) const {
   out.surface = {search.triangle, search.barycentric};
   out.position = fascia::position(s.mesh, out.surface);
   out.distance = std::sqrt(search.best);
+  s.need_normals();
   out.pseudonormal = s.pseudonormal(search.triangle, search.barycentric);
   out.signed_distance = (point - out.position).dot(out.pseudonormal) < 0 ? -out.distance : out.distance;
   return out;
@@ -275,6 +281,14 @@ std::optional<RayHit> SurfaceQuery::first_hit(const Vec3& origin, const Vec3& di
   return exact_hit(s.mesh, static_cast<int>(hit.hit.primID), origin, unit);
 }
 
+bool SurfaceQuery::blocked(const Vec3& origin, const Vec3& direction, double range) const {
+  RTCRay ray = make_ray(origin - state_->origin, unit_direction(direction), 0, range);
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded1(state_->scene, &context, &ray);
+  return ray.tfar < 0;
+}
+
 std::vector<RayHit> SurfaceQuery::all_hits(const Vec3& origin, const Vec3& direction, double range) const {
   struct Collector {
     RTCIntersectContext context;
@@ -314,6 +328,7 @@ double SurfaceQuery::winding_number(const Vec3& point) const {
 
 Vec3 SurfaceQuery::smooth_normal(const SurfacePoint& surface) const {
   const State& s = *state_;
+  s.need_normals();
   Vec3 normal = Vec3::Zero();
   for (int k = 0; k < 3; ++k)
     normal += surface.barycentric[k] * s.vertex_normals[s.mesh.triangles[surface.triangle][k]];

@@ -58,6 +58,10 @@ class SurfaceQuery {
                                   double range = std::numeric_limits<double>::infinity(),
                                   double nearest = 0) const;
 
+  /// True when the ray meets anything within `range`; faster than first_hit.
+  bool blocked(const Vec3& origin, const Vec3& direction,
+               double range = std::numeric_limits<double>::infinity()) const;
+
   /// All hits in order of distance; hits on shared edges may appear once for each triangle.
   std::vector<RayHit> all_hits(const Vec3& origin, const Vec3& direction,
                                double range = std::numeric_limits<double>::infinity()) const;

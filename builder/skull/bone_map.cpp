@@ -1,0 +1,48 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "builder/skull/procrustes.h"
+#include "builder/skull/skull.h"
+
+namespace fascia::skull {
+namespace {
+
+// 1 within `inner` of the nearest anchor, 0 beyond `outer`, smooth between.
+double strength(const BoneMap::Patch& patch, const Vec3& point) {
+  double squared = std::numeric_limits<double>::infinity();
+  for (const Vec3& anchor : patch.anchors)
+    squared = std::min(squared, (point - anchor).squaredNorm());
+  const double s = std::clamp((patch.outer - std::sqrt(squared)) / (patch.outer - patch.inner), 0.0, 1.0);
+  return s * s * (3 - 2 * s);
+}
+
+}  // namespace
+
+BoneMap::BoneMap(splines::Warp warp, std::vector<Patch> patches)
+    : warp_(std::move(warp)), patches_(std::move(patches)) {}
+
+Vec3 BoneMap::blend(const Vec3& generic, const Vec3& warped) const {
+  double total = 0;
+  Vec3 sum = Vec3::Zero();
+  for (const Patch& patch : patches_) {
+    const double w = strength(patch, generic);
+    if (w <= 0) continue;
+    sum += w * transform(patch.similarity, generic);
+    total += w;
+  }
+  return total > 1 ? Vec3(sum / total) : Vec3(sum + (1 - total) * warped);
+}
+
+Vec3 BoneMap::operator()(const Vec3& generic) const {
+  return blend(generic, warp_(generic));
+}
+
+std::vector<Vec3> BoneMap::operator()(std::span<const Vec3> generic) const {
+  std::vector<Vec3> out = warp_(generic);
+  for (size_t i = 0; i < out.size(); ++i)
+    out[i] = blend(generic[i], out[i]);
+  return out;
+}
+
+}  // namespace fascia::skull

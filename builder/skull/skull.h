@@ -1,0 +1,134 @@
+#pragma once
+
+// Fitting a generic skull under the skin of a given head.
+//
+// This work is based on:
+// O. Aina. Generating Anatomical Substructures for Physically-Based Facial Animation, ch. 6. 2011
+// K. Mardia, J. Kent, C. Goodall, J. Little. Kriging and splines with derivative information. 1996
+// C. Stephan, E. Simpson. Facial soft tissue depths in craniofacial identification, part I. 2008
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "builder/skull/exterior.h"
+#include "builder/splines/warp.h"
+#include "geometry/mesh.h"
+
+namespace fascia::skull {
+
+/// A landmark of the generic head: where it is on skin and on bone, and how deep bone lies there in people.
+struct GenericLandmark {
+  std::string name;
+  Vec3 skin = Vec3::Zero();  ///< m
+  Vec3 bone = Vec3::Zero();  ///< m
+  bool has_bone = true;      ///< false: a skin landmark only; it steers the skin side of the map
+  double depth = 0;          ///< mean soft-tissue depth, m
+  double depth_sd = 0.003;   ///< its standard deviation between people, m
+};
+
+/// The generic skull. All meshes in metres in one frame; `skin` may be empty.
+struct Generic {
+  TriangleMesh cranium, mandible, teeth_upper, teeth_lower;
+  TriangleMesh skin;  ///< generic head; gives the depth everywhere when present
+  std::vector<GenericLandmark> landmarks;
+  Vec3 condyle_left = Vec3::Zero();  ///< centres of the condyles, on the hinge axis
+  Vec3 condyle_right = Vec3::Zero();
+};
+
+/// A landmark found or given on the head to fit.
+struct TargetLandmark {
+  Vec3 skin = Vec3::Zero();  ///< m
+  double confidence = 1;     ///< in (0, 1]
+};
+
+struct FitOptions {
+  double tissue_scale = 1;                    ///< sigma: scales every depth; children and stylised heads
+  std::map<std::string, double> depth_scale;  ///< k: scales the depth of single landmarks
+  double smoothing = 1000;         ///< 1/m: inverse variance of bone displacement per metre; 0 interpolates
+  int normal_passes = 3;           ///< times the depth directions are re-estimated on the fitted bone
+  double normal_tolerance = 5e-5;  ///< no more passes once no bone target moves farther than this, m
+  double skin_normal_share = 0.5;  ///< depth direction: 0 that of the generic, 1 the skin's normal
+  double clearance_share = 0.6;    ///< bone stays this share of the local depth under the skin...
+  double clearance_floor = 0.002;  ///< ...and at least this, m (scaled down with tissue_scale < 1)
+  const TriangleMesh* teeth_upper = nullptr;  ///< teeth that the head already has, m
+  const TriangleMesh* teeth_lower = nullptr;
+};
+
+struct FittedLandmark {
+  std::string name;
+  Vec3 skin = Vec3::Zero();       ///< on the head
+  Vec3 bone = Vec3::Zero();       ///< on the fitted skull
+  Vec3 target = Vec3::Zero();     ///< where the depth table puts the bone
+  Vec3 direction = Vec3::Zero();  ///< unit, bone to skin
+  double depth = 0;               ///< from fitted bone to skin landmark, m
+  double table_depth = 0;         ///< scaled depth of the table, m
+  double residual = 0;            ///< |bone - target|, m
+  double confidence = 1;
+};
+
+/// How the mandible moves: a hinge through the condyles, and a glide along the articular eminence.
+struct JawFrame {
+  Vec3 condyle_left = Vec3::Zero(), condyle_right = Vec3::Zero();  ///< m
+  Vec3 origin = Vec3::Zero();                                      ///< midway between the condyles
+  Vec3 hinge = Vec3::UnitX();    ///< unit axis to the subject's left; positive turns open the jaw
+  Vec3 glide = Vec3::UnitZ();    ///< unit, forward and down along the eminence
+  Vec3 forward = Vec3::UnitZ();  ///< unit, along the occlusal plane
+  double open_limit = 0.52;      ///< radians of rotation
+  double glide_limit = 0.013;    ///< m along `glide`
+  double forward_limit = 0.010;  ///< m
+  double lateral_limit = 0.010;  ///< m to each side
+};
+
+/// The map from the generic's bone to the fitted bone: a smoothed thin-plate warp, replaced by one
+/// similarity around the teeth and one around each joint so that what fits together keeps its shape.
+class BoneMap {
+ public:
+  struct Patch {
+    std::vector<Vec3> anchors;    ///< generic points that move by the similarity
+    double inner = 0, outer = 0;  ///< full strength within `inner` of an anchor, none beyond `outer`, m
+    Mat4 similarity = Mat4::Identity();
+  };
+  BoneMap() = default;
+  BoneMap(splines::Warp warp, std::vector<Patch> patches);
+  Vec3 operator()(const Vec3& generic) const;
+  std::vector<Vec3> operator()(std::span<const Vec3> generic) const;
+  std::vector<Patch>& patches() { return patches_; }
+  const splines::Warp& warp() const { return warp_; }
+
+ private:
+  Vec3 blend(const Vec3& generic, const Vec3& warped) const;
+  splines::Warp warp_;
+  std::vector<Patch> patches_;
+};
+
+struct FitResult {
+  TriangleMesh cranium, mandible, teeth_upper, teeth_lower;  ///< m, the generic's triangles
+  std::vector<FittedLandmark> landmarks;
+  BoneMap bone_map;    ///< generic bone -> this bone, before the last clearance correction
+  splines::Warp warp;  ///< generic head (skin and bone) -> this head: carries regions and curves
+  Mat4 similarity = Mat4::Identity();  ///< generic -> head, Procrustes
+  JawFrame jaw;
+  double landmark_rms = 0, landmark_max = 0;  ///< residuals, m
+  int bone_outside_skin = 0;      ///< vertices outside the outer skin: 0 unless the head makes it impossible
+  int bone_within_clearance = 0;  ///< vertices nearer to the skin than their clearance
+  int corrected_vertices = 0;     ///< moved by the last correction
+  double corrected_max = 0;       ///< m
+  std::vector<std::string> warnings;
+};
+
+/// Fits `generic` under `skin` (prepared once, see exterior.h). Landmarks are matched by name; unknown names
+/// are ignored with a warning. Throws Error when fewer than four bone landmarks match, when they are coplanar
+/// beyond use, or when an option is out of range.
+///
+/// Steps: Procrustes similarity; bone targets = skin point - sigma k depth along the depth direction;
+/// smoothed thin-plate warp with the table's SD; directions re-estimated; similarity patches at teeth and
+/// joints; bone brought inside the skin, first by added constraints, then vertex by vertex.
+FitResult fit(const Generic& generic, const Exterior& skin,
+              const std::map<std::string, TargetLandmark>& landmarks, const FitOptions& options = {});
+
+/// Same on a bare mesh in metres.
+FitResult fit(const Generic& generic, const TriangleMesh& skin,
+              const std::map<std::string, TargetLandmark>& landmarks, const FitOptions& options = {});
+
+}  // namespace fascia::skull
