@@ -162,7 +162,8 @@ void check_spread(const std::vector<Pair>& pairs) {
 
 double distance_to(const std::vector<Vec3>& points, const Vec3& from) {
   double squared = std::numeric_limits<double>::infinity();
-  for (const Vec3& p : points) squared = std::min(squared, (p - from).squaredNorm());
+  for (const Vec3& p : points)
+    squared = std::min(squared, (p - from).squaredNorm());
   return std::sqrt(squared);
 }
 
@@ -185,7 +186,8 @@ std::vector<BoneMap::Patch> make_patches(const Generic& generic, const Mat4* upp
     // Full strength wherever there is a tooth.
     double reach = 0.003;
     for (const TriangleMesh* mesh : {&generic.teeth_upper, &generic.teeth_lower})
-      for (const Vec3& v : mesh->vertices) reach = std::max(reach, std::min(0.008, distance_to(anchors, v)));
+      for (const Vec3& v : mesh->vertices)
+        reach = std::max(reach, std::min(0.008, distance_to(anchors, v)));
     out.push_back({std::move(anchors), reach + 1e-6, reach + 0.012, fixed ? *fixed : Mat4(Mat4::Zero())});
   };
   std::vector<Vec3> upper = spread_points(generic.teeth_upper, 40),
@@ -249,21 +251,26 @@ bool add_clearance_anchors(ClearanceCheck& check, const Bones& bones, const std:
                    [](const Violation& a, const Violation& b) { return a.missing > b.missing; });
   // Equals, such as the two sides of a symmetric head, are taken together or not at all: only clearly worse
   // violations keep off one that is taken.
-  constexpr double equal = 1e-8;
+  constexpr double equal = 1e-6;  // m
   std::vector<std::pair<Vec3, double>> taken;
   const size_t known = anchors.size();
   for (const Violation& violation : found) {
     if (violation.missing < worth) break;
     if (taken.size() >= 80 && violation.missing + equal < taken.back().second) break;
     const Vec3& from = bones.generic[violation.vertex];
+    // On the midplane the nearest skin may be a tie between left and right; the neighbours of both sides
+    // decide.
+    if (std::abs(from.x()) < 1e-4) continue;
     const auto keeps_off = [&](const std::pair<Vec3, double>& other) {
       return other.second > violation.missing + equal && (other.first - from).norm() < spacing;
     };
     if (std::any_of(taken.begin(), taken.end(), keeps_off)) continue;
     taken.emplace_back(from, violation.missing);
-    const Anchor anchor{from, placed[violation.vertex] + (1.1 * violation.missing) * violation.inward, evidence_sd};
-    const auto same = std::find_if(anchors.begin() + static_cast<long>(first), anchors.begin() + static_cast<long>(known),
-                                   [&](const Anchor& other) { return other.from == from; });
+    const Anchor anchor{from, placed[violation.vertex] + (1.1 * violation.missing) * violation.inward,
+                        evidence_sd};
+    const auto same =
+        std::find_if(anchors.begin() + static_cast<long>(first), anchors.begin() + static_cast<long>(known),
+                     [&](const Anchor& other) { return other.from == from; });
     if (same != anchors.begin() + static_cast<long>(known))
       *same = anchor;
     else
