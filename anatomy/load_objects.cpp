@@ -42,6 +42,17 @@ MeshObject object_of(const tinyobj::attrib_t& attributes, const tinyobj::shape_t
   return object;
 }
 
+/// `text` without its group lines when it names objects: the parser would cut an object into its groups.
+std::string objects_only(const std::string& text) {
+  if (text.rfind("o ", 0) != 0 && text.find("\no ") == std::string::npos) return text;
+  std::istringstream lines(text);
+  std::string result;
+  result.reserve(text.size());
+  for (std::string line; std::getline(lines, line);)
+    if (line != "g" && line.rfind("g ", 0) != 0) result += line + "\n";
+  return result;
+}
+
 }  // namespace
 
 std::vector<MeshObject> load_objects(const DataFiles& files, const std::string& name) {
@@ -49,7 +60,7 @@ std::vector<MeshObject> load_objects(const DataFiles& files, const std::string& 
   std::vector<tinyobj::shape_t> shapes;
   std::vector<tinyobj::material_t> materials;
   std::string warnings, errors;
-  std::istringstream stream(files.read(name));
+  std::istringstream stream(objects_only(files.read(name)));
   const bool parsed = tinyobj::LoadObj(&attributes, &shapes, &materials, &warnings, &errors, &stream, nullptr, false);
   if (!parsed || !errors.empty()) throw Error(name + ": is not a sound OBJ file: " + errors);
   std::vector<MeshObject> objects;

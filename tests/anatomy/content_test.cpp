@@ -83,6 +83,15 @@ TEST(Landmarks, ProportionsOfAnAdult) {
   EXPECT_NEAR((bone("gonion_left") - bone("gonion_right")).norm(), 0.097, 0.015);
 }
 
+TEST(Head, ObjectsAreWholeInSpiteOfTheirGroups) {
+  const MeshObject* skin = generic().head_object("skin");
+  ASSERT_NE(skin, nullptr);
+  EXPECT_GT(skin->mesh.triangle_count(), 4000);
+  EXPECT_EQ(skin->corner_uvs.size(), skin->mesh.triangles.size());
+  const Bounds box = bounds(skin->mesh.vertices);
+  EXPECT_NEAR(box.upper.y(), generic().landmark("vertex")->skin->y(), 0.003);
+}
+
 TEST(Muscles, LeftMirrorsRight) {
   int pairs = 0;
   for (const Muscle& left : generic().muscles) {
