@@ -318,6 +318,23 @@ TEST(Head, LidsRestOnTheEyeball) {
   }
 }
 
+TEST(Head, ConjunctivalSacHoldsTheEyeball) {
+  const Mesh& skin = head().at("skin");
+  const fascia::Bounds box = fascia::bounds(head().at("eye_left").vertices);
+  const double radius = 0.5 * box.size().x();
+  const Vec3 centre(box.centre().x(), box.centre().y(), box.lower.z() + radius);
+  int behind = 0;
+  for (std::size_t f = 0; f < skin.faces.size(); ++f) {
+    if (skin.group[f] != "conjunctiva_left") continue;
+    Vec3 middle = Vec3::Zero();
+    for (int v : skin.faces[f]) middle += skin.vertices[v] / static_cast<double>(skin.faces[f].size());
+    if (middle.z() > centre.z()) continue;
+    ++behind;
+    EXPECT_GT((middle - centre).norm(), radius) << f;
+  }
+  EXPECT_GT(behind, 50);
+}
+
 TEST(Head, MouthLiningEnclosesTheTeeth) {
   const Mesh& skin = head().at("skin");
   fascia::Bounds box;

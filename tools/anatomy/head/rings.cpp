@@ -117,9 +117,9 @@ void add_eye(const Figures& figures, HalfHead& head) {
   head.loops["lid_margin_inner"] = last;
   const auto sac = [](int) { return std::string("conjunctiva_left"); };
   // Behind the margin the sac is a sphere a little wider than the eyeball.
-  const double radius = figures.eye_radius + 0.8;
+  const double radius = figures.eye_radius + 1.3;
   const Vec3 forward = Vec3::UnitZ();
-  for (double angle : {48.0, 75.0, 105.0, 140.0}) {
+  for (double angle : {48.0, 72.0, 100.0, 130.0, 156.0}) {
     Ring ring;
     for (int i = 0; i < n; ++i) {
       const Vec3 rim = head.vertices[head.loops["lid_margin_inner"][i]] - figures.eye_centre;

@@ -5,8 +5,8 @@
 
 namespace fascia::head_maker {
 
-/// Arc length at which the eye, nostril and ear fans leave the cage (mm from the first point of each profile): 0, so
-/// that the openings of the cage are the first points of the profiles.
+/// The fine loops of the openings E, M, O and A: the first points of the measured profiles,
+/// where the rings take over from the cage.
 std::map<char, std::vector<Vec3>> openings(const Figures& figures);
 
 /// Fill the opening E: lid skin, lid margin with its thickness, conjunctival sac behind the eyeball.
