@@ -119,6 +119,21 @@ std::vector<uint8_t> packed_elements(const tinygltf::Model& model, int index, co
   return bytes;
 }
 
+/// True when the elements lie in the file as `packed_elements` would give them.
+bool end_to_end(const tinygltf::Model& model, int index, const AccessorView& view) {
+  return view.data != nullptr && view.stride == view.element_size() &&
+         !model.accessors[static_cast<std::size_t>(index)].sparse.isSparse;
+}
+
+uint64_t hash_words(const uint8_t* bytes, std::size_t size) {
+  uint64_t hash = 0xcbf29ce484222325ULL;
+  for (std::size_t i = 0; i < size; i += 4) {
+    hash ^= load_unsigned(bytes + i, 4);
+    hash *= 0x100000001b3ULL;
+  }
+  return hash;
+}
+
 std::vector<uint32_t> decode_indices(const tinygltf::Model& model, int index, std::size_t vertex_count,
                                      const std::string& path) {
   const AccessorView view = accessor_view(model, index, path);
@@ -195,6 +210,11 @@ AccessorView accessor_view(const tinygltf::Model& model, int index, const std::s
 
 std::vector<float> decode_floats(const tinygltf::Model& model, int index, const std::string& path) {
   const AccessorView view = accessor_view(model, index, path);
+  if (view.component_type == TINYGLTF_COMPONENT_TYPE_FLOAT && end_to_end(model, index, view)) {
+    std::vector<float> direct(view.count * view.components);
+    if (!direct.empty()) std::memcpy(direct.data(), view.data, direct.size() * sizeof(float));
+    return direct;
+  }
   const std::vector<uint8_t> bytes = packed_elements(model, index, path);
   std::vector<float> values(view.count * view.components);
   if (view.component_type == TINYGLTF_COMPONENT_TYPE_FLOAT) {
@@ -237,14 +257,12 @@ std::vector<Triangle> decode_triangles(const tinygltf::Model& model, const tinyg
 }
 
 uint64_t attribute_hash(const tinygltf::Model& model, int index, const std::string& path) {
+  const AccessorView view = accessor_view(model, index, path);
+  const std::size_t size = view.count * view.element_size();
+  if (end_to_end(model, index, view) && size % 4 == 0) return hash_words(view.data, size);
   std::vector<uint8_t> bytes = packed_elements(model, index, path);
   bytes.resize((bytes.size() + 3) / 4 * 4, 0);
-  uint64_t hash = 0xcbf29ce484222325ULL;
-  for (std::size_t i = 0; i < bytes.size(); i += 4) {
-    hash ^= load_unsigned(bytes.data() + i, 4);
-    hash *= 0x100000001b3ULL;
-  }
-  return hash;
+  return hash_words(bytes.data(), bytes.size());
 }
 
 }  // namespace fascia::rig

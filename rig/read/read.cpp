@@ -22,7 +22,7 @@ const tinygltf::Value& root_object(const tinygltf::Model& model, const std::stri
     throw Error(file + ": " + name + "/specVersion: missing");
   const auto version = object.Get("specVersion").Get<std::string>();
   if (version != spec_version)
-    throw Error(file + ": " + name + "/specVersion: version " + version + " is not known to this build, which reads " +
+    throw VersionError(file + ": " + name + "/specVersion: version " + version + " is not known to this build, which reads " +
                 spec_version + "; update Fascia or build the rig again");
   return object;
 }
@@ -113,10 +113,10 @@ Primitive bound_primitive(const tinygltf::Model& model, const Binding& binding, 
   const std::string remedy =
       "; another tool has changed the mesh since the rig was built: build the rig again from the changed head";
   if (result.positions.size() != binding.vertex_count)
-    throw Error(path + ": mesh \"" + mesh.name + "\" has " + std::to_string(result.positions.size()) +
+    throw MismatchError(path + ": mesh \"" + mesh.name + "\" has " + std::to_string(result.positions.size()) +
                 " vertices where the rig was built for " + std::to_string(binding.vertex_count) + remedy);
   if (attribute_hash(model, position->second, path) != binding.position_hash)
-    throw Error(path + ": the positions of mesh \"" + mesh.name + "\" are not those the rig was built for" + remedy);
+    throw MismatchError(path + ": the positions of mesh \"" + mesh.name + "\" are not those the rig was built for" + remedy);
   result.triangles = decode_triangles(model, primitive, result.positions.size(), path);
   const auto normal = primitive.attributes.find("NORMAL");
   if (normal != primitive.attributes.end() && accessor_view(model, normal->second, path).components == 3)

@@ -5,9 +5,22 @@
 #include <string>
 #include <vector>
 
+#include "geometry/error.h"
 #include "rig/model/rig.h"
 
 namespace fascia::rig {
+
+/// A rig of a version this build does not know.
+class VersionError : public Error {
+ public:
+  using Error::Error;
+};
+
+/// A rig whose meshes have been changed since it was built.
+class MismatchError : public Error {
+ public:
+  using Error::Error;
+};
 
 /// What the head was before it became glTF: kept in the rig so that it can be given back as it came.
 struct SourceRecord {
@@ -46,7 +59,7 @@ bool is_rig(std::span<const uint8_t> bytes);
 ///
 /// Every index, accessor and length is checked, numbers are finite, and each binding's fingerprint must
 /// fit the primitive it names. Throws fascia::Error that begins with `name` and says which extension and
-/// property is at fault.
+/// property is at fault: VersionError and MismatchError among others.
 RigFile read(std::span<const uint8_t> bytes, const std::string& name = "rig");
 
 }  // namespace fascia::rig

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -74,24 +75,15 @@ class Reader {
 
   template <class T>
   void list(const char* name, std::vector<T>& values, std::size_t length) {
-    unbounded(name, values, length);
+    floats(name, values, length);
+    if (all_finite(reinterpret_cast<const float*>(values.data()), values.size() * Element<T>::components)) return;
     for (std::size_t i = 0; i < values.size(); ++i)
       if (!Element<T>::finite(values[i])) fail(name, "element " + std::to_string(i) + " is not a finite number");
   }
 
   template <class T>
   void unbounded(const char* name, std::vector<T>& values, std::size_t length) {
-    const AccessorView view = accessor(name, Element<T>::components, length);
-    if (view.count == 0) return;
-    if (view.component_type != TINYGLTF_COMPONENT_TYPE_FLOAT) fail(name, "its accessor does not hold floats");
-    values.resize(view.count);
-    auto* to = reinterpret_cast<uint8_t*>(values.data());
-    if (view.stride == sizeof(T)) {
-      std::memcpy(to, view.data, view.count * sizeof(T));
-    } else {
-      for (std::size_t i = 0; i < view.count; ++i)
-        std::memcpy(to + i * sizeof(T), view.data + i * view.stride, sizeof(T));
-    }
+    floats(name, values, length);
     for (T& value : values)
       Element<T>::open_bounds(value);
   }
@@ -169,6 +161,33 @@ class Reader {
 
   void numbers(const char* name, float* to, std::size_t count);
 
+  /// True when no exponent is all ones: in one pass that vectorises.
+  static bool all_finite(const float* values, std::size_t count) {
+    constexpr uint32_t exponent = 0x7F800000U;
+    uint32_t unsound = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      uint32_t bits;
+      std::memcpy(&bits, values + i, sizeof bits);
+      unsound |= static_cast<uint32_t>((bits & exponent) == exponent);
+    }
+    return unsound == 0;
+  }
+
+  template <class T>
+  void floats(const char* name, std::vector<T>& values, std::size_t length) {
+    const AccessorView view = accessor(name, Element<T>::components, length);
+    if (view.count == 0) return;
+    if (view.component_type != TINYGLTF_COMPONENT_TYPE_FLOAT) fail(name, "its accessor does not hold floats");
+    values.resize(view.count);
+    auto* to = reinterpret_cast<uint8_t*>(values.data());
+    if (view.stride == sizeof(T)) {
+      std::memcpy(to, view.data, view.count * sizeof(T));
+      return;
+    }
+    for (std::size_t i = 0; i < view.count; ++i)
+      std::memcpy(to + i * sizeof(T), view.data + i * view.stride, sizeof(T));
+  }
+
   /// The accessor property `name` points at; of count 0 when it is left out. Checks shape and length.
   AccessorView accessor(const char* name, std::size_t components, std::size_t length);
 
@@ -178,13 +197,17 @@ class Reader {
     using Scalar = typename Element<T>::Scalar;
     auto* to = reinterpret_cast<Scalar*>(values.data());
     constexpr std::size_t n = Element<T>::components;
-    std::size_t greatest = 0;
-    for (std::size_t i = 0; i < view.count; ++i) {
-      std::array<Stored, n> element;
-      std::memcpy(element.data(), view.data + i * view.stride, sizeof element);
-      for (std::size_t k = 0; k < n; ++k) {
-        greatest = std::max<std::size_t>(greatest, element[k]);
-        to[i * n + k] = static_cast<Scalar>(element[k]);
+    Stored greatest = 0;
+    // Rows of one element each, or all in one row when they lie end to end.
+    const bool packed = view.stride == n * sizeof(Stored);
+    const std::size_t rows = packed ? 1 : view.count, row = packed ? view.count * n : n;
+    for (std::size_t r = 0; r < rows; ++r, to += row) {
+      const uint8_t* from = view.data + r * view.stride;
+      for (std::size_t k = 0; k < row; ++k) {
+        Stored value;
+        std::memcpy(&value, from + k * sizeof(Stored), sizeof value);
+        greatest = std::max(greatest, value);
+        to[k] = static_cast<Scalar>(value);
       }
     }
     if (greatest >= limit)

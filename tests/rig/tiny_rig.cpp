@@ -76,7 +76,7 @@ rig::Muscle strap(const std::string& name, int direction) {
   muscle.name = name;
   muscle.group = name;
   muscle.kind = "strap";
-  muscle.strength = 4.0F;
+  muscle.strength = 1.5F;
   muscle.peak_shortening = 0.25F;
   muscle.fibre_offsets = {0};
   const auto triangles = patch_triangles();

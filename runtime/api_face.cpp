@@ -1,0 +1,235 @@
+#include <cmath>
+
+#include "runtime/drivers/curves.h"
+#include "runtime/face.h"
+
+using fascia::runtime::Curves;
+using fascia::runtime::Face;
+using fascia::runtime::Failure;
+using fascia::runtime::guarded;
+using fascia::runtime::hand_out;
+using fascia::runtime::require;
+using fascia::runtime::Target;
+
+/// Behind the C handle.
+struct fascia_curves {
+  Curves curves;
+  std::vector<const char*> names;
+};
+
+namespace {
+
+Face& checked(const fascia_face* face) {
+  require(face != nullptr, "the face is null");
+  return *face->face;
+}
+
+Target named(const Face& face, const char* name) {
+  require(name != nullptr, "the name is null");
+  const auto target = face.asset().find(name);
+  if (!target)
+    throw Failure(FASCIA_ERROR_NAME, "the rig has no channel or member \"" + std::string(name) +
+                                         "\"; fascia_asset_get_channels and fascia_asset_get_set list them");
+  return *target;
+}
+
+fascia::runtime::BoundMesh& mesh_of(const fascia_face* handle, uint32_t mesh) {
+  Face& face = checked(handle);
+  if (mesh >= face.mesh_count())
+    throw Failure(FASCIA_ERROR_ARGUMENT, "there is no mesh " + std::to_string(mesh) + ": the rig moves " +
+                                             std::to_string(face.mesh_count()));
+  return face.mesh(mesh);
+}
+
+void hand_out_vectors(const std::vector<fascia::rig::Vec3f>& vectors, fascia_vectors* to) {
+  hand_out(fascia_vectors{0, static_cast<uint32_t>(vectors.size()), 12, 0,
+                          vectors.empty() ? nullptr : vectors.front().data()},
+           to);
+}
+
+}  // namespace
+
+extern "C" {
+
+fascia_face_options fascia_default_face_options(void) {
+  return {sizeof(fascia_face_options), FASCIA_SPACE_MESH, FASCIA_SOLVER_OWN, -1};
+}
+
+fascia_result fascia_face_create(fascia_asset* asset, const fascia_face_options* options, fascia_face** face) {
+  return guarded([&] {
+    require(asset != nullptr && face != nullptr, "fascia_face_create: asset or face is null");
+    fascia_face_options chosen = fascia_default_face_options();
+    if (options != nullptr) {
+      require(options->struct_size >= 2 * sizeof(uint32_t), "struct_size is not set: it must be sizeof the structure");
+      std::memcpy(&chosen, options, std::min<std::size_t>(options->struct_size, sizeof chosen));
+    }
+    auto made = std::make_unique<Face>(asset->asset, chosen);
+    *face = new fascia_face{std::move(made)};
+    return FASCIA_OK;
+  });
+}
+
+void fascia_face_release(fascia_face* face) { delete face; }
+
+float* fascia_face_values(fascia_face* face) { return face == nullptr ? nullptr : face->face->values().data(); }
+
+const float* fascia_face_effective_values(const fascia_face* face) {
+  return face == nullptr ? nullptr : face->face->effective_values().data();
+}
+
+fascia_result fascia_face_set(fascia_face* handle, const char* name, float value) {
+  return guarded([&] {
+    Face& face = checked(handle);
+    require(std::isfinite(value), "the value is not a finite number");
+    face.set(named(face, name), value);
+    return FASCIA_OK;
+  });
+}
+
+fascia_result fascia_face_get(const fascia_face* handle, const char* name, float* value) {
+  return guarded([&] {
+    const Face& face = checked(handle);
+    require(value != nullptr, "the value to write is null");
+    *value = face.get(named(face, name));
+    return FASCIA_OK;
+  });
+}
+
+fascia_result fascia_face_clear(fascia_face* handle) {
+  return guarded([&] {
+    checked(handle).clear();
+    return FASCIA_OK;
+  });
+}
+
+fascia_result fascia_face_pose(fascia_face* handle) {
+  return guarded([&] {
+    checked(handle).pose();
+    return FASCIA_OK;
+  });
+}
+
+fascia_result fascia_face_step(fascia_face* handle, float seconds) {
+  return guarded([&] {
+    Face& face = checked(handle);
+    require(seconds >= 0.0F && seconds <= 1.0F, "seconds must lie between 0 and 1");
+    if (face.step(static_cast<double>(seconds))) return FASCIA_OK;
+    return fascia::runtime::report(FASCIA_ERROR_DIVERGED,
+                                   "the simulation became unsound and was put back to where the bones stand");
+  });
+}
+
+fascia_result fascia_face_reset(fascia_face* handle) {
+  return guarded([&] {
+    checked(handle).reset();
+    return FASCIA_OK;
+  });
+}
+
+fascia_result fascia_face_set_acceleration(fascia_face* handle, const float* acceleration) {
+  return guarded([&] {
+    Face& face = checked(handle);
+    fascia::sim::Vec3 value = fascia::sim::Vec3::Zero();
+    for (int i = 0; acceleration != nullptr && i < 3; ++i)
+      value[i] = static_cast<double>(acceleration[i]);
+    require(value.allFinite(), "the acceleration is not finite");
+    face.set_acceleration(value);
+    return FASCIA_OK;
+  });
+}
+
+fascia_result fascia_face_positions(fascia_face* face, uint32_t mesh, fascia_vectors* positions) {
+  return guarded([&] {
+    hand_out_vectors(mesh_of(face, mesh).positions(), positions);
+    return FASCIA_OK;
+  });
+}
+
+fascia_result fascia_face_normals(fascia_face* face, uint32_t mesh, fascia_vectors* normals) {
+  return guarded([&] {
+    hand_out_vectors(mesh_of(face, mesh).normals(), normals);
+    return FASCIA_OK;
+  });
+}
+
+fascia_result fascia_face_write_positions(fascia_face* face, uint32_t mesh, void* to, size_t stride, size_t capacity) {
+  return guarded([&] {
+    const auto& positions = mesh_of(face, mesh).positions();
+    require(to != nullptr && stride >= 12, "the memory is null or the stride below 12 bytes");
+    require(capacity >= positions.size(), "the memory holds fewer vertices than the mesh has");
+    for (std::size_t v = 0; v < positions.size(); ++v)
+      std::memcpy(static_cast<char*>(to) + v * stride, positions[v].data(), 12);
+    return FASCIA_OK;
+  });
+}
+
+fascia_result fascia_face_fibre_points(fascia_face* face, fascia_vectors* points) {
+  return guarded([&] {
+    hand_out_vectors(checked(face).fibre_points(), points);
+    return FASCIA_OK;
+  });
+}
+
+fascia_result fascia_face_jaw(const fascia_face* face, float matrix[16]) {
+  return guarded([&] {
+    require(matrix != nullptr, "the matrix is null");
+    const auto& jaw = checked(face).jaw();
+    Eigen::Map<Eigen::Matrix4f> result(matrix);
+    result.setIdentity();
+    result.topLeftCorner<3, 3>() = jaw.rotation.cast<float>();
+    result.topRightCorner<3, 1>() = jaw.translation.cast<float>();
+    return FASCIA_OK;
+  });
+}
+
+fascia_result fascia_curves_load(const void* bytes, size_t size, fascia_curves** curves) {
+  return guarded([&] {
+    require(bytes != nullptr && curves != nullptr, "fascia_curves_load: bytes or curves is null");
+    auto loaded = std::make_unique<fascia_curves>();
+    loaded->curves = fascia::runtime::read_curves({static_cast<const uint8_t*>(bytes), size});
+    for (const auto& curve : loaded->curves.curves)
+      loaded->names.push_back(curve.name.c_str());
+    *curves = loaded.release();
+    return FASCIA_OK;
+  });
+}
+
+void fascia_curves_release(fascia_curves* curves) { delete curves; }
+
+fascia_result fascia_curves_get_info(const fascia_curves* curves, fascia_curves_info* info) {
+  return guarded([&] {
+    require(curves != nullptr, "the curves are null");
+    hand_out(fascia_curves_info{0, static_cast<uint32_t>(curves->names.size()), curves->names.data(),
+                                curves->curves.duration()},
+             info);
+    return FASCIA_OK;
+  });
+}
+
+fascia_result fascia_curves_match(const fascia_curves* curves, const fascia_asset* asset, uint32_t* count,
+                                  uint8_t* matched) {
+  return guarded([&] {
+    require(curves != nullptr && asset != nullptr && count != nullptr, "the curves, asset or count is null");
+    uint32_t known = 0;
+    for (std::size_t i = 0; i < curves->names.size(); ++i) {
+      const bool found = asset->asset->find(curves->names[i]).has_value();
+      known += found;
+      if (matched != nullptr) matched[i] = found;
+    }
+    *count = known;
+    return FASCIA_OK;
+  });
+}
+
+fascia_result fascia_curves_apply(const fascia_curves* curves, double seconds, float weight, fascia_face* handle) {
+  return guarded([&] {
+    require(curves != nullptr, "the curves are null");
+    require(std::isfinite(seconds) && std::isfinite(weight), "the time or weight is not a finite number");
+    Face& face = checked(handle);
+    for (const auto& curve : curves->curves.curves)
+      if (const auto target = face.asset().find(curve.name)) face.add(*target, curve.at(seconds), weight);
+    return FASCIA_OK;
+  });
+}
+
+}  // extern "C"

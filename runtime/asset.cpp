@@ -1,0 +1,95 @@
+#include "runtime/asset.h"
+
+#include <charconv>
+
+namespace fascia::runtime {
+
+std::string lower_case(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return lower;
+}
+
+Asset::Asset(std::span<const uint8_t> bytes) : file_(rig::read(bytes)), models_(file_.rig.tissue.levels.size()) {
+  index_channels();
+  index_sets();
+  for (const rig::TissueLevel& level : rig().tissue.levels) {
+    auto& muscles = fibre_muscles.emplace_back();
+    for (const uint32_t muscle : level.fibre_muscle)
+      muscles.push_back(rig().muscles[muscle].name.c_str());
+  }
+}
+
+void Asset::index_channels() {
+  const auto& channels = rig().actuation.channels;
+  for (uint32_t i = 0; i < channels.size(); ++i) {
+    channel_names.push_back(channels[i].name.c_str());
+    channel_groups.push_back(channels[i].group.c_str());
+    channel_units.push_back(channels[i].unit.c_str());
+    channel_minimum.push_back(channels[i].minimum);
+    channel_maximum.push_back(channels[i].maximum);
+    channel_rest.push_back(channels[i].rest);
+    names_.emplace(lower_case(channels[i].name), Target{Target::Kind::channel, i});
+  }
+  const auto channel = [&](const char* name) {
+    const auto target = find(name);
+    return target ? static_cast<int32_t>(target->index) : -1;
+  };
+  bones_.jaw_open = channel("jaw_open");
+  bones_.jaw_forward = channel("jaw_forward");
+  bones_.jaw_lateral = channel("jaw_lateral");
+  bones_.eye_yaw = {channel("eye_yaw_left"), channel("eye_yaw_right")};
+  bones_.eye_pitch = {channel("eye_pitch_left"), channel("eye_pitch_right")};
+}
+
+void Asset::index_sets() {
+  for (const rig::NamedSet& set : rig().actuation.sets) {
+    const auto first = static_cast<uint32_t>(members_.size());
+    members_.resize(first + set.members.size());
+    for (std::size_t e = 0; e < set.weights.size(); ++e)
+      members_[first + set.member_indices[e]].entries.emplace_back(set.channel_indices[e], set.weights[e]);
+    auto& texts = set_members.emplace_back();
+    for (uint32_t m = 0; m < set.members.size(); ++m) {
+      texts.push_back(set.members[m].c_str());
+      const Target target{Target::Kind::member, first + m};
+      const std::string member = lower_case(set.members[m]);
+      names_.emplace(lower_case(set.name) + ":" + member, target);
+      names_.emplace(member, target);
+    }
+  }
+}
+
+const rig::Binding* Asset::binding(std::size_t level, std::size_t primitive) const {
+  for (const rig::Binding& binding : rig().tissue.bindings[level])
+    if (file_.primitive_of(binding) == primitive) return &binding;
+  return nullptr;
+}
+
+std::optional<Target> Asset::find(std::string_view name) const {
+  if (!name.empty() && name.front() == '#') {
+    uint32_t index = 0;
+    const char* end = name.data() + name.size();
+    const auto parsed = std::from_chars(name.data() + 1, end, index);
+    if (parsed.ec != std::errc() || parsed.ptr != end || index >= channel_names.size()) return std::nullopt;
+    return Target{Target::Kind::channel, index};
+  }
+  const auto found = names_.find(lower_case(name));
+  if (found == names_.end()) return std::nullopt;
+  return found->second;
+}
+
+const sim::FaceModel& Asset::model(std::size_t level) const {
+  const std::lock_guard lock(models_mutex_);
+  auto& model = models_[level];
+  if (!model) {
+    auto made = std::make_unique<sim::FaceModel>(sim::lattice_of(rig().tissue.levels[level]),
+                                                 sim::jaw_of(rig().skull.jaw));
+    if (!made->valid())
+      throw Failure(FASCIA_ERROR_FORMAT, "FASCIA_tissue/levels/" + std::to_string(level) + ": " + made->fault());
+    model = std::move(made);
+  }
+  return *model;
+}
+
+}  // namespace fascia::runtime

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "rig/read/read.h"
+#include "runtime/message.h"
+#include "sim/face_model.h"
+
+namespace fascia::runtime {
+
+/// What a name stands for: a channel, or a member of a set (an entry of `Asset::members`).
+struct Target {
+  enum class Kind : uint8_t { channel, member } kind = Kind::channel;
+  uint32_t index = 0;
+};
+
+/// A member of a named set as the channels it adds to.
+struct Member {
+  std::vector<std::pair<uint32_t, float>> entries;  ///< channel, weight
+};
+
+/// The channels that the jaw and the eyes listen to; -1 where the rig has none.
+struct BoneChannels {
+  int32_t jaw_open = -1, jaw_forward = -1, jaw_lateral = -1;
+  std::array<int32_t, 2> eye_yaw = {-1, -1}, eye_pitch = {-1, -1};  ///< left, right
+};
+
+/// A loaded rig with what every face of it shares. Immutable but for the models, which are made once each.
+class Asset {
+ public:
+  explicit Asset(std::span<const uint8_t> bytes);
+
+  const rig::Rig& rig() const { return file_.rig; }
+  const std::vector<rig::Primitive>& primitives() const { return file_.primitives; }
+  /// The binding of primitive `primitive` at `level`, or null.
+  const rig::Binding* binding(std::size_t level, std::size_t primitive) const;
+  const std::vector<Member>& members() const { return members_; }
+  const BoneChannels& bones() const { return bones_; }
+
+  /// What `name` stands for, case-insensitive; nothing when no channel or member bears it. "#7" is channel 7.
+  std::optional<Target> find(std::string_view name) const;
+
+  /// The model of a level, made on first use; any thread may ask. Throws Failure when the lattice is unsound.
+  const sim::FaceModel& model(std::size_t level) const;
+
+  // Arrays of texts in the shape the C interface hands them out.
+  std::vector<const char*> channel_names, channel_groups, channel_units;
+  std::vector<float> channel_minimum, channel_maximum, channel_rest;
+  std::vector<std::vector<const char*>> set_members;     ///< by set
+  std::vector<std::vector<const char*>> fibre_muscles;   ///< by level
+
+ private:
+  void index_channels();
+  void index_sets();
+
+  rig::RigFile file_;
+  std::vector<Member> members_;
+  std::map<std::string, Target, std::less<>> names_;  ///< in lower case
+  BoneChannels bones_;
+  mutable std::mutex models_mutex_;
+  mutable std::vector<std::unique_ptr<sim::FaceModel>> models_;
+};
+
+/// ASCII letters of `text` in lower case.
+std::string lower_case(std::string_view text);
+
+}  // namespace fascia::runtime
+
+/// Behind the C handle: the asset lives as long as anything uses it.
+struct fascia_asset {
+  std::shared_ptr<const fascia::runtime::Asset> asset;
+};

@@ -1,0 +1,96 @@
+#include <charconv>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "geometry/error.h"
+#include "rig/model/extensions.h"
+#include "rig/read/accessors.h"
+#include "rig/read/container.h"
+#include "runtime/drivers/curves.h"
+
+namespace fascia::runtime {
+namespace {
+
+using Json = nlohmann::json;
+
+/// N of /extensions/FASCIA_actuation/channels/N/value; -1 of any other pointer.
+int64_t pointed_channel(const std::string& pointer) {
+  const std::string before = "/extensions/" + rig::actuation_extension + "/channels/", after = "/value";
+  if (pointer.size() <= before.size() + after.size() || pointer.compare(0, before.size(), before) != 0 ||
+      pointer.compare(pointer.size() - after.size(), after.size(), after) != 0)
+    return -1;
+  const char* begin = pointer.data() + before.size();
+  const char* end = pointer.data() + pointer.size() - after.size();
+  uint32_t index = 0;
+  const auto parsed = std::from_chars(begin, end, index);
+  return parsed.ec == std::errc() && parsed.ptr == end ? static_cast<int64_t>(index) : -1;
+}
+
+std::string channel_name(const Json& root, int64_t index) {
+  const Json::json_pointer place("/extensions/" + rig::actuation_extension + "/channels");
+  if (!root.contains(place)) return "#" + std::to_string(index);
+  const Json& channels = root.at(place);
+  if (!channels.is_array() || static_cast<std::size_t>(index) >= channels.size())
+    throw Error("curves: an animation points at channel " + std::to_string(index) + ", which does not exist");
+  return channels.at(static_cast<std::size_t>(index)).at("name").get<std::string>();
+}
+
+Curve sampled(const tinygltf::Model& model, const Json& sampler, const std::string& name) {
+  const std::string path = "curves: animation of " + name;
+  Curve curve;
+  curve.name = name;
+  const std::vector<float> times = rig::decode_floats(model, sampler.at("input").get<int>(), path);
+  std::vector<float> values = rig::decode_floats(model, sampler.at("output").get<int>(), path);
+  curve.times.assign(times.begin(), times.end());
+  const std::string kind = sampler.value("interpolation", "LINEAR");
+  const std::size_t per_key = kind == "CUBICSPLINE" ? 3 : 1;
+  if (times.empty() || values.size() != times.size() * per_key)
+    throw Error(path + ": " + std::to_string(values.size()) + " values for " + std::to_string(times.size()) + " times");
+  for (std::size_t i = 0; i < times.size(); ++i)
+    if (!std::isfinite(times[i]) || (i > 0 && !(times[i] > times[i - 1]))) throw Error(path + ": times must rise");
+  for (const float value : values)
+    if (!std::isfinite(value)) throw Error(path + ": a value is not finite");
+  if (kind == "STEP") curve.interpolation = Interpolation::step;
+  if (per_key == 1) {
+    curve.values = std::move(values);
+    return curve;
+  }
+  curve.interpolation = Interpolation::cubic;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    curve.tangents_in.push_back(values[3 * i]);
+    curve.values.push_back(values[3 * i + 1]);
+    curve.tangents_out.push_back(values[3 * i + 2]);
+  }
+  return curve;
+}
+
+void read_animation(const tinygltf::Model& model, const Json& root, const Json& animation, Curves& result) {
+  const Json::json_pointer pointer("/target/extensions/KHR_animation_pointer/pointer");
+  for (const Json& channel : animation.at("channels")) {
+    if (!channel.contains(pointer)) continue;
+    const int64_t index = pointed_channel(channel.at(pointer).get<std::string>());
+    if (index < 0) continue;
+    const Json& sampler = animation.at("samplers").at(channel.at("sampler").get<std::size_t>());
+    result.curves.push_back(sampled(model, sampler, channel_name(root, index)));
+  }
+}
+
+}  // namespace
+
+Curves read_gltf_curves(std::span<const uint8_t> bytes) {
+  const tinygltf::Model model = rig::load_gltf(bytes, "curves");
+  Curves result;
+  try {
+    // tinygltf 2.7 drops pointer channels, so the animations are read from the JSON itself.
+    const Json root = Json::parse(rig::glb_chunks(bytes, "curves").json);
+    if (root.contains("animations"))
+      for (const Json& animation : root["animations"])
+        read_animation(model, root, animation, result);
+  } catch (const Json::exception& error) {
+    throw Error(std::string("curves: malformed glTF animation: ") + error.what());
+  }
+  if (result.curves.empty()) throw Error("curves: no animation in the glTF file points at a FASCIA_actuation channel");
+  return result;
+}
+
+}  // namespace fascia::runtime

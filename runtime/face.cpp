@@ -1,0 +1,135 @@
+#include "runtime/face.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace fascia::runtime {
+namespace {
+
+/// Rotation of an eye: yaw to the subject's left about +Y, then pitch upward about the head's lateral axis.
+Eigen::Matrix3f eye_rotation(float yaw, float pitch) {
+  if (yaw == 0.0F && pitch == 0.0F) return Eigen::Matrix3f::Identity();
+  return (Eigen::AngleAxisf(yaw, Vec3f::UnitY()) * Eigen::AngleAxisf(-pitch, Vec3f::UnitX())).toRotationMatrix();
+}
+
+float finite(float value) { return std::isfinite(value) ? value : 0.0F; }
+
+std::size_t chosen_level(const Asset& asset, int32_t level) {
+  const std::size_t levels = asset.rig().tissue.levels.size();
+  if (level == -1) return levels - 1;
+  require(level >= 0 && static_cast<std::size_t>(level) < levels, "the rig has no such level of detail");
+  return static_cast<std::size_t>(level);
+}
+
+}  // namespace
+
+Face::Face(std::shared_ptr<const Asset> asset, const fascia_face_options& options)
+    : asset_(std::move(asset)), level_(chosen_level(*asset_, options.level)) {
+  require(options.space == FASCIA_SPACE_MESH || options.space == FASCIA_SPACE_INPUT ||
+              options.space == FASCIA_SPACE_METRES,
+          "unknown space");
+  const std::size_t channels = asset_->channel_names.size();
+  model_ = &asset_->model(level_);
+  solver_ = make_solver(options.solver, *model_, channels);
+  values_ = effective_ = asset_->channel_rest;
+  curve_channels_.assign(channels, 0.0F);
+  members_.assign(asset_->members().size(), 0.0F);
+  curve_members_ = members_;
+  const rig::Rig& rig = asset_->rig();
+  displacements_.assign(rig.tissue.levels[level_].rest.size(), Vec3f::Zero());
+  fibre_points_ = rig.tissue.levels[level_].fibre_rest;
+  bones_.displacements = displacements_;
+  bones_.eye_centres = {rig.skull.eye_left.centre, rig.skull.eye_right.centre};
+  for (std::size_t i = 0; i < asset_->primitives().size(); ++i)
+    meshes_.emplace_back(asset_->primitives()[i], asset_->binding(level_, i), rig.input_to_metres, options.space);
+}
+
+void Face::set(const Target& target, float value) {
+  (target.kind == Target::Kind::channel ? values_ : members_)[target.index] = value;
+}
+
+float Face::get(const Target& target) const {
+  return (target.kind == Target::Kind::channel ? values_ : members_)[target.index];
+}
+
+void Face::clear() {
+  values_ = asset_->channel_rest;
+  std::fill(members_.begin(), members_.end(), 0.0F);
+}
+
+void Face::add(const Target& target, float value, float weight) {
+  if (target.kind == Target::Kind::channel)
+    curve_channels_[target.index] += weight * (value - asset_->channel_rest[target.index]);
+  else
+    curve_members_[target.index] += weight * value;
+}
+
+void Face::gather() {
+  for (std::size_t c = 0; c < values_.size(); ++c)
+    effective_[c] = (std::isfinite(values_[c]) ? values_[c] : asset_->channel_rest[c]) + finite(curve_channels_[c]);
+  for (std::size_t m = 0; m < members_.size(); ++m) {
+    const float value = finite(members_[m]) + finite(curve_members_[m]);
+    if (value == 0.0F) continue;
+    for (const auto& [channel, weight] : asset_->members()[m].entries)
+      effective_[channel] += weight * value;
+  }
+  for (std::size_t c = 0; c < effective_.size(); ++c)
+    effective_[c] = std::clamp(effective_[c], asset_->channel_minimum[c], asset_->channel_maximum[c]);
+  std::fill(curve_channels_.begin(), curve_channels_.end(), 0.0F);
+  std::fill(curve_members_.begin(), curve_members_.end(), 0.0F);
+}
+
+sim::Drive Face::drive() const {
+  const BoneChannels& channels = asset_->bones();
+  sim::Drive drive;
+  drive.activations = effective_;
+  drive.jaw = {effective(channels.jaw_open), effective(channels.jaw_forward), effective(channels.jaw_lateral)};
+  drive.acceleration = acceleration_;
+  return drive;
+}
+
+void Face::follow() {
+  const BoneChannels& channels = asset_->bones();
+  bones_.jaw = sim::jaw_transform(model_->jaw(), drive().jaw);
+  for (std::size_t eye = 0; eye < 2; ++eye)
+    bones_.eyes[eye] = eye_rotation(effective(channels.eye_yaw[eye]), effective(channels.eye_pitch[eye]));
+  for (BoundMesh& mesh : meshes_)
+    mesh.follow(bones_);
+}
+
+void Face::pose() {
+  gather();
+  solver_->pose(drive(), displacements_);
+  follow();
+}
+
+bool Face::step(double seconds) {
+  gather();
+  const bool sound = solver_->step(seconds, drive(), displacements_);
+  follow();
+  return sound;
+}
+
+void Face::reset() {
+  gather();
+  solver_->reset(drive(), displacements_);
+  follow();
+}
+
+const std::vector<Vec3f>& Face::fibre_points() {
+  const rig::TissueLevel& level = asset_->rig().tissue.levels[level_];
+  for (std::size_t p = 0; p < fibre_points_.size(); ++p) {
+    fibre_points_[p] = level.fibre_rest[p];
+    if (level.fibre_anchor[p] == rig::FibreEnd::cranium) continue;
+    if (level.fibre_anchor[p] == rig::FibreEnd::mandible) {
+      fibre_points_[p] = (bones_.jaw * level.fibre_rest[p].cast<double>()).cast<float>();
+      continue;
+    }
+    for (int k = 0; k < 3; ++k)
+      fibre_points_[p] += level.fibre_weights[p][k] * displacements_[level.fibre_nodes[p][static_cast<std::size_t>(k)]];
+  }
+  return fibre_points_;
+}
+
+}  // namespace fascia::runtime

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstring>
+#include <new>
+#include <stdexcept>
+#include <string>
+
+#include "fascia/fascia.h"
+#include "geometry/error.h"
+#include "rig/read/read.h"
+
+namespace fascia::runtime {
+
+/// A failure with the result that the C interface returns for it.
+class Failure : public std::runtime_error {
+ public:
+  Failure(fascia_result result, const std::string& message) : std::runtime_error(message), result_(result) {}
+  fascia_result result() const { return result_; }
+
+ private:
+  fascia_result result_;
+};
+
+/// Keeps `message` for this thread, tells the log, and returns `result`. Never throws.
+fascia_result report(fascia_result result, const char* message) noexcept;
+
+/// Throws FASCIA_ERROR_ARGUMENT with `message` unless `condition` holds.
+inline void require(bool condition, const char* message) {
+  if (!condition) throw Failure(FASCIA_ERROR_ARGUMENT, message);
+}
+
+/// Runs `body` and turns whatever it throws into a result: the wall between C++ and the C interface.
+template <class Body>
+fascia_result guarded(const Body& body) noexcept {
+  try {
+    return body();
+  } catch (const Failure& failure) {
+    return report(failure.result(), failure.what());
+  } catch (const rig::VersionError& error) {
+    return report(FASCIA_ERROR_VERSION, error.what());
+  } catch (const rig::MismatchError& error) {
+    return report(FASCIA_ERROR_MISMATCH, error.what());
+  } catch (const Error& error) {
+    return report(FASCIA_ERROR_FORMAT, error.what());
+  } catch (const std::bad_alloc&) {
+    return report(FASCIA_ERROR_MEMORY, "out of memory");
+  } catch (const std::exception& error) {
+    return report(FASCIA_ERROR_INTERNAL, error.what());
+  } catch (...) {
+    return report(FASCIA_ERROR_INTERNAL, "an unknown fault");
+  }
+}
+
+/// Copies `value` to the caller's structure, as much of it as the caller knows. `to->struct_size` says how much.
+template <class Struct>
+void hand_out(const Struct& value, Struct* to) {
+  require(to != nullptr, "the structure to fill is null");
+  require(to->struct_size >= sizeof(uint32_t) * 2, "struct_size is not set: it must be sizeof the structure");
+  const std::size_t size = to->struct_size < sizeof(Struct) ? to->struct_size : sizeof(Struct);
+  const uint32_t kept = to->struct_size;
+  std::memcpy(static_cast<void*>(to), &value, size);
+  to->struct_size = kept;
+}
+
+}  // namespace fascia::runtime

@@ -1,0 +1,102 @@
+#include "runtime/solver.h"
+
+#include <dlfcn.h>
+
+#include <string>
+
+#include "runtime/message.h"
+#include "sim/solver.h"
+
+namespace fascia::runtime {
+namespace {
+
+/// Fascia's own solver.
+class OwnSolver : public Solver {
+ public:
+  OwnSolver(const sim::FaceModel& model, std::size_t channels) : face_(model, channels) {}
+
+  void pose(const sim::Drive& drive, std::span<sim::Vec3f> displacements) override {
+    face_.settle(drive);
+    face_.displacements(displacements);
+  }
+  bool step(double seconds, const sim::Drive& drive, std::span<sim::Vec3f> displacements) override {
+    const sim::StepResult result = face_.step(seconds, drive);
+    face_.displacements(displacements);
+    return result.status == sim::StepStatus::done;
+  }
+  void reset(const sim::Drive& drive, std::span<sim::Vec3f> displacements) override {
+    face_.reset(drive);
+    face_.displacements(displacements);
+  }
+
+ private:
+  sim::Face face_;
+};
+
+/// A solver from a module, behind sim's interface, which speaks of positions.
+class ModuleSolver : public Solver {
+ public:
+  ModuleSolver(std::unique_ptr<sim::Solver> solver, const sim::FaceModel& model)
+      : solver_(std::move(solver)), model_(model) {}
+
+  void pose(const sim::Drive& drive, std::span<sim::Vec3f> displacements) override {
+    solver_->static_pose(drive, displacements);
+    subtract_rest(displacements);
+  }
+  bool step(double seconds, const sim::Drive& drive, std::span<sim::Vec3f> displacements) override {
+    const sim::StepResult result = solver_->step(seconds, drive);
+    solver_->positions(displacements);
+    subtract_rest(displacements);
+    return result.status == sim::StepStatus::done;
+  }
+  void reset(const sim::Drive& drive, std::span<sim::Vec3f> displacements) override {
+    solver_->reset(drive);
+    solver_->positions(displacements);
+    subtract_rest(displacements);
+  }
+
+ private:
+  void subtract_rest(std::span<sim::Vec3f> positions) const {
+    for (std::size_t i = 0; i < positions.size(); ++i)
+      positions[i] -= model_.lattice().rest[i];
+  }
+
+  std::unique_ptr<sim::Solver> solver_;
+  const sim::FaceModel& model_;
+};
+
+/// Folder this library lies in, with a slash at its end; empty when it is not known.
+std::string own_folder() {
+  Dl_info info{};
+  if (dladdr(reinterpret_cast<const void*>(&fascia_version), &info) == 0 || info.dli_fname == nullptr) return "";
+  const std::string path = info.dli_fname;
+  const std::size_t slash = path.rfind('/');
+  return slash == std::string::npos ? "" : path.substr(0, slash + 1);
+}
+
+/// The entry of libfascia_bullet, loaded once and kept.
+sim::MakeSolver bullet_entry() {
+  static void* const module = [] {
+    const std::string name = "libfascia_bullet.so";
+    void* found = dlopen((own_folder() + name).c_str(), RTLD_NOW | RTLD_LOCAL);
+    return found != nullptr ? found : dlopen(name.c_str(), RTLD_NOW | RTLD_LOCAL);
+  }();
+  if (module == nullptr)
+    throw Failure(FASCIA_ERROR_MODULE,
+                  "the module libfascia_bullet is not there; install it beside this library, or use FASCIA_SOLVER_OWN");
+  void* const entry = dlsym(module, sim::solver_entry);
+  if (entry == nullptr) throw Failure(FASCIA_ERROR_MODULE, "libfascia_bullet is of another version than this library");
+  return reinterpret_cast<sim::MakeSolver>(entry);
+}
+
+}  // namespace
+
+std::unique_ptr<Solver> make_solver(fascia_solver kind, const sim::FaceModel& model, std::size_t channels) {
+  if (kind == FASCIA_SOLVER_OWN) return std::make_unique<OwnSolver>(model, channels);
+  require(kind == FASCIA_SOLVER_BULLET, "unknown solver");
+  std::unique_ptr<sim::Solver> solver(bullet_entry()(&model, channels));
+  if (!solver) throw Failure(FASCIA_ERROR_MODULE, "the module libfascia_bullet could not make a solver of this rig");
+  return std::make_unique<ModuleSolver>(std::move(solver), model);
+}
+
+}  // namespace fascia::runtime

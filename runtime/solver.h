@@ -1,0 +1,25 @@
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "fascia/fascia.h"
+#include "sim/face.h"
+
+namespace fascia::runtime {
+
+/// What moves the lattice of one face. Displacements are #nodes, metres from rest; at rest exactly zero.
+class Solver {
+ public:
+  virtual ~Solver() = default;
+  virtual void pose(const sim::Drive& drive, std::span<sim::Vec3f> displacements) = 0;
+  /// False when the watchdog put the face back to its bones.
+  virtual bool step(double seconds, const sim::Drive& drive, std::span<sim::Vec3f> displacements) = 0;
+  virtual void reset(const sim::Drive& drive, std::span<sim::Vec3f> displacements) = 0;
+};
+
+/// Makes a solver on `model`, which must outlive it, for `channels` activations. Throws Failure when the
+/// module of `kind` is not there.
+std::unique_ptr<Solver> make_solver(fascia_solver kind, const sim::FaceModel& model, std::size_t channels);
+
+}  // namespace fascia::runtime
