@@ -157,6 +157,7 @@ void tissue_level_fields(V& v, T& level, const TissueLimits& limits) {
   v.list("tetherTangentialStiffness", level.tether_tangential_stiffness, tethers);
 
   v.list("volumeStiffness", level.volume_stiffness, prisms);
+  v.list("innerVolumeStiffness", level.inner_volume_stiffness, prisms);
 
   v.index("fibreMuscles", level.fibre_muscle, any, limits.muscles);
   const std::size_t fibres = level.fibre_muscle.size();

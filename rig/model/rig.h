@@ -106,7 +106,7 @@ enum class NodeKind : uint8_t {
   free = 0,             ///< moves under the energies only
   fixed = 1,            ///< follows the head rigidly: the rim of the simulated region
   fixed_cranium = 2,    ///< on the cranium
-  fixed_mandible = 3,   ///< on the mandible
+  fixed_mandible = 3,   ///< goes with the mandible by its jaw weight (1 on the bone itself)
   gliding_cranium = 4,  ///< slides over the cranium
   gliding_mandible = 5, ///< slides over the mandible
   mucosa = 6            ///< free inner surface: no bone behind, contact only
@@ -142,7 +142,8 @@ struct TissueLevel {
   std::vector<Vec3f> tether_normals;
   std::vector<float> tether_normal_stiffness, tether_tangential_stiffness;
 
-  std::vector<float> volume_stiffness;  ///< #prisms, pascal
+  std::vector<float> volume_stiffness;        ///< #prisms, pascal: between skin and SMAS
+  std::vector<float> inner_volume_stiffness;  ///< #prisms, pascal: between SMAS and inner layer
 
   /// Fibres for this level. Fibre `f` has the points `fibre_offsets[f] .. fibre_offsets[f+1]`; each
   /// point is a blend of three nodes, or of a bone where `fibre_anchor` says so.

@@ -176,6 +176,7 @@ rig::TissueLevel tiny_level(const std::vector<rig::Muscle>& muscles) {
       level.tether_tangential_stiffness.push_back(1.0F);
     }
   level.volume_stiffness.assign(prisms, 1e3F);
+  level.inner_volume_stiffness.assign(prisms, 1e2F);
   add_fibres(level, muscles);
   level.globe_centre = {{0.03F, 1.63F, 0.07F}};
   level.globe_radius = {0.012F};

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "builder/tissue/columns.h"
+
+namespace fascia::tissue {
+
+/// Index of the channel `name`, or -1.
+int channel_index(const std::vector<rig::Channel>& channels, const std::string& name);
+
+/// Lays each muscle's fibres onto the level's SMAS nodes. A muscle without a channel is left out.
+void add_fibres(const TissueInputs& inputs, const TissueOptions& options, const Columns& columns, rig::TissueLevel& level);
+
+/// Lids carried about the globe: `lid_upper_<side>` closes from 0 to 1 (below 0 it opens wider), `lid_lower_<side>`
+/// raises the lower lid, `eye_pitch_<side>` takes both lids along; and the globes they rest on.
+void add_lids(const TissueInputs& inputs, const TissueOptions& options, const Columns& columns, rig::TissueLevel& level);
+
+/// Air in the mouth: `buccal_pressure_<side>` on the cheeks, `lip_pressure_upper` and `lip_pressure_lower` behind the lips.
+void add_pressures(const TissueInputs& inputs, const Columns& columns, rig::TissueLevel& level);
+
+}  // namespace fascia::tissue

@@ -1,0 +1,116 @@
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "builder/spatial/surface_query.h"
+#include "builder/tissue/bind.h"
+#include "geometry/connectivity.h"
+
+namespace fascia::tissue {
+namespace {
+
+void put(rig::Binding& binding, size_t vertex, const Follow& follow, double share = 1.0) {
+  for (size_t k = 0; k < Follow::influences; ++k) {
+    binding.nodes[vertex * Follow::influences + k] = follow.nodes[k];
+    binding.weights[vertex * Follow::influences + k] = follow.weights[k] * static_cast<float>(share);
+  }
+  binding.jaw_weights[vertex] = follow.jaw * static_cast<float>(share);
+}
+
+rig::Binding empty_binding(const PartMesh& part) {
+  rig::Binding binding;
+  const size_t n = part.vertices.size();
+  binding.part = part.part;
+  binding.vertex_count = static_cast<uint32_t>(n);
+  binding.influences = Follow::influences;
+  binding.nodes.assign(n * Follow::influences, 0);
+  binding.weights.assign(n * Follow::influences, 0.0F);
+  binding.jaw_weights.assign(n, 0.0F);
+  binding.eye.assign(n, 0);
+  return binding;
+}
+
+/// The skin of the region, to find what a lash or brow stands on.
+struct OuterSkin {
+  const FaceRegion& region;
+  spatial::SurfaceQuery query;
+  explicit OuterSkin(const FaceRegion& r) : region(r), query(r.mesh) {}
+  struct Place {
+    int skin_vertex;
+    double distance;
+  };
+  Place at(const Vec3& p) const {
+    const spatial::ClosestPoint hit = query.closest(p);
+    int corner = 0;
+    hit.surface.barycentric.maxCoeff(&corner);
+    const int vertex = region.mesh.triangles[static_cast<size_t>(hit.surface.triangle)][static_cast<size_t>(corner)];
+    return {region.skin_vertex[static_cast<size_t>(vertex)], hit.distance};
+  }
+};
+
+/// Each connected piece (a lash card, a strand) follows the skin at its root, or vertex by vertex if it is long.
+void follow_roots(const PartMesh& part, const OuterSkin& outer, const std::vector<Follow>& skin, rig::Binding& binding) {
+  TriangleMesh mesh{part.vertices, part.triangles};
+  std::vector<int> vertex_map;
+  const TriangleMesh welded = weld(mesh, 1e-6, &vertex_map);
+  int pieces = 0;
+  const std::vector<int> piece_of_triangle = components(welded, &pieces);
+  std::vector<int> piece(welded.vertices.size(), -1);
+  for (size_t t = 0; t < welded.triangles.size(); ++t)
+    for (const int v : welded.triangles[t]) piece[static_cast<size_t>(v)] = piece_of_triangle[t];
+  std::vector<Bounds> box(static_cast<size_t>(pieces));
+  std::vector<OuterSkin::Place> root(static_cast<size_t>(pieces), {-1, 1e9});
+  for (size_t v = 0; v < piece.size(); ++v) {
+    if (piece[v] < 0) continue;
+    const auto p = static_cast<size_t>(piece[v]);
+    box[p].lower = box[p].lower.cwiseMin(welded.vertices[v]);
+    box[p].upper = box[p].upper.cwiseMax(welded.vertices[v]);
+    const OuterSkin::Place place = outer.at(welded.vertices[v]);
+    if (place.distance < root[p].distance) root[p] = place;
+  }
+  for (size_t v = 0; v < part.vertices.size(); ++v) {
+    const auto w = static_cast<size_t>(vertex_map[v]);
+    const int p = w < piece.size() ? piece[w] : -1;
+    const bool small = p >= 0 && box[static_cast<size_t>(p)].size().norm() < 0.014;
+    const OuterSkin::Place place = small ? root[static_cast<size_t>(p)] : outer.at(part.vertices[v]);
+    if (place.skin_vertex >= 0 && place.distance < 0.02) put(binding, v, skin[static_cast<size_t>(place.skin_vertex)]);
+  }
+}
+
+}  // namespace
+
+std::vector<rig::Binding> bind_parts(const TissueInputs& inputs, const FaceRegion& region, const Columns&,
+                                     const std::vector<Follow>& skin) {
+  std::vector<rig::Binding> bindings;
+  const OuterSkin outer(region);
+  std::optional<spatial::SurfaceQuery> whole;
+  for (const PartMesh& part : inputs.parts) {
+    rig::Binding binding = empty_binding(part);
+    if (part.part == "skin") {
+      if (!whole) whole.emplace(inputs.skin);
+      for (size_t v = 0; v < part.vertices.size(); ++v) {
+        const spatial::ClosestPoint hit = whole->closest(part.vertices[v]);
+        int corner = 0;
+        hit.surface.barycentric.maxCoeff(&corner);
+        put(binding, v, skin[static_cast<size_t>(inputs.skin.triangles[static_cast<size_t>(hit.surface.triangle)][static_cast<size_t>(corner)])]);
+      }
+    } else if (part.part == "teeth_lower" || part.part == "gums_lower" || part.part == "tongue") {
+      std::fill(binding.jaw_weights.begin(), binding.jaw_weights.end(), 1.0F);
+    } else if (part.part == "eye_left" || part.part == "eye_right") {
+      std::fill(binding.eye.begin(), binding.eye.end(), static_cast<uint8_t>(part.part == "eye_left" ? 1 : 2));
+    } else if (part.part == "lashes" || part.part == "brows") {
+      follow_roots(part, outer, skin, binding);
+    } else if (part.part == "other") {
+      // Tear film, caruncle, stubble: whatever clings to the face goes with it, the rest stays.
+      for (size_t v = 0; v < part.vertices.size(); ++v) {
+        const OuterSkin::Place place = outer.at(part.vertices[v]);
+        const double share = std::clamp((0.004 - place.distance) / 0.003, 0.0, 1.0);
+        if (share > 0.0) put(binding, v, skin[static_cast<size_t>(place.skin_vertex)], share);
+      }
+    }
+    bindings.push_back(std::move(binding));
+  }
+  return bindings;
+}
+
+}  // namespace fascia::tissue

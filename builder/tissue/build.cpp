@@ -1,0 +1,57 @@
+#include "builder/tissue/build.h"
+
+#include <algorithm>
+
+#include "builder/tissue/actuators.h"
+#include "builder/tissue/bind.h"
+#include "builder/tissue/elements.h"
+#include "geometry/error.h"
+#include "sim/energies.h"
+#include "sim/lattice.h"
+
+namespace fascia::tissue {
+namespace {
+
+TissueResult::Figures figures_of(const rig::TissueLevel& level) {
+  TissueResult::Figures figures;
+  figures.level = level.name;
+  figures.nodes = static_cast<int>(level.rest.size());
+  figures.springs = static_cast<int>(level.spring_nodes.size());
+  figures.fibres = static_cast<int>(level.fibre_channel.size());
+  figures.shortest_edge = 1e9;
+  std::vector<Vec3> rest;
+  for (const rig::Vec3f& p : level.rest) rest.push_back(p.cast<double>());
+  const uint32_t n = level.columns;
+  for (const auto& t : level.triangles) {
+    for (size_t e = 0; e < 3; ++e) {
+      const double length = (rest[t[e]] - rest[t[(e + 1) % 3]]).norm();
+      figures.shortest_edge = std::min(figures.shortest_edge, length);
+      figures.longest_edge = std::max(figures.longest_edge, length);
+    }
+    if (sim::prism_volume({t[0], t[1], t[2], n + t[0], n + t[1], n + t[2]}, rest.data()) <= 0.0) ++figures.turned_prisms;
+  }
+  return figures;
+}
+
+}  // namespace
+
+TissueResult build(const TissueInputs& inputs, const TissueOptions& options) {
+  TissueResult result;
+  const FaceRegion region = find_region(inputs, options);
+  for (const LevelOptions& wanted : options.levels) {
+    const Columns columns = make_columns(inputs, region, wanted, options);
+    rig::TissueLevel level = make_level(inputs, options, wanted, columns);
+    add_fibres(inputs, options, columns, level);
+    add_lids(inputs, options, columns, level);
+    add_pressures(inputs, columns, level);
+    if (const char* fault = sim::lattice_fault(sim::lattice_of(level)))
+      throw Error("the " + wanted.name + " tissue lattice came out unsound (" + fault + "): check the head's skin around lips and lids");
+    const std::vector<Follow> skin = follow_skin(inputs, region, columns);
+    result.tissue.bindings.push_back(bind_parts(inputs, region, columns, skin));
+    result.figures.push_back(figures_of(level));
+    result.tissue.levels.push_back(std::move(level));
+  }
+  return result;
+}
+
+}  // namespace fascia::tissue

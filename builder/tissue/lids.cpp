@@ -1,0 +1,135 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "builder/tissue/actuators.h"
+
+namespace fascia::tissue {
+namespace {
+
+double smoothstep(double low, double high, double x) {
+  const double t = std::clamp((x - low) / (high - low), 0.0, 1.0);
+  return t * t * (3.0 - 2.0 * t);
+}
+
+/// An eye's own axes: `lateral` from canthus to canthus (to the subject's left), `front` out of the fissure.
+struct EyeFrame {
+  Vec3 centre, lateral, front, up;
+  double radius, inner, outer;  // inner, outer: where along `lateral` the canthi lie
+  double elevation(const Vec3& p) const {
+    const Vec3 arm = p - centre;
+    return std::atan2(arm.dot(up), arm.dot(front));
+  }
+};
+
+EyeFrame frame_of(const TissueInputs& inputs, bool left) {
+  const rig::Eye eye = eye_of(inputs, left);
+  const std::string side = left ? "_left" : "_right";
+  const Vec3 a = landmark(inputs, "endocanthion" + side), b = landmark(inputs, "exocanthion" + side);
+  EyeFrame f;
+  f.centre = eye.centre.cast<double>();
+  f.radius = static_cast<double>(eye.radius);
+  f.lateral = (left ? b - a : a - b).normalized();
+  f.front = 0.5 * (a + b) - f.centre;
+  f.front = (f.front - f.front.dot(f.lateral) * f.lateral).normalized();
+  f.up = f.front.cross(f.lateral);
+  const double s = (a - f.centre).dot(f.lateral), t = (b - f.centre).dot(f.lateral);
+  f.inner = std::min(s, t);
+  f.outer = std::max(s, t);
+  return f;
+}
+
+/// A lid's edge as elevation over the place between the canthi, 0..1, in even steps.
+struct Margin {
+  std::vector<double> elevation = std::vector<double>(17, 0.0), weight = std::vector<double>(17, 0.0);
+  void add(double place, double value) {
+    for (size_t k = 0; k < elevation.size(); ++k) {
+      const double d = (place - static_cast<double>(k) / 16.0) / 0.08, w = std::exp(-d * d);
+      elevation[k] += w * value;
+      weight[k] += w;
+    }
+  }
+  double at(double place) const {
+    const double x = std::clamp(place, 0.0, 1.0) * 16.0;
+    const auto k = std::min<size_t>(static_cast<size_t>(x), 15);
+    const auto value = [&](size_t i) { return weight[i] > 1e-9 ? elevation[i] / weight[i] : 0.0; };
+    const double t = x - static_cast<double>(k);
+    return (1.0 - t) * value(k) + t * value(k + 1);
+  }
+};
+
+void carry(rig::TissueLevel& level, int channel, size_t node, const EyeFrame& f, double angle, double stiffness) {
+  level.carrier_channel.push_back(static_cast<uint32_t>(channel));
+  level.carrier_node.push_back(static_cast<uint32_t>(node));
+  level.carrier_origin.push_back(f.centre.cast<float>());
+  level.carrier_axis.push_back(f.lateral.cast<float>());
+  level.carrier_angle.push_back(static_cast<float>(angle));
+  level.carrier_stiffness.push_back(0.0F);
+  level.carrier_drive.push_back(static_cast<float>(stiffness));
+}
+
+/// Half an eye's lids: nodes near the fissure, and what each channel does to them.
+void add_eye(const TissueInputs& inputs, const TissueOptions& options, const Columns& c, bool left, rig::TissueLevel& level) {
+  const EyeFrame f = frame_of(inputs, left);
+  const std::string side = left ? "_left" : "_right";
+  const auto opening = static_cast<size_t>(left ? Opening::eye_left : Opening::eye_right);
+  const auto n = static_cast<size_t>(c.count());
+  const auto place_of = [&](const Vec3& p) { return ((p - f.centre).dot(f.lateral) - f.inner) / (f.outer - f.inner); };
+
+  // The canthi's own elevation divides upper lid from lower.
+  const Vec3 canthi[] = {landmark(inputs, "endocanthion" + side), landmark(inputs, "exocanthion" + side)};
+  const auto middle = [&](double place) {
+    const double a = f.elevation(canthi[0]), b = f.elevation(canthi[1]);
+    const double t = left ? place : 1.0 - place;
+    return a + std::clamp(t, 0.0, 1.0) * (b - a);
+  };
+  Margin upper, lower;
+  std::vector<size_t> near;
+  for (size_t v = 0; v < n; ++v) {
+    const double distance = c.opening_distance[opening][v];
+    if (!(distance < 0.016) || c.rim[v]) continue;
+    near.push_back(v);
+    if (!c.outer[v] || distance > 0.004) continue;
+    const double place = place_of(c.mesh.vertices[v]), elevation = f.elevation(c.mesh.vertices[v]);
+    if (place < -0.1 || place > 1.1) continue;
+    (elevation > middle(place) ? upper : lower).add(place, elevation);
+  }
+  const int close = channel_index(inputs.channels, "lid_upper" + side);
+  const int raise = channel_index(inputs.channels, "lid_lower" + side);
+  const int pitch = channel_index(inputs.channels, "eye_pitch" + side);
+  level.globe_centre.push_back(f.centre.cast<float>());
+  level.globe_radius.push_back(static_cast<float>(f.radius));
+  for (const size_t v : near) {
+    const Vec3& p = c.mesh.vertices[v];
+    const double place = place_of(p), elevation = f.elevation(p), distance = c.opening_distance[opening][v];
+    const bool is_upper = elevation > middle(place);
+    // Full at the edge and in the lining, fading over the plate to the fold; none beyond the canthi.
+    const double fade = (c.outer[v] ? 1.0 - smoothstep(0.002, is_upper ? 0.013 : 0.010, distance) : 1.0) *
+                        smoothstep(-0.18, 0.02, place) * (1.0 - smoothstep(0.98, 1.18, place));
+    const auto globe = static_cast<uint32_t>(level.globe_centre.size() - 1);
+    for (const size_t node : {v, n + v}) {
+      level.globe_contact_node.push_back(static_cast<uint32_t>(node));
+      level.globe_contact_globe.push_back(globe);
+    }
+    if (fade < 0.01) continue;
+    const double gap = std::max(0.0, upper.at(place) - lower.at(place));
+    for (const size_t node : {v, n + v}) {
+      const double stiffness = options.material.lid_hold * c.area[v] * fade;
+      // A positive turn about the leftward axis lowers what lies in front.
+      const size_t before = level.carrier_node.size();
+      if (is_upper && close >= 0) carry(level, close, node, f, 0.92 * gap * fade, stiffness);
+      if (!is_upper && raise >= 0) carry(level, raise, node, f, -0.22 * gap * fade, stiffness);
+      if (pitch >= 0) carry(level, pitch, node, f, (is_upper ? -0.75 : -0.4) * fade, stiffness);
+      // One of a node's carriers holds it, however many move it.
+      if (level.carrier_node.size() > before) level.carrier_stiffness[before] = static_cast<float>(stiffness);
+    }
+  }
+}
+
+}  // namespace
+
+void add_lids(const TissueInputs& inputs, const TissueOptions& options, const Columns& columns, rig::TissueLevel& level) {
+  for (const bool left : {true, false}) add_eye(inputs, options, columns, left, level);
+}
+
+}  // namespace fascia::tissue

@@ -1,0 +1,186 @@
+#include "builder/tissue/region.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "builder/spatial/surface_query.h"
+#include "builder/tissue/distance.h"
+#include "geometry/connectivity.h"
+#include "geometry/error.h"
+
+namespace fascia::tissue {
+namespace {
+
+/// How far inside the region's limits a point lies, metres; negative outside.
+double margin_at(const TissueInputs& inputs, const Vec3& p) {
+  const Vec3 ear = 0.5 * (landmark(inputs, "tragion_left") + landmark(inputs, "tragion_right"));
+  const Vec3 glabella = landmark(inputs, "glabella"), nose = landmark(inputs, "subnasale");
+  const Vec3 chin = landmark(inputs, "gnathion");
+  const double third = glabella.y() - nose.y();
+  const auto hairline = inputs.landmarks.find("trichion");
+  const double top = (hairline != inputs.landmarks.end() ? hairline->second.y() : glabella.y() + third) + 0.15 * third;
+  const double bottom = chin.y() - 0.6 * third;
+  // In front of the ear; below the jaw's angle the neck turns away, so the limit goes back a little.
+  const double below = std::clamp((ear.y() - 0.7 * third - p.y()) / third, 0.0, 1.0);
+  const double back = ear.z() + third * (0.18 - 0.28 * below);
+  return std::min({top - p.y(), p.y() - bottom, p.z() - back});
+}
+
+/// Whether a skin vertex is seen from outside: some ray in the half space before the face escapes.
+std::vector<bool> seen_from_outside(const TissueInputs& inputs, const std::vector<double>& margin) {
+  TriangleMesh blocking = inputs.skin;
+  for (const PartMesh& part : inputs.parts) {
+    if (part.part == "skin" || part.part == "lashes" || part.part == "brows" || part.part == "hair" || part.part == "other")
+      continue;
+    const int first = blocking.vertex_count();
+    blocking.vertices.insert(blocking.vertices.end(), part.vertices.begin(), part.vertices.end());
+    for (const fascia::Triangle& t : part.triangles) blocking.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  }
+  const spatial::SurfaceQuery query(blocking);
+  const std::vector<Vec3> normals = vertex_normals(inputs.skin);
+  const rig::Eye eyes[] = {eye_of(inputs, true), eye_of(inputs, false)};
+  std::vector<bool> seen(inputs.skin.vertices.size(), false);
+  for (size_t v = 0; v < seen.size(); ++v) {
+    if (margin[v] < -0.01) continue;
+    const Vec3& p = inputs.skin.vertices[v];
+    bool in_socket = false;  // seen through an open fissure of a head without eyeballs, yet inside
+    for (const rig::Eye& eye : eyes)
+      in_socket = in_socket || (p - eye.centre.cast<double>()).norm() < 1.01 * static_cast<double>(eye.radius);
+    if (in_socket) continue;
+    const Vec3 start = p + 2e-4 * normals[v];
+    for (int turn = -3; turn <= 3 && !seen[v]; ++turn)
+      for (int tilt = -2; tilt <= 2 && !seen[v]; ++tilt) {
+        const double a = turn * 0.4, b = tilt * 0.45;
+        const Vec3 direction(std::sin(a) * std::cos(b), std::sin(b), std::cos(a) * std::cos(b));
+        if (direction.dot(normals[v]) < 0.15) continue;
+        seen[v] = !query.first_hit(start, direction, 0.3);
+      }
+  }
+  return seen;
+}
+
+/// Removes specks: a vertex goes with the majority of its neighbours, a few times over.
+void calm(const TriangleMesh& mesh, std::vector<bool>& flags) {
+  const auto neighbours = vertex_neighbours(mesh);
+  for (int pass = 0; pass < 2; ++pass) {
+    std::vector<bool> next = flags;
+    for (size_t v = 0; v < flags.size(); ++v) {
+      int set = 0;
+      for (const int n : neighbours[v]) set += flags[static_cast<size_t>(n)] ? 1 : 0;
+      const auto count = static_cast<int>(neighbours[v].size());
+      if (4 * set > 3 * count) next[v] = true;
+      if (4 * set < count) next[v] = false;
+    }
+    flags = next;
+  }
+}
+
+Opening opening_at(const TissueInputs& inputs, const Vec3& p) {
+  const Vec3 mouth = 0.5 * (landmark(inputs, "cheilion_left") + landmark(inputs, "cheilion_right"));
+  const double width = (landmark(inputs, "cheilion_left") - landmark(inputs, "cheilion_right")).norm();
+  const rig::Eye left = eye_of(inputs, true), right = eye_of(inputs, false);
+  const Vec3 nose = 0.5 * (landmark(inputs, "subnasale") + landmark(inputs, "pronasale"));
+  const double scores[] = {(p - mouth).norm() / width, (p - left.centre.cast<double>()).norm() / (1.6 * left.radius),
+                           (p - right.centre.cast<double>()).norm() / (1.6 * right.radius), (p - nose).norm() / (0.5 * width)};
+  const auto best = std::min_element(std::begin(scores), std::end(scores)) - std::begin(scores);
+  return scores[best] < 2.5 ? static_cast<Opening>(best + 1) : Opening::none;
+}
+
+}  // namespace
+
+Vec3 landmark(const TissueInputs& inputs, const std::string& name) {
+  const auto found = inputs.landmarks.find(name);
+  if (found == inputs.landmarks.end())
+    throw Error("the tissue needs the landmark '" + name + "', which is missing: give it with --landmarks");
+  return found->second;
+}
+
+rig::Eye eye_of(const TissueInputs& inputs, bool left) {
+  const rig::Eye& given = left ? inputs.eye_left : inputs.eye_right;
+  if (given.radius > 0.0F) return given;
+  const std::string side = left ? "_left" : "_right";
+  const Vec3 inner = landmark(inputs, "endocanthion" + side), outer = landmark(inputs, "exocanthion" + side);
+  rig::Eye eye;  // a fissure is some 30 mm wide before a globe of 24 mm, whose front stands before the canthi
+  eye.radius = static_cast<float>(0.4 * (outer - inner).norm());
+  eye.centre = (0.5 * (inner + outer) - Vec3(0, 0, 0.7 * static_cast<double>(eye.radius))).cast<float>();
+  return eye;
+}
+
+FaceRegion find_region(const TissueInputs& inputs, const TissueOptions& options) {
+  const TriangleMesh& skin = inputs.skin;
+  std::vector<double> margin(skin.vertices.size());
+  for (size_t v = 0; v < margin.size(); ++v) margin[v] = margin_at(inputs, skin.vertices[v]);
+  std::vector<bool> outer = seen_from_outside(inputs, margin);
+  calm(skin, outer);
+
+  std::vector<bool> within(skin.vertices.size());
+  for (size_t v = 0; v < within.size(); ++v) within[v] = margin[v] > 0.0;
+  // The outer face: what hangs together with the tip of the nose.
+  const Vec3 tip = landmark(inputs, "pronasale");
+  int start = -1;
+  for (size_t v = 0; v < within.size(); ++v)
+    if (within[v] && outer[v] &&
+        (start < 0 || (skin.vertices[v] - tip).norm() < (skin.vertices[static_cast<size_t>(start)] - tip).norm()))
+      start = static_cast<int>(v);
+  if (start < 0) throw Error("no skin lies between the ears, hairline and chin: check the head's axes and landmarks");
+  std::vector<bool> passable(within.size());
+  for (size_t v = 0; v < within.size(); ++v) passable[v] = within[v] && outer[v];
+  const EdgeDistances face = edge_distances(skin, {{start}}, 1e9, passable);
+
+  FaceRegion region;
+  std::vector<DistanceSeed> seeds;
+  for (size_t v = 0; v < within.size(); ++v)
+    if (face.seed[v] >= 0) seeds.push_back({static_cast<int>(v)});
+  const EdgeDistances inward = edge_distances(skin, seeds, 0.08, within);
+  region.depth = inward.distance;
+  region.opening.assign(within.size(), Opening::none);
+  for (size_t v = 0; v < within.size(); ++v)
+    if (inward.seed[v] >= 0 && face.seed[v] < 0)
+      region.opening[v] = opening_at(inputs, skin.vertices[static_cast<size_t>(seeds[static_cast<size_t>(inward.seed[v])].vertex)]);
+
+  std::vector<bool> keep(skin.triangles.size());
+  for (size_t t = 0; t < keep.size(); ++t) {
+    keep[t] = true;
+    for (const int corner : skin.triangles[t])
+      keep[t] = keep[t] && inward.distance[static_cast<size_t>(corner)] <= options.lining;
+  }
+  region.mesh = submesh(skin, keep, &region.region_vertex);
+  // Only the piece around the nose: no islands.
+  int pieces = 0;
+  const std::vector<int> piece = components(region.mesh, &pieces);
+  if (pieces > 1) {
+    std::vector<int> sizes(static_cast<size_t>(pieces));
+    for (const int p : piece) ++sizes[static_cast<size_t>(p)];
+    const auto largest = static_cast<int>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
+    std::vector<bool> main_piece(piece.size());
+    for (size_t t = 0; t < piece.size(); ++t) main_piece[t] = piece[t] == largest;
+    std::vector<int> inner_map;
+    region.mesh = submesh(region.mesh, main_piece, &inner_map);
+    for (int& index : region.region_vertex)
+      if (index >= 0) index = inner_map[static_cast<size_t>(index)];
+  }
+  region.skin_vertex.assign(region.mesh.vertices.size(), -1);
+  for (size_t v = 0; v < region.region_vertex.size(); ++v)
+    if (region.region_vertex[v] >= 0) region.skin_vertex[static_cast<size_t>(region.region_vertex[v])] = static_cast<int>(v);
+
+  region.outer.resize(region.mesh.vertices.size());
+  for (size_t v = 0; v < region.outer.size(); ++v) region.outer[v] = face.seed[static_cast<size_t>(region.skin_vertex[v])] >= 0;
+  const auto neighbours = vertex_neighbours(region.mesh);
+  std::vector<DistanceSeed> edges;
+  std::array<std::vector<DistanceSeed>, 5> edges_of;
+  for (size_t v = 0; v < region.outer.size(); ++v)
+    for (const int n : neighbours[v])
+      if (region.outer[v] && !region.outer[static_cast<size_t>(n)]) {
+        const auto beyond = static_cast<size_t>(region.skin_vertex[static_cast<size_t>(n)]);
+        edges.push_back({static_cast<int>(v)});
+        edges_of[static_cast<size_t>(region.opening[beyond])].push_back({static_cast<int>(v)});
+        break;
+      }
+  if (edges.empty()) throw Error("the skin has neither a mouth nor eyes that open: cut the lips and lids before building");
+  region.feature_distance = edge_distances(region.mesh, edges).distance;
+  for (size_t k = 1; k < edges_of.size(); ++k)
+    region.opening_distance[k] = edge_distances(region.mesh, edges_of[k]).distance;
+  return region;
+}
+
+}  // namespace fascia::tissue

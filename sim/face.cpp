@@ -1,0 +1,165 @@
+#include "sim/face.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fascia::sim {
+
+Face::Face(const FaceModel& model, size_t channels)
+    : model_(&model), frame_(model.make_frame()), pose_frame_(frame_), position_(model.rest()), previous_(position_),
+      velocity_(position_.size(), Vec3::Zero()), carried_(position_), pose_(position_),
+      pose_offset_(position_.size(), Vec3::Zero()), start_(position_), work_(position_.size()), excitations_(channels),
+      last_excitations_(channels), activations_(channels), workspace_(position_.size(), model.unknowns().size()) {}
+
+MinimiseResult Face::static_pose(const Drive& drive, const PoseOptions& options, std::span<Vec3f> positions) {
+  model_->place(drive, pose_frame_);
+  for (size_t i = 0; i < pose_.size(); ++i) {
+    pose_[i] = pose_frame_.carried[i];
+    if (options.from_last_pose) pose_[i] += pose_offset_[i];
+  }
+  const auto energy = [this](const Vec3* x, Vec3* gradient) { return model_->energy(pose_frame_, x, gradient); };
+  const MinimiseResult result =
+      minimise(energy, model_->pose_factor(), model_->unknowns(), options.solver, workspace_, pose_);
+  for (size_t i = 0; i < pose_.size(); ++i) {
+    pose_offset_[i] = pose_[i] - pose_frame_.carried[i];
+    if (i < positions.size())
+      positions[i] = model_->lattice().rest[i] + (pose_[i] - model_->rest()[i]).cast<float>();
+  }
+  return result;
+}
+
+void Face::reset(const Drive& drive) {
+  model_->place({{}, drive.jaw, Vec3::Zero()}, frame_);
+  position_ = frame_.carried;
+  previous_ = position_;
+  carried_ = frame_.carried;
+  std::fill(velocity_.begin(), velocity_.end(), Vec3::Zero());
+  std::fill(activations_.begin(), activations_.end(), 0.0F);
+  std::fill(last_excitations_.begin(), last_excitations_.end(), 0.0F);
+  last_jaw_ = clamped(drive.jaw);
+  last_acceleration_.setZero();
+  left_over_ = 0.0;
+}
+
+MinimiseResult Face::settle(const Drive& drive, const PoseOptions& options) {
+  const MinimiseResult result = static_pose(drive, options, {});
+  reset(drive);
+  for (size_t c = 0; c < activations_.size(); ++c)
+    activations_[c] = c < drive.activations.size() && std::isfinite(drive.activations[c]) ? drive.activations[c] : 0.0F;
+  last_excitations_ = activations_;
+  last_acceleration_ = drive.acceleration;
+  position_ = pose_;
+  previous_ = pose_;
+  model_->place({activations_, last_jaw_, last_acceleration_}, frame_);
+  return result;
+}
+
+MinimiseResult Face::substep(double share, const Drive& drive, const StepOptions& options) {
+  const double h = model_->options().substep;
+  for (size_t c = 0; c < excitations_.size(); ++c) {
+    const float goal = c < drive.activations.size() ? drive.activations[c] : 0.0F;
+    excitations_[c] = last_excitations_[c] + static_cast<float>(share) * (goal - last_excitations_[c]);
+  }
+  follow(options.dynamics, h, excitations_, activations_);
+  const auto mix = [share](float from, float to) { return from + static_cast<float>(share) * (to - from); };
+  const JawPose goal = clamped(drive.jaw);
+  const JawPose jaw{mix(last_jaw_.open, goal.open), mix(last_jaw_.forward, goal.forward),
+                    mix(last_jaw_.lateral, goal.lateral)};
+  const Vec3 acceleration = last_acceleration_ + share * (drive.acceleration - last_acceleration_);
+  carried_ = frame_.carried;
+  model_->place({activations_, jaw, acceleration}, frame_);
+
+  // Damping acts on motion relative to the bones, so that the jaw carries its tissue along undamped.
+  previous_ = position_;
+  for (size_t i = 0; i < position_.size(); ++i) {
+    start_[i] = position_[i] + h * velocity_[i];
+    carried_[i] = position_[i] + (frame_.carried[i] - carried_[i]);  // where the bones alone would bring it
+    if (model_->prescribed(i)) carried_[i] = frame_.carried[i];
+    position_[i] = carried_[i];
+  }
+  const double stiff = model_->options().stiffness_damping / h, drag = model_->options().mass_damping / h;
+  const auto& unknowns = model_->unknowns();
+  const auto& masses = model_->masses();
+  const auto& matrix = model_->stiffness();
+  const auto potential = [&](const Vec3* x, Vec3* gradient) {
+    double value = model_->energy(frame_, x, gradient);
+    for (size_t i = 0; i < unknowns.size(); ++i) {
+      const uint32_t node = unknowns[i];
+      const Vec3 ballistic = x[node] - start_[node], moved = x[node] - carried_[node];
+      Vec3 force = masses[node] * drag * moved;
+      for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator e(matrix, static_cast<int>(i)); e; ++e) {
+        const uint32_t other = unknowns[static_cast<size_t>(e.col())];
+        force += (stiff * e.value()) * (x[other] - carried_[other]);
+      }
+      const double inertia = masses[node] / (h * h);
+      value += 0.5 * inertia * ballistic.squaredNorm() + 0.5 * force.dot(moved);
+      gradient[node] += inertia * ballistic + force;
+    }
+    return value;
+  };
+  const MinimiseResult result =
+      minimise(potential, model_->step_factor(), unknowns, options.solver, workspace_, position_);
+  for (size_t i = 0; i < position_.size(); ++i) velocity_[i] = (position_[i] - previous_[i]) / h;
+  return result;
+}
+
+bool Face::sound(const StepOptions& options) const {
+  for (size_t i = 0; i < position_.size(); ++i) {
+    const double away = (position_[i] - frame_.carried[i]).norm();
+    if (!(away <= options.largest_displacement)) return false;  // also when it is not a number
+  }
+  return true;
+}
+
+StepResult Face::step(double seconds, const Drive& drive, const StepOptions& options) {
+  StepResult result;
+  bool finite = std::isfinite(seconds) && drive.acceleration.allFinite();
+  for (size_t c = 0; c < activations_.size() && c < drive.activations.size(); ++c)
+    finite = finite && std::isfinite(drive.activations[c]);
+  if (!finite) {
+    reset({{}, drive.jaw, Vec3::Zero()});
+    result.status = StepStatus::reset;
+    return result;
+  }
+  if (seconds <= 0.0) return result;
+  const double h = model_->options().substep, due = left_over_ + seconds;
+  const int substeps = std::min(static_cast<int>(due / h + 1e-9), options.largest_number_of_substeps);
+  for (int k = 0; k < substeps; ++k) {
+    // The drive at this substep's own time: before it lie last frame's left-over and k whole substeps.
+    const double share = std::clamp(((k + 1) * h - left_over_) / seconds, 0.0, 1.0);
+    const MinimiseResult solved = substep(share, drive, options);
+    ++result.substeps;
+    result.iterations += solved.iterations;
+    result.move = solved.move;
+    if (!sound(options)) {
+      reset(drive);
+      result.status = StepStatus::reset;
+      return result;
+    }
+  }
+  left_over_ = std::clamp(due - substeps * h, 0.0, h);
+  for (size_t c = 0; c < last_excitations_.size(); ++c)
+    last_excitations_[c] = c < drive.activations.size() ? drive.activations[c] : 0.0F;
+  last_jaw_ = clamped(drive.jaw);
+  last_acceleration_ = drive.acceleration;
+  return result;
+}
+
+void Face::displacements(std::span<Vec3f> out) const {
+  // The state stands at the last whole substep; what is left of the frame it coasts.
+  for (size_t i = 0; i < out.size() && i < position_.size(); ++i)
+    out[i] = (position_[i] - model_->rest()[i] + left_over_ * velocity_[i]).cast<float>();
+}
+
+void Face::positions(std::span<Vec3f> out) const {
+  displacements(out);
+  for (size_t i = 0; i < out.size() && i < position_.size(); ++i) out[i] += model_->lattice().rest[i];
+}
+
+double Face::total_energy() {
+  double energy = model_->energy(frame_, position_.data(), work_.data());
+  for (const uint32_t i : model_->unknowns()) energy += 0.5 * model_->masses()[i] * velocity_[i].squaredNorm();
+  return energy;
+}
+
+}  // namespace fascia::sim

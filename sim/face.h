@@ -1,0 +1,85 @@
+#pragma once
+
+#include <span>
+
+#include "sim/activation.h"
+#include "sim/face_model.h"
+#include "sim/minimise.h"
+
+namespace fascia::sim {
+
+/// How a static pose is solved.
+struct PoseOptions {
+  MinimiseOptions solver;
+  bool from_last_pose = false;  ///< start from the last static pose instead of the bones' motion alone
+};
+
+/// How time passes for a face.
+struct StepOptions {
+  ActivationDynamics dynamics;
+  MinimiseOptions solver{16, 3e-7};
+  int largest_number_of_substeps = 16;  ///< a longer frame loses the rest of its time
+  double largest_displacement = 0.15;   ///< metres: beyond it the watchdog calls the face diverged
+};
+
+enum class StepStatus : uint8_t {
+  done = 0,
+  reset = 1  ///< the face diverged, or was driven by numbers that are not finite: it stands at its bones again
+};
+
+struct StepResult {
+  StepStatus status = StepStatus::done;
+  int substeps = 0;
+  int iterations = 0;     ///< of all substeps
+  double move = 0.0;      ///< metres still wanted by the last substep's solver
+};
+
+/// One face: its own state on a shared model. Not for two threads at once; different faces are free.
+///
+/// Positions are #nodes in the head's frame, metres. Nothing here but the constructor allocates, and
+/// nothing throws.
+class Face {
+ public:
+  /// `model` must be valid and outlive the face; `channels` is how many activations it listens to.
+  Face(const FaceModel& model, size_t channels);
+
+  /// The pose in which all forces of `drive` balance. Does not touch the state that `step` moves.
+  MinimiseResult static_pose(const Drive& drive, const PoseOptions& options, std::span<Vec3f> positions);
+
+  /// Lets `seconds` pass while the drive goes from the last step's to `drive` along a line; time is cut into
+  /// the model's substeps, so the frame rate hardly changes the motion. Implicit Euler on the same energies.
+  StepResult step(double seconds, const Drive& drive, const StepOptions& options = {});
+
+  /// Puts the face at rest under `drive`'s bones, without velocity.
+  void reset(const Drive& drive = {});
+  /// Takes a static pose as the state, without velocity.
+  MinimiseResult settle(const Drive& drive, const PoseOptions& options = {});
+
+  /// Where `step` has brought the nodes, coasting through what is left of the frame. #nodes.
+  void positions(std::span<Vec3f> out) const;
+  /// The same, minus rest: exactly zero at rest.
+  void displacements(std::span<Vec3f> out) const;
+  /// Kinetic plus potential energy of the state, joules.
+  double total_energy();
+  std::span<const float> activations() const { return activations_; }  ///< after their dynamics
+  const FaceModel& model() const { return *model_; }
+  const Positions& velocities() const { return velocity_; }
+  Positions& velocities() { return velocity_; }
+  const Positions& state() const { return position_; }
+  const Frame& frame() const { return frame_; }
+
+ private:
+  MinimiseResult substep(double share, const Drive& drive, const StepOptions& options);
+  bool sound(const StepOptions& options) const;
+
+  const FaceModel* model_;
+  Frame frame_, pose_frame_;
+  Positions position_, previous_, velocity_, carried_, pose_, pose_offset_, start_, work_;
+  std::vector<float> excitations_, last_excitations_, activations_;
+  JawPose last_jaw_;
+  Vec3 last_acceleration_ = Vec3::Zero();
+  double left_over_ = 0.0;  ///< seconds of the last frame not yet simulated
+  MinimiseWorkspace workspace_;
+};
+
+}  // namespace fascia::sim

@@ -1,0 +1,200 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "sim/face_model.h"
+
+// What FaceModel does again and again: moving the bones and carriers, and summing the energies.
+namespace fascia::sim {
+namespace {
+
+double value_of(std::span<const float> activations, uint32_t channel) {
+  return channel < activations.size() && std::isfinite(activations[channel]) ? activations[channel] : 0.0;
+}
+
+}  // namespace
+
+void FaceModel::place(const Drive& drive, Frame& frame) const {
+  const JawPose pose = clamped(drive.jaw);
+  const RigidTransform mandible = jaw_transform(jaw_, pose);
+  const auto carry = [&](float weight) {
+    if (weight == 0.0F) return RigidTransform{};
+    return weight == 1.0F ? mandible : jaw_transform(jaw_, pose, weight);
+  };
+  for (size_t i = 0; i < rest_.size(); ++i) {
+    const auto kind = static_cast<NodeKind>(lattice_.kinds[i]);
+    float weight = lattice_.jaw_weights[i];
+    if (kind == NodeKind::fixed || kind == NodeKind::fixed_cranium) weight = 0.0F;
+    frame.carried[i] = pose.at_rest() ? rest_[i] : carry(weight) * rest_[i];
+  }
+  for (size_t t = 0; t < tethers_.size(); ++t)
+    frame.tether_normals[t] = pose.at_rest()
+                                  ? tethers_[t].normal
+                                  : Vec3(carry(lattice_.jaw_weights[tethers_[t].node]).rotation * tethers_[t].normal);
+  for (size_t c = 0; c < frame.carrier_pulls.size(); ++c) {
+    const double turn = value_of(drive.activations, lattice_.carrier_channel[c]) * lattice_.carrier_angle[c];
+    const Vec3 arm = frame.carried[lattice_.carrier_node[c]] - lattice_.carrier_origin[c].cast<double>();
+    Vec3 axis = lattice_.carrier_axis[c].cast<double>();
+    axis = axis.norm() > 1e-9 ? Vec3(axis.normalized()) : Vec3(Vec3::UnitX());
+    frame.carrier_pulls[c] = turn == 0.0 ? Vec3(Vec3::Zero())
+                                         : Vec3(static_cast<double>(lattice_.carrier_drive[c]) *
+                                                (Eigen::AngleAxisd(turn, axis) * arm - arm));
+  }
+  for (size_t p = 0; p < frame.fibre_anchors.size(); ++p) {
+    const Vec3 place = lattice_.fibre_rest[p].cast<double>();
+    const bool moves = static_cast<FibreAnchor>(lattice_.fibre_anchor[p]) == FibreAnchor::mandible;
+    frame.fibre_anchors[p] = moves ? mandible * place : place;
+  }
+  for (size_t f = 0; f < frame.fibre_pulls.size(); ++f)
+    frame.fibre_pulls[f] =
+        std::max(0.0, value_of(drive.activations, lattice_.fibre_channel[f])) * lattice_.fibre_strength[f];
+  for (size_t p = 0; p < frame.pressures.size(); ++p)
+    frame.pressures[p] = value_of(drive.activations, lattice_.pressure_channel[p]) * lattice_.pressure[p];
+  frame.acceleration = drive.acceleration.allFinite() ? drive.acceleration : Vec3(Vec3::Zero());
+}
+
+Vec3 FaceModel::fibre_point(const Frame& frame, size_t point, const Vec3* x) const {
+  const auto anchor = static_cast<FibreAnchor>(lattice_.fibre_anchor[point]);
+  Vec3 place = frame.fibre_anchors[point];
+  if (anchor == FibreAnchor::cranium || anchor == FibreAnchor::mandible) return place;
+  const auto& nodes = lattice_.fibre_nodes[point];
+  for (size_t k = 0; k < 3; ++k)
+    place += static_cast<double>(lattice_.fibre_weights[point][static_cast<int>(k)]) * (x[nodes[k]] - rest_[nodes[k]]);
+  return place;
+}
+
+double FaceModel::fibre_energy(const Frame& frame, const Vec3* x, Vec3* gradient) const {
+  double energy = 0.0;
+  for (uint32_t f = 0; f < lattice_.fibre_count(); ++f) {
+    const double pull = frame.fibre_pulls[f], rest_length = fibre_lengths_[f];
+    if (pull == 0.0 || rest_length <= 0.0) continue;
+    const uint32_t first = lattice_.fibre_offsets[f], last = lattice_.fibre_offsets[f + 1];
+    double length = 0.0;
+    for (uint32_t p = first; p + 1 < last; ++p)
+      length += lattice_.fibre_taper[p] * (fibre_point(frame, p + 1, x) - fibre_point(frame, p, x)).norm();
+    // The pull falls with the fibre's length and ends at its shortest: the rising limb of the
+    // force-length curve, as a line. Its integral is convex in length, which keeps the solve stable.
+    const double range = 1.0 - lattice_.fibre_shortest[f];
+    const double left = length / rest_length - lattice_.fibre_shortest[f];
+    if (left <= 0.0) continue;
+    const double tension = pull * left / range;
+    energy += 0.5 * tension * left * rest_length - 0.5 * pull * range * rest_length;
+    for (uint32_t p = first; p + 1 < last; ++p) {
+      const Vec3 along = fibre_point(frame, p + 1, x) - fibre_point(frame, p, x);
+      const double segment = along.norm();
+      if (segment < 1e-9) continue;
+      const Vec3 force = (tension * lattice_.fibre_taper[p] / segment) * along;
+      for (const uint32_t end : {p, p + 1}) {
+        const auto anchor = static_cast<FibreAnchor>(lattice_.fibre_anchor[end]);
+        if (anchor == FibreAnchor::cranium || anchor == FibreAnchor::mandible) continue;
+        const double sign = end == p ? -1.0 : 1.0;
+        for (size_t k = 0; k < 3; ++k)
+          gradient[lattice_.fibre_nodes[end][k]] +=
+              (sign * static_cast<double>(lattice_.fibre_weights[end][static_cast<int>(k)])) * force;
+      }
+    }
+  }
+  return energy;
+}
+
+double FaceModel::actuator_energy(const Frame& frame, const Vec3* x, Vec3* gradient) const {
+  double energy = 0.0;
+  for (size_t c = 0; c < frame.carrier_pulls.size(); ++c) {
+    const uint32_t node = lattice_.carrier_node[c];
+    const Vec3 away = x[node] - frame.carried[node];
+    const double hold = lattice_.carrier_stiffness[c];
+    gradient[node] += hold * away - frame.carrier_pulls[c];
+    energy += 0.5 * hold * away.squaredNorm() - frame.carrier_pulls[c].dot(away);
+  }
+  for (size_t p = 0; p < frame.pressures.size(); ++p) {
+    if (frame.pressures[p] == 0.0) continue;
+    const auto& columns = lattice_.triangles[lattice_.pressure_prism[p]];
+    const uint32_t inner = 2 * lattice_.columns;
+    const uint32_t n[3] = {inner + columns[0], inner + columns[1], inner + columns[2]};
+    const Vec3 a = x[n[0]] - pressure_origins_[p], b = x[n[1]] - pressure_origins_[p], c = x[n[2]] - pressure_origins_[p];
+    const double share = frame.pressures[p] / 6.0;
+    energy -= share * a.dot(b.cross(c));
+    gradient[n[0]] -= share * b.cross(c);
+    gradient[n[1]] -= share * c.cross(a);
+    gradient[n[2]] -= share * a.cross(b);
+  }
+  for (size_t c = 0; c < contact_radii_.size(); ++c)
+    energy += globe_energy(lattice_.globe_contact_node[c],
+                           lattice_.globe_centre[lattice_.globe_contact_globe[c]].cast<double>(), contact_radii_[c],
+                           options_.globe_contact_stiffness, x, gradient);
+  if (frame.acceleration != Vec3::Zero()) {
+    for (const uint32_t node : unknowns_) {
+      gradient[node] -= masses_[node] * frame.acceleration;
+      energy -= masses_[node] * frame.acceleration.dot(x[node] - rest_[node]);
+    }
+  }
+  return energy;
+}
+
+double FaceModel::energy_beside_springs(const Frame& frame, const Vec3* x, Vec3* gradient) const {
+  double energy = 0.0;
+  for (const Membrane& membrane : membranes_) energy += membrane_energy(membrane, x, gradient);
+  for (const Hinge& hinge : hinges_) energy += hinge_energy(hinge, x, gradient);
+  for (const Prism& prism : prisms_) energy += prism_energy(prism, x, gradient);
+  for (size_t t = 0; t < tethers_.size(); ++t)
+    energy += tether_energy(tethers_[t], frame.carried[tethers_[t].node], frame.tether_normals[t], x, gradient);
+  energy += fibre_energy(frame, x, gradient);
+  return energy + actuator_energy(frame, x, gradient);
+}
+
+double FaceModel::raw_energy(const Frame& frame, const Vec3* x, Vec3* gradient) const {
+  std::fill(gradient, gradient + rest_.size(), Vec3::Zero());
+  double energy = 0.0;
+  for (const Spring& spring : springs_) energy += spring_energy(spring, x, gradient);
+  return energy + energy_beside_springs(frame, x, gradient);
+}
+
+double FaceModel::balanced(double energy, const Vec3* x, Vec3* gradient) const {
+  for (size_t i = 0; i < rest_.size(); ++i) {
+    if (unknown_of_node_[i] < 0) {
+      gradient[i].setZero();
+      continue;
+    }
+    gradient[i] -= balance_[i];
+    energy -= balance_[i].dot(x[i] - rest_[i]);
+  }
+  return energy;
+}
+
+double FaceModel::energy(const Frame& frame, const Vec3* x, Vec3* gradient) const {
+  return balanced(raw_energy(frame, x, gradient), x, gradient);
+}
+
+double FaceModel::energy_beside_links(const Frame& frame, const Vec3* x, Vec3* gradient) const {
+  std::fill(gradient, gradient + rest_.size(), Vec3::Zero());
+  double energy = 0.0;
+  for (const Spring& spring : springs_) {
+    Spring rest_of_it = spring;
+    if (!spring.one_sided) {  // what is stiffer than a link beyond its limit
+      rest_of_it.stiffness = 0.0;
+      rest_of_it.second_stiffness = spring.second_stiffness - spring.stiffness;
+    }
+    energy += spring_energy(rest_of_it, x, gradient);
+  }
+  return balanced(energy + energy_beside_springs(frame, x, gradient), x, gradient);
+}
+
+void FaceModel::hessian_times(const Frame& frame, const Vec3* x, const Vec3* direction, Vec3* result,
+                              Positions& work) const {
+  const size_t nodes = rest_.size();
+  double largest = 0.0;
+  for (const uint32_t i : unknowns_) largest = std::max(largest, direction[i].cwiseAbs().maxCoeff());
+  std::fill(result, result + nodes, Vec3::Zero());
+  if (largest == 0.0) return;
+  const double step = 1e-7 / largest;  // 0.1 micrometre where it moves most
+  Vec3* moved = work.data();
+  Vec3* ahead = moved + nodes;
+  Vec3* behind = ahead + nodes;
+  for (size_t i = 0; i < nodes; ++i) moved[i] = unknown_of_node_[i] < 0 ? x[i] : Vec3(x[i] + step * direction[i]);
+  energy(frame, moved, ahead);
+  for (size_t i = 0; i < nodes; ++i) moved[i] = unknown_of_node_[i] < 0 ? x[i] : Vec3(x[i] - step * direction[i]);
+  energy(frame, moved, behind);
+  for (const uint32_t i : unknowns_) result[i] = (ahead[i] - behind[i]) / (2.0 * step);
+}
+
+}  // namespace fascia::sim

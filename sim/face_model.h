@@ -1,0 +1,111 @@
+#pragma once
+
+#include <Eigen/SparseCore>
+#include <string>
+#include <vector>
+
+#include "sim/energies.h"
+#include "sim/jaw.h"
+#include "sim/lattice.h"
+#include "sim/rest_factor.h"
+
+namespace fascia::sim {
+
+struct FaceModelOptions {
+  double substep = 1.0 / 120.0;           ///< seconds; frames are cut into these, whatever their length
+  double stiffness_damping = 0.004;       ///< seconds: damping force per stiffness force and unit of rate
+  double mass_damping = 8.0;              ///< per second
+  double globe_contact_stiffness = 200.0; ///< newton per metre a node
+};
+
+/// What drives a face at one moment.
+struct Drive {
+  std::span<const float> activations;  ///< one a channel; channels beyond its end are 0
+  JawPose jaw;
+  Vec3 acceleration = Vec3::Zero();    ///< of free tissue in the head's frame, m/s^2 (gravity change, inertia)
+};
+
+/// Where bones and carriers stand for a drive; made once a solve.
+struct Frame {
+  Positions carried;                ///< #nodes: where each would go if only its bones moved
+  Positions tether_normals;         ///< #tethers
+  Positions carrier_pulls;          ///< #carriers: force in newton
+  Positions fibre_anchors;          ///< #fibre points; meaningful where anchored to a bone
+  std::vector<double> fibre_pulls;  ///< #fibres, newton at rest length
+  std::vector<double> pressures;    ///< #pressures, pascal
+  Vec3 acceleration = Vec3::Zero();
+};
+
+/// A face ready to solve: elements at rest, and the factors every instance shares. Immutable, so any
+/// number of instances and threads may use one. It keeps `lattice`'s spans: their arrays must outlive it.
+class FaceModel {
+ public:
+  /// Makes the model; on a lattice at fault `fault()` says what is wrong and the model must not be used.
+  FaceModel(const Lattice& lattice, const Jaw& jaw, const FaceModelOptions& options = {});
+
+  bool valid() const { return fault_.empty(); }
+  const std::string& fault() const { return fault_; }
+
+  /// A frame of the right sizes, at rest.
+  Frame make_frame() const;
+  /// Moves bones and carriers of `frame` to `drive`. Allocates nothing.
+  void place(const Drive& drive, Frame& frame) const;
+
+  /// Joules of the configuration `x` (#nodes), above those of the rest pose; writes the gradient in
+  /// newtons (#nodes, zero where a node is prescribed). One set of energies for pose and step.
+  double energy(const Frame& frame, const Vec3* x, Vec3* gradient) const;
+
+  /// The same without what linear two-sided springs contribute, for a solver that has springs of its own.
+  double energy_beside_links(const Frame& frame, const Vec3* x, Vec3* gradient) const;
+
+  /// Curvature along a direction: H(x) v, by central differences of the gradient in double precision
+  /// (error about 1e-8 of its size). `work` holds 3 x #nodes.
+  void hessian_times(const Frame& frame, const Vec3* x, const Vec3* direction, Vec3* result, Positions& work) const;
+
+  const Lattice& lattice() const { return lattice_; }
+  const Jaw& jaw() const { return jaw_; }
+  const FaceModelOptions& options() const { return options_; }
+  const Positions& rest() const { return rest_; }
+  const std::vector<uint32_t>& unknowns() const { return unknowns_; }  ///< nodes the solver moves
+  bool prescribed(size_t node) const { return unknown_of_node_[node] < 0; }  ///< moves with its bone alone
+  const std::vector<double>& masses() const { return masses_; }        ///< #nodes
+  const RestFactor& pose_factor() const { return pose_factor_; }       ///< rest stiffness
+  const RestFactor& step_factor() const { return step_factor_; }       ///< mass, damping and stiffness of a substep
+  const Eigen::SparseMatrix<double, Eigen::RowMajor>& stiffness() const { return stiffness_; }  ///< over unknowns
+  const std::vector<Spring>& springs() const { return springs_; }
+  const std::vector<Prism>& prisms() const { return prisms_; }
+  const std::vector<Membrane>& membranes() const { return membranes_; }  ///< skin first, then SMAS
+
+ private:
+  void make_elements();
+  void make_hinges();
+  bool make_factors();
+  double raw_energy(const Frame& frame, const Vec3* x, Vec3* gradient) const;
+  double energy_beside_springs(const Frame& frame, const Vec3* x, Vec3* gradient) const;
+  double balanced(double energy, const Vec3* x, Vec3* gradient) const;
+  double fibre_energy(const Frame& frame, const Vec3* x, Vec3* gradient) const;
+  double actuator_energy(const Frame& frame, const Vec3* x, Vec3* gradient) const;
+  Vec3 fibre_point(const Frame& frame, size_t point, const Vec3* x) const;
+
+  Lattice lattice_;
+  Jaw jaw_;
+  FaceModelOptions options_;
+  std::string fault_;
+  Positions rest_;
+  std::vector<double> masses_;
+  std::vector<uint32_t> unknowns_;
+  std::vector<int32_t> unknown_of_node_;
+  std::vector<Spring> springs_;
+  std::vector<Membrane> membranes_;
+  std::vector<Hinge> hinges_;
+  std::vector<Prism> prisms_;
+  std::vector<Tether> tethers_;
+  std::vector<double> fibre_lengths_;  // taper-weighted, at rest
+  Positions pressure_origins_;
+  std::vector<double> contact_radii_;
+  Positions balance_;  // gradient at rest: what is subtracted so that rest is rest to the last bit
+  Eigen::SparseMatrix<double, Eigen::RowMajor> stiffness_;
+  RestFactor pose_factor_, step_factor_;
+};
+
+}  // namespace fascia::sim

@@ -1,0 +1,127 @@
+#include "sim/lattice.h"
+
+#include <cmath>
+
+namespace fascia::sim {
+namespace {
+
+bool all_positive(std::span<const float> values) {
+  for (const float value : values)
+    if (!(value >= 0.0F) || std::isnan(value)) return false;
+  return true;
+}
+
+bool all_finite(std::span<const Vec3f> values) {
+  for (const Vec3f& value : values)
+    if (!value.allFinite()) return false;
+  return true;
+}
+
+bool all_below(std::span<const uint32_t> values, size_t limit) {
+  for (const uint32_t value : values)
+    if (value >= limit) return false;
+  return true;
+}
+
+const char* fault_of_nodes(const Lattice& l) {
+  const size_t nodes = l.node_count();
+  if (l.columns == 0) return "the lattice has no columns";
+  if (l.rest.size() != nodes || l.kinds.size() != nodes || l.masses.size() != nodes ||
+      l.jaw_weights.size() != nodes)
+    return "rest, kinds, masses and jaw_weights need one entry a node";
+  if (!all_finite(l.rest)) return "a rest position is not finite";
+  for (const uint8_t kind : l.kinds)
+    if (kind > static_cast<uint8_t>(NodeKind::mucosa)) return "a node is of no known kind";
+  for (const float mass : l.masses)
+    if (!(mass > 0.0F) || !std::isfinite(mass)) return "a node's mass is not positive";
+  for (const float weight : l.jaw_weights)
+    if (!(weight >= 0.0F && weight <= 1.0F)) return "a jaw weight is not within 0..1";
+  for (const auto& triangle : l.triangles)
+    if (!all_below(triangle, l.columns)) return "a prism names a column that does not exist";
+  return nullptr;
+}
+
+const char* fault_of_layers(const Lattice& l) {
+  const size_t springs = l.spring_nodes.size(), prisms = l.triangles.size();
+  if (l.spring_stiffness.size() != springs || l.spring_limit_strain.size() != springs ||
+      l.spring_second_stiffness.size() != springs || l.spring_one_sided.size() != springs)
+    return "the spring lists differ in length";
+  for (const auto& pair : l.spring_nodes)
+    if (!all_below(pair, l.node_count()) || pair[0] == pair[1]) return "a spring names a node that does not exist";
+  if (!all_positive(l.spring_stiffness) || !all_positive(l.spring_limit_strain) ||
+      !all_positive(l.spring_second_stiffness))
+    return "a spring has a negative stiffness or limit";
+  if (l.skin_membrane.size() != prisms || l.smas_membrane.size() != prisms || l.volume_stiffness.size() != prisms ||
+      l.inner_volume_stiffness.size() != prisms)
+    return "membranes and volume stiffnesses need one entry a prism";
+  if (l.skin_bending.size() != l.columns || l.smas_bending.size() != l.columns)
+    return "bending needs one entry a column";
+  if (!all_positive(l.skin_membrane) || !all_positive(l.smas_membrane) || !all_positive(l.volume_stiffness) ||
+      !all_positive(l.inner_volume_stiffness) ||
+      !all_positive(l.skin_bending) || !all_positive(l.smas_bending))
+    return "a layer stiffness is negative";
+  if (!(l.poisson_ratio >= 0.0F && l.poisson_ratio < 0.5F)) return "poisson_ratio is not within 0..0.5";
+  const size_t tethers = l.tether_nodes.size();
+  if (l.tether_normals.size() != tethers || l.tether_normal_stiffness.size() != tethers ||
+      l.tether_tangential_stiffness.size() != tethers)
+    return "the tether lists differ in length";
+  if (!all_below(l.tether_nodes, l.node_count())) return "a tether names a node that does not exist";
+  if (!all_finite(l.tether_normals) || !all_positive(l.tether_normal_stiffness) ||
+      !all_positive(l.tether_tangential_stiffness))
+    return "a tether is not finite or is negative";
+  return nullptr;
+}
+
+const char* fault_of_fibres(const Lattice& l) {
+  const size_t fibres = l.fibre_channel.size(), points = l.fibre_nodes.size();
+  if (fibres == 0) return points == 0 ? nullptr : "there are fibre points but no fibres";
+  if (l.fibre_offsets.size() != fibres + 1 || l.fibre_strength.size() != fibres || l.fibre_shortest.size() != fibres)
+    return "the fibre lists differ in length";
+  if (l.fibre_weights.size() != points || l.fibre_rest.size() != points || l.fibre_anchor.size() != points ||
+      l.fibre_taper.size() != points)
+    return "the fibre point lists differ in length";
+  if (l.fibre_offsets.front() != 0 || l.fibre_offsets.back() != points) return "fibre_offsets do not span the points";
+  for (size_t f = 0; f < fibres; ++f)
+    if (l.fibre_offsets[f] > l.fibre_offsets[f + 1]) return "fibre_offsets fall";
+  for (const auto& nodes : l.fibre_nodes)
+    if (!all_below(nodes, l.node_count())) return "a fibre names a node that does not exist";
+  if (!all_finite(l.fibre_weights) || !all_finite(l.fibre_rest)) return "a fibre point is not finite";
+  if (!all_positive(l.fibre_strength) || !all_positive(l.fibre_taper)) return "a fibre's strength is negative";
+  for (const float share : l.fibre_shortest)
+    if (!(share >= 0.0F && share < 1.0F)) return "fibre_shortest is not within 0..1";
+  for (const uint8_t anchor : l.fibre_anchor)
+    if (anchor > static_cast<uint8_t>(FibreAnchor::mandible)) return "a fibre anchor is of no known kind";
+  return nullptr;
+}
+
+const char* fault_of_actuators(const Lattice& l) {
+  const size_t carriers = l.carrier_channel.size();
+  if (l.carrier_node.size() != carriers || l.carrier_origin.size() != carriers || l.carrier_axis.size() != carriers ||
+      l.carrier_angle.size() != carriers || l.carrier_stiffness.size() != carriers ||
+      l.carrier_drive.size() != carriers)
+    return "the carrier lists differ in length";
+  if (!all_below(l.carrier_node, l.node_count())) return "a carrier names a node that does not exist";
+  if (!all_finite(l.carrier_origin) || !all_finite(l.carrier_axis) || !all_positive(l.carrier_stiffness) ||
+      !all_positive(l.carrier_drive))
+    return "a carrier is not finite or is negative";
+  if (l.pressure_prism.size() != l.pressure_channel.size() || l.pressure.size() != l.pressure_channel.size())
+    return "the pressure lists differ in length";
+  if (!all_below(l.pressure_prism, l.triangles.size())) return "a pressure names a prism that does not exist";
+  if (l.globe_radius.size() != l.globe_centre.size() || !all_finite(l.globe_centre) || !all_positive(l.globe_radius))
+    return "the globe lists are at fault";
+  if (l.globe_contact_globe.size() != l.globe_contact_node.size() ||
+      !all_below(l.globe_contact_node, l.node_count()) || !all_below(l.globe_contact_globe, l.globe_centre.size()))
+    return "a globe contact names what does not exist";
+  return nullptr;
+}
+
+}  // namespace
+
+const char* lattice_fault(const Lattice& lattice) {
+  if (const char* fault = fault_of_nodes(lattice)) return fault;
+  if (const char* fault = fault_of_layers(lattice)) return fault;
+  if (const char* fault = fault_of_fibres(lattice)) return fault;
+  return fault_of_actuators(lattice);
+}
+
+}  // namespace fascia::sim

@@ -1,0 +1,78 @@
+#include "sim/rest_stiffness.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+namespace fascia::sim {
+namespace {
+
+using Triplets = std::vector<Eigen::Triplet<double>>;
+
+/// Adds weight * c c^T, c the coefficients of `count` nodes.
+void add_square(const uint32_t* nodes, const double* coefficients, size_t count, double weight,
+                const std::vector<int32_t>& unknown, Triplets& out) {
+  for (size_t i = 0; i < count; ++i)
+    for (size_t j = 0; j < count; ++j)
+      if (unknown[nodes[i]] >= 0 && unknown[nodes[j]] >= 0)
+        out.emplace_back(unknown[nodes[i]], unknown[nodes[j]], weight * coefficients[i] * coefficients[j]);
+}
+
+void add_membrane(const Membrane& m, const std::vector<int32_t>& unknown, Triplets& out) {
+  Eigen::Matrix<double, 2, 3> shape;  // gradients of the corner functions in the triangle's plane
+  shape.rightCols<2>() = m.inverse_rest.transpose();
+  shape.col(0) = -shape.col(1) - shape.col(2);
+  for (int axis = 0; axis < 2; ++axis) {
+    const double row[3] = {shape(axis, 0), shape(axis, 1), shape(axis, 2)};
+    add_square(m.nodes.data(), row, 3, m.area * (2.0 * m.mu + 0.5 * m.lambda), unknown, out);
+  }
+}
+
+/// The change of angle by motion along the edge's normal (Bergou et al. 2006, quadratic bending).
+void add_hinge(const Hinge& h, const Positions& x, const std::vector<int32_t>& unknown, Triplets& out) {
+  const Vec3 edge = x[h.nodes[1]] - x[h.nodes[0]];
+  const double length = std::max(edge.norm(), 1e-9);
+  const Vec3 unit = edge / length;
+  const auto height = [&](uint32_t corner) {
+    return std::max((x[corner] - x[h.nodes[0]]).cross(unit).norm(), 1e-9);
+  };
+  const double a = 1.0 / height(h.nodes[2]), b = 1.0 / height(h.nodes[3]);
+  const double along_a = (x[h.nodes[2]] - x[h.nodes[0]]).dot(unit) / length;
+  const double along_b = (x[h.nodes[3]] - x[h.nodes[0]]).dot(unit) / length;
+  const double row[4] = {-(1.0 - along_a) * a - (1.0 - along_b) * b, -along_a * a - along_b * b, a, b};
+  add_square(h.nodes.data(), row, 4, h.stiffness, unknown, out);
+}
+
+void add_prism(const Prism& p, const Positions& x, const std::vector<int32_t>& unknown, Triplets& out) {
+  if (p.stiffness == 0.0) return;
+  const auto gradient = prism_volume_gradient(p.nodes, x.data());
+  const double weight = p.stiffness / std::max(std::abs(p.volume), 1e-12);
+  for (int axis = 0; axis < 3; ++axis) {
+    double row[6];
+    for (size_t i = 0; i < 6; ++i) row[i] = gradient[i][axis];
+    add_square(p.nodes.data(), row, 6, weight, unknown, out);
+  }
+}
+
+}  // namespace
+
+Eigen::SparseMatrix<double> assemble_rest_stiffness(const RestTerms& t) {
+  Triplets triplets;
+  const double ends[2] = {1.0, -1.0}, one = 1.0;
+  for (const Spring& s : t.springs) add_square(s.nodes.data(), ends, 2, s.stiffness, t.unknown_of_node, triplets);
+  for (const Membrane& m : t.membranes) add_membrane(m, t.unknown_of_node, triplets);
+  for (const Hinge& h : t.hinges) add_hinge(h, t.rest, t.unknown_of_node, triplets);
+  for (const Prism& p : t.prisms) add_prism(p, t.rest, t.unknown_of_node, triplets);
+  for (const Tether& h : t.tethers)
+    add_square(&h.node, &one, 1, (h.normal_stiffness + 2.0 * h.tangential_stiffness) / 3.0, t.unknown_of_node, triplets);
+  // A breath of stiffness on every node keeps the factor definite where an element has none across itself.
+  for (size_t i = 0; i < t.unknowns; ++i) {
+    const auto k = static_cast<int>(i);
+    triplets.emplace_back(k, k, 1e-6);
+  }
+  const auto size = static_cast<Eigen::Index>(t.unknowns);
+  Eigen::SparseMatrix<double> matrix(size, size);
+  matrix.setFromTriplets(triplets.begin(), triplets.end());
+  return matrix;
+}
+
+}  // namespace fascia::sim
