@@ -138,12 +138,29 @@ struct BulletFace::World {
     }
   }
 
+  /// A link's pull is l (l^2 - r^2) / (l^2 + r^2) times its stiffness, a spring's only while l is near its rest length
+  /// r: what is missing to l - r comes as a force.
+  void add_link_corrections() {
+    for (const Spring& spring : model.springs()) {
+      if (spring.one_sided || spring.stiffness == 0.0) continue;
+      const Vec3 along = state[spring.nodes[1]] - state[spring.nodes[0]];
+      const double length = along.norm(), rest = spring.length;
+      if (length < 1e-9) continue;
+      const double squares = length * length + rest * rest;
+      const double missing = length - rest - length * (length * length - rest * rest) / squares;
+      const Vec3 pull = (spring.stiffness * missing / length) * along;
+      forces[spring.nodes[0]] -= pull;
+      forces[spring.nodes[1]] += pull;
+    }
+  }
+
   void substep(const Drive& drive) {
     const double s = options.length_scale;
     model.place({activations, drive.jaw, drive.acceleration}, frame);
     joint->setFrames(to_bullet(jaw_transform(model.jaw(), clamped(drive.jaw)), s) * condyles, condyles);
     carry_nodes();
     model.energy_beside_links(frame, state.data(), forces.data());
+    add_link_corrections();
     for (const uint32_t i : model.unknowns())
       tissue->m_nodes[static_cast<int>(i)].m_f += to_bullet(-forces[i], s);
     const auto h = static_cast<btScalar>(options.substep);
