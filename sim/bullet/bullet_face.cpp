@@ -99,6 +99,8 @@ struct BulletFace::World {
       material->m_kLST = static_cast<btScalar>(stiff / (1.0 + stiff));
       tissue->appendLink(static_cast<int>(spring.nodes[0]), static_cast<int>(spring.nodes[1]), material);
     }
+    tissue->updateConstants();  // now, at rest: Bullet would take its rest lengths from the first pose it steps
+    tissue->m_bUpdateRtCst = false;
     tissue->m_cfg.piterations = 1;
     tissue->m_cfg.viterations = 0;
     tissue->m_cfg.citerations = 0;
