@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <set>
 #include <sstream>
@@ -15,6 +16,7 @@
 #include "builder/spatial/surface_query.h"
 #include "geometry/connectivity.h"
 #include "geometry/mesh.h"
+#include "tools/anatomy/skull/skull.h"
 
 namespace fascia {
 namespace {
@@ -211,13 +213,23 @@ TEST(Skull, TeethStandInTheirJaws) {
 
 TEST(Skull, OrbitsAndNasalCavityAreDeep) {
   const spatial::SurfaceQuery cranium(skull().at("cranium"));
-  const auto orbit = cranium.first_hit({31, 36, 150}, {-0.25, 0, -1}, 300);
+  const auto orbit = cranium.first_hit({45, 37, 150}, {-0.2, -0.03, -1}, 300);
   ASSERT_TRUE(orbit);
   // The orbital rims lie at about z = 90.
   EXPECT_LT(orbit->position.z(), 62);
   const auto nose = cranium.first_hit({4, 2, 150}, {0, 0, -1}, 300);
   ASSERT_TRUE(nose);
   EXPECT_LT(nose->position.z(), 70);
+}
+
+TEST(Skull, IsMadeFromItsFiguresByteForByte) {
+  const std::string made = testing::TempDir() + "generic_skull.obj";
+  skull_maker::write_obj(skull_maker::make_skull(skull_maker::read_figures(FASCIA_ANATOMY_FIGURES)), made);
+  const auto bytes = [](const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(file), {});
+  };
+  EXPECT_TRUE(bytes(made) == bytes(FASCIA_ANATOMY_DATA "/skull.obj"));
 }
 
 }  // namespace

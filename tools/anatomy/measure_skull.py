@@ -243,7 +243,6 @@ def in_vault(p):
 def measure_cranium(folder, out):
     grid, solid, surface = cranium_solid(folder)
     distance = symmetric(grid, grid.signed_distance(solid, 0.9))
-    np.savez_compressed("/work/scratch/skull/cranium_distance.npz", d=distance.astype(np.float32)) if os.environ.get("KEEP") else None
     planes = [(0, 0.0, 3.0)] + [(1, float(y), 3.0) for y in range(-51, 64, 3)]
     planes += [(1, float(y), 7.0) for y in range(69, 137, 7)]
     planes += [(0, float(x), 3.0) for x in range(3, 75, 4)]

@@ -85,7 +85,8 @@ def landmark_pairs(folder):
         yield name, source, np.array(mark["bone"])
 
 
-DEVIATION = {"glabella": 0.5, "nasion": 0.8, "mid_nasal": 0.8, "rhinion": 0.5}
+DEVIATION = {"glabella": 0.5, "nasion": 0.8, "mid_nasal": 0.8, "rhinion": 0.3,
+             "mid_infraorbital": 0.4}
 
 
 def vault_points(sections):

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int around = 10;        // vertices of a ring
 constexpr double contact = 0.06;  // mm left free towards each neighbour
-constexpr double depth = 12.0;    // mm from the tip to the end of the stub
+constexpr double depth = 15.0;    // mm from the tip to the end of the stub
 
 /// How a tooth ends: height of the rim above and of the middle below the first section's level.
 struct Crown {
@@ -134,11 +134,11 @@ TriangleMesh tooth_mesh(const Tooth& tooth, const splines::Warp& to_generic) {
     loft.cap(previous, section_at(tooth, rim).centre - loft.crown.fossa * tooth.axis, true);
     ring(rim, 0.80, loft.crown.cusp, 0.0);
     ring(2.0, 1.0, 0.5 * loft.crown.cusp, 0.0);
-    for (const double level : {3.2, 5.2, 8.0, depth}) ring(level, 1.0, 0, 0);
+    for (const double level : {3.2, 5.2, 8.5, depth}) ring(level, 1.0, 0, 0);
   } else {
     ring(0.35, 0.72, 0, 0.0);
     loft.cap(previous, section_at(tooth, 0.4).centre + 0.35 * tooth.axis, true);
-    for (const double level : {0.8, 2.0, 4.2, 7.2, depth}) ring(level, 1.0, 0, 0);
+    for (const double level : {0.8, 2.0, 4.2, 8.5, depth}) ring(level, 1.0, 0, 0);
   }
   loft.cap(previous, section_at(tooth, depth).centre - 0.8 * tooth.axis, false);
   if (volume(loft.mesh) < 0) {
