@@ -12,6 +12,7 @@ if(FASCIA_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
 endif()
 
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(nlohmann_json 3.11 REQUIRED)
 
 add_library(fascia_options INTERFACE)
 target_include_directories(fascia_options INTERFACE ${PROJECT_SOURCE_DIR})
@@ -42,9 +43,10 @@ function(fascia_room name)
   add_library(fascia::${name} ALIAS fascia_${name})
 endfunction()
 
-# fascia_test(NAME SOURCES file... LINKS target...): one GoogleTest program of tests/<room>/.
+# fascia_test(NAME [WHOLE] SOURCES file... LINKS target...): one GoogleTest program of tests/<room>/. WHOLE runs it
+# as one test, for programs whose cases share a costly set-up.
 function(fascia_test name)
-  cmake_parse_arguments(TEST "" "" "SOURCES;LINKS" ${ARGN})
+  cmake_parse_arguments(TEST "WHOLE" "" "SOURCES;LINKS" ${ARGN})
   add_executable(${name} ${TEST_SOURCES})
   target_link_libraries(${name} PRIVATE fascia::options ${TEST_LINKS} GTest::gtest_main)
   target_compile_definitions(${name} PRIVATE
@@ -52,5 +54,10 @@ function(fascia_test name)
     FASCIA_SNAPSHOTS="${PROJECT_SOURCE_DIR}/tests/snapshots"
     FASCIA_MEASURED_DATA="${PROJECT_SOURCE_DIR}/../shared"
     FASCIA_TOOL="${CMAKE_RUNTIME_OUTPUT_DIRECTORY}/fascia")
+  if(TEST_WHOLE)
+    add_test(NAME ${name} COMMAND ${name})
+    set_tests_properties(${name} PROPERTIES TIMEOUT 600)
+    return()
+  endif()
   gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300)
 endfunction()

@@ -1,0 +1,116 @@
+#include "builder/rigging/build_rig.h"
+
+#include <chrono>
+#include <cmath>
+
+#include "builder/landmarks/complete.h"
+#include "builder/muscles/muscles.h"
+#include "builder/rigging/stages.h"
+#include "builder/skull/skull.h"
+#include "builder/smas/smas.h"
+#include "builder/spatial/surface_query.h"
+#include "builder/tissue/build.h"
+#include "geometry/error.h"
+
+namespace fascia::rigging {
+
+namespace {
+
+/// Runs the stages one after the other and takes their times.
+class Stages {
+ public:
+  Stages(const BuildOptions& options, BuildReport& report) : options_(options), report_(report) {}
+
+  template <class Stage>
+  auto run(const std::string& name, Stage stage) {
+    if (options_.progress) options_.progress(name);
+    const auto started = std::chrono::steady_clock::now();
+    auto result = stage();
+    report_.stages.push_back({name, std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count()});
+    return result;
+  }
+
+ private:
+  const BuildOptions& options_;
+  BuildReport& report_;
+};
+
+std::map<std::string, Vec3> reference_points(const anatomy::GenericAnatomy& anatomy) {
+  std::map<std::string, Vec3> points;
+  for (const anatomy::Landmark& landmark : anatomy.landmarks)
+    if (landmark.skin) points[landmark.name] = *landmark.skin;
+  return points;
+}
+
+std::map<std::string, Vec3> places(const std::map<std::string, landmarks::SkinLandmark>& all) {
+  std::map<std::string, Vec3> points;
+  for (const auto& [name, landmark] : all) points[name] = landmark.position;
+  return points;
+}
+
+void report_landmarks(const std::map<std::string, landmarks::SkinLandmark>& all, const anatomy::GenericAnatomy& anatomy,
+                      BuildReport& report) {
+  for (const auto& [name, landmark] : all) {
+    ++(landmark.is_given ? report.landmarks_given : report.landmarks_found);
+    const anatomy::Landmark* known = anatomy.landmark(name);
+    if (known && known->required && landmark.confidence < 0.5) report.low_confidence.push_back(name);
+  }
+  for (const std::string& name : report.low_confidence)
+    report.warnings.push_back("landmark '" + name + "' was carried over from the generic head with low confidence; give it in --landmarks");
+}
+
+}  // namespace
+
+BuildResult build_rig(const formats::Scene& scene, const formats::LandmarkFile& given,
+                      const anatomy::GenericAnatomy& anatomy, const BuildOptions& options) {
+  BuildResult result;
+  BuildReport& report = result.report;
+  if (given.points.empty())
+    throw Error("'" + scene.path.string() +
+                "': landmarks are not found on a mesh yet; give --landmarks FILE with points on the skin "
+                "('docs/landmarks.md' names them)");
+  Stages stages(options, report);
+  const prepare::PreparedHead head = stages.run(
+      "prepare", [&] { return prepare::prepare(scene, given, reference_points(anatomy), options.prepare); });
+  report.units = head.units;
+  report.input_to_metres = head.input_to_metres;
+  report.warnings = head.warnings;
+
+  const auto all_landmarks = stages.run("landmarks", [&] {
+    std::vector<std::string> unknown;
+    auto all = landmarks::complete(head.landmarks, anatomy, spatial::SurfaceQuery(head.skin), &unknown);
+    for (const std::string& name : unknown) report.warnings.push_back("landmark '" + name + "' is not known and was left out");
+    return all;
+  });
+  report_landmarks(all_landmarks, anatomy, report);
+  const std::map<std::string, Vec3> points = places(all_landmarks);
+
+  const skull::FitResult skull = stages.run("skull", [&] { return fit_skull(anatomy, head, all_landmarks, options.tissue_scale); });
+  report.landmark_rms_mm = 1e3 * skull.landmark_rms;
+  report.landmark_max_mm = 1e3 * skull.landmark_max;
+  report.bone_outside_skin = skull.bone_outside_skin;
+  report.warnings.insert(report.warnings.end(), skull.warnings.begin(), skull.warnings.end());
+
+  const smas::Result smas = stages.run("smas", [&] {
+    smas::Inputs inputs;
+    inputs.skin = &head.skin;
+    inputs.cranium = &skull.cranium;
+    inputs.mandible = &skull.mandible;
+    inputs.landmarks = points;
+    return smas::build(inputs);
+  });
+  report.smas_vertices = smas.mesh.vertex_count();
+  report.smas_triangles = smas.mesh.triangle_count();
+  report.smas_outside_layers = smas.outside_layers;
+  report.smas_min_angle_deg = smas.quality.min_angle;
+
+  result.rig.muscles = stages.run("muscles", [&] { return build_muscles(anatomy, head, skull, smas, points, report); });
+  result.rig.skull = rig_skull(skull, head, all_landmarks);
+  result.rig.smas = rig_smas(smas, skull, anatomy);
+  result.rig.actuation = rig_actuation(anatomy, result.rig.muscles);
+  result.rig.input_to_metres = head.input_to_metres.cast<float>();
+  result.rig.tissue = stages.run("tissue", [&] { return build_tissue(scene, head, skull, smas, points, result.rig, options, report); });
+  return result;
+}
+
+}  // namespace fascia::rigging

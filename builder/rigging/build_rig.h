@@ -1,0 +1,66 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "anatomy/anatomy.h"
+#include "builder/prepare/prepare.h"
+#include "formats/landmark_file.h"
+#include "formats/scene.h"
+#include "rig/model/rig.h"
+
+/// The whole way from a head mesh to its rig, stage after stage.
+namespace fascia::rigging {
+
+struct BuildOptions {
+  prepare::PrepareOptions prepare;
+  double tissue_scale = 1.0;      ///< scales every tissue depth: children, stylised heads
+  std::string detail = "medium";  ///< finest level of the lattice: low, medium or high
+  /// Called as each stage begins, with its name; may be empty.
+  std::function<void(const std::string& stage)> progress;
+};
+
+struct StageTime {
+  std::string name;
+  double seconds = 0.0;
+};
+
+/// Figures of a build, as `fascia build --json` prints them. Lengths in millimetres.
+struct BuildReport {
+  std::string units;
+  Mat4 input_to_metres = Mat4::Identity();
+  std::vector<StageTime> stages;
+  int landmarks_given = 0, landmarks_found = 0;
+  std::vector<std::string> low_confidence;
+  double landmark_rms_mm = 0.0, landmark_max_mm = 0.0;
+  int bone_outside_skin = 0;
+  int smas_vertices = 0, smas_triangles = 0, smas_outside_layers = 0;
+  double smas_min_angle_deg = 0.0;
+  struct MuscleFigures {
+    std::string name, whole;  ///< the muscle, and what it is a part of (its own name when it has no parts)
+    int fibres = 0;
+    double length_mm = 0.0;
+  };
+  std::vector<MuscleFigures> muscles;
+  struct LevelFigures {
+    std::string name;
+    int nodes = 0, springs = 0;
+  };
+  std::vector<LevelFigures> tissue;
+  std::vector<std::string> warnings;
+};
+
+struct BuildResult {
+  rig::Rig rig;
+  BuildReport report;
+};
+
+/// Builds the rig of `scene`.
+///
+/// `landmarks` are the given ones (see formats/landmark_file.h); all that `anatomy` marks as required must be
+/// among them. Throws fascia::Error naming the stage's part at fault and the remedy.
+BuildResult build_rig(const formats::Scene& scene, const formats::LandmarkFile& landmarks,
+                      const anatomy::GenericAnatomy& anatomy, const BuildOptions& options = {});
+
+}  // namespace fascia::rigging

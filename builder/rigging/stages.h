@@ -1,0 +1,46 @@
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "anatomy/anatomy.h"
+#include "builder/landmarks/complete.h"
+#include "builder/prepare/prepare.h"
+#include "builder/rigging/build_rig.h"
+#include "builder/skull/skull.h"
+#include "builder/smas/smas.h"
+#include "rig/model/rig.h"
+
+/// Between the stages: each takes what the stages before made in their own terms and hands it on in the next
+/// one's, or in the rig's.
+namespace fascia::rigging {
+
+using SkinLandmarks = std::map<std::string, landmarks::SkinLandmark>;
+using Points = std::map<std::string, Vec3>;
+
+/// Fits the generic skull under the head's skin; teeth the head has serve as evidence.
+skull::FitResult fit_skull(const anatomy::GenericAnatomy& anatomy, const prepare::PreparedHead& head,
+                           const SkinLandmarks& landmarks, double tissue_scale);
+
+/// Lays all muscles and adds their figures and warnings to `report`.
+std::vector<rig::Muscle> build_muscles(const anatomy::GenericAnatomy& anatomy, const prepare::PreparedHead& head,
+                                       const skull::FitResult& skull, const smas::Result& smas, const Points& landmarks,
+                                       BuildReport& report);
+
+rig::Skull rig_skull(const skull::FitResult& skull, const prepare::PreparedHead& head, const SkinLandmarks& landmarks);
+
+/// The SMAS with the attachment zones and ligaments of the anatomy carried over to this head.
+rig::Smas rig_smas(const smas::Result& smas, const skull::FitResult& skull, const anatomy::GenericAnatomy& anatomy);
+
+/// Channels and vocabularies; wholes such as orbicularis_oculi_left become the set `whole`.
+rig::Actuation rig_actuation(const anatomy::GenericAnatomy& anatomy, const std::vector<rig::Muscle>& muscles);
+
+/// Makes the lattice levels up to `options.detail` and binds every primitive of the scene.
+rig::Tissue build_tissue(const formats::Scene& scene, const prepare::PreparedHead& head, const skull::FitResult& skull,
+                         const smas::Result& smas, const Points& landmarks, const rig::Rig& rig,
+                         const BuildOptions& options, BuildReport& report);
+
+/// `mesh` in the rig's single precision.
+rig::Surface rig_surface(const TriangleMesh& mesh);
+
+}  // namespace fascia::rigging
