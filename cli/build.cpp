@@ -1,0 +1,131 @@
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "builder/rigging/build_rig.h"
+#include "builder/rigging/gltf_source.h"
+#include "cli/common.h"
+#include "cli/rig_build.h"
+#include "formats/scene.h"
+#include "geometry/error.h"
+#include "rig/write/write.h"
+
+namespace fascia::cli {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string fixed(double value, int digits) {
+  char text[48];
+  std::snprintf(text, sizeof text, "%.*f", digits, value);
+  return text;
+}
+
+/// Every part as built, and before its parts a muscle that has several, summed up.
+Json muscles_json(const rigging::BuildReport& report) {
+  Json list = Json::array();
+  std::string last;
+  for (size_t i = 0; i < report.muscles.size(); ++i) {
+    const auto& muscle = report.muscles[i];
+    if (muscle.whole != muscle.name && muscle.whole != last) {
+      Json whole = {{"name", muscle.whole}, {"fibres", 0}, {"length_mm", 0.0}, {"parts", Json::array()}};
+      int fibres = 0;
+      double length = 0.0;
+      for (const auto& part : report.muscles)
+        if (part.whole == muscle.whole) {
+          whole["parts"].push_back(part.name);
+          fibres += part.fibres;
+          length += part.fibres * part.length_mm;
+        }
+      whole["fibres"] = fibres;
+      whole["length_mm"] = fibres ? length / fibres : 0.0;
+      list.push_back(whole);
+    }
+    last = muscle.whole;
+    list.push_back({{"name", muscle.name}, {"fibres", muscle.fibres}, {"length_mm", muscle.length_mm}});
+  }
+  return list;
+}
+
+Json report_json(const rigging::BuildReport& report) {
+  Json json;
+  Json matrix = Json::array();
+  for (int row = 0; row < 4; ++row) {
+    Json line = Json::array();
+    for (int column = 0; column < 4; ++column) line.push_back(report.input_to_metres(row, column));
+    matrix.push_back(line);
+  }
+  json["input"] = {{"units", report.units}, {"input_to_metres", matrix}};
+  json["stages"] = Json::array();
+  for (const rigging::StageTime& stage : report.stages)
+    json["stages"].push_back({{"name", stage.name}, {"seconds", stage.seconds}});
+  json["landmarks"] = {{"found", report.landmarks_found}, {"given", report.landmarks_given}, {"low_confidence", report.low_confidence}};
+  json["skull"] = {{"landmark_rms_mm", report.landmark_rms_mm},
+                   {"landmark_max_mm", report.landmark_max_mm},
+                   {"bone_outside_skin", report.bone_outside_skin}};
+  json["smas"] = {{"vertices", report.smas_vertices},
+                  {"triangles", report.smas_triangles},
+                  {"min_angle_deg", report.smas_min_angle_deg},
+                  {"outside_layers", report.smas_outside_layers}};
+  json["muscles"] = muscles_json(report);
+  json["tissue"] = Json::object();
+  for (const auto& level : report.tissue) json["tissue"][level.name] = {{"nodes", level.nodes}, {"springs", level.springs}};
+  json["warnings"] = report.warnings;
+  return json;
+}
+
+void say_report(const Common& common, const rigging::BuildReport& report, const std::filesystem::path& output) {
+  for (const std::string& warning : report.warnings) common.warn(warning);
+  double total = 0.0;
+  std::string stages;
+  for (const rigging::StageTime& stage : report.stages) {
+    total += stage.seconds;
+    stages += (stages.empty() ? "" : ", ") + stage.name + " " + fixed(stage.seconds, 2);
+  }
+  size_t fibres = 0;
+  for (const auto& muscle : report.muscles) fibres += static_cast<size_t>(muscle.fibres);
+  common.say("units " + report.units + "; " + std::to_string(report.landmarks_given) + " landmarks given; skull fitted to " +
+             fixed(report.landmark_rms_mm, 1) + " mm; SMAS of " + std::to_string(report.smas_triangles) + " triangles; " +
+             std::to_string(report.muscles.size()) + " muscles, " + std::to_string(fibres) + " fibres");
+  common.say("built in " + fixed(total, 2) + " s (" + stages + ")");
+  common.say("wrote " + output.string());
+}
+
+}  // namespace
+
+rigging::BuildReport build_file(const Common& common, const BuildRequest& request) {
+  check_output(request.output);
+  if (request.output.extension() != ".glb")
+    throw Error("'" + request.output.string() + "': a rig is a .glb file; give -o NAME.glb");
+  const anatomy::GenericAnatomy anatomy = anatomy::load_generic();
+  const formats::Scene scene = formats::read(request.head);
+  formats::LandmarkFile landmarks;
+  if (!request.landmarks.empty()) landmarks = formats::read_landmarks(request.landmarks);
+  rigging::BuildOptions options = request.options;
+  options.progress = [&](const std::string& stage) { common.progress(stage); };
+  const rigging::BuildResult result = rigging::build_rig(scene, landmarks, anatomy, options);
+  const std::vector<uint8_t> bytes =
+      rig::write(rigging::gltf_source(scene, result.report.input_to_metres), result.rig);
+  formats::write_bytes(request.output, bytes.data(), bytes.size());
+  return result.report;
+}
+
+void add_build(CLI::App& app, Common& common) {
+  auto request = std::make_shared<BuildRequest>();
+  CLI::App* command = app.add_subcommand("build", "Build the rig of a head: skull, SMAS, muscles, tissue");
+  command->add_option("HEAD", request->head, "Head mesh: GLB, glTF, OBJ, PLY or STL")->required();
+  command->add_option("-o,--output", request->output, "Rig to write (.glb)")->required();
+  command->add_option("--landmarks", request->landmarks, "Landmarks on the skin: .mrk.json or JSON");
+  command->add_option("--units", request->options.prepare.units, "auto, m, cm, mm, or metres a unit");
+  command->add_option("--up", request->options.prepare.up, "Up axis of the file")->check(CLI::IsMember({"auto", "y", "z"}));
+  command->add_option("--skin", request->options.prepare.skin, "Name of the mesh that is the skin");
+  command->add_option("--tissue-scale", request->options.tissue_scale, "Scales every tissue depth")->check(CLI::Range(0.2, 3.0));
+  command->add_option("--detail", request->options.detail, "Finest lattice")->check(CLI::IsMember({"low", "medium", "high"}));
+  command->callback([request, &common] {
+    const rigging::BuildReport report = build_file(common, *request);
+    if (common.json) common.report(report_json(report));
+    else say_report(common, report, request->output);
+  });
+}
+
+}  // namespace fascia::cli

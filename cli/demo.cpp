@@ -1,0 +1,152 @@
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cmath>
+#include <memory>
+
+#include "anatomy/anatomy.h"
+#include "cli/common.h"
+#include "cli/demo_curves.h"
+#include "cli/picture.h"
+#include "cli/play_file.h"
+#include "cli/rig_build.h"
+#include "formats/scene.h"
+#include "geometry/error.h"
+#include "view/image.h"
+#include "view/video.h"
+
+namespace fascia::cli {
+
+namespace {
+
+/// Prints how long each part of the demonstration took.
+class Clock {
+ public:
+  explicit Clock(const Common& common) : common_(common) {}
+  void say(const std::string& what) {
+    const auto now = std::chrono::steady_clock::now();
+    char line[160];
+    std::snprintf(line, sizeof line, "%6.2f s  %s", std::chrono::duration<double>(now - last_).count(), what.c_str());
+    common_.say(line);
+    last_ = std::chrono::steady_clock::now();
+  }
+
+ private:
+  const Common& common_;
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+struct SheetPose {
+  const char* caption;
+  const char* view;
+  const char* layers;
+  std::vector<std::pair<const char*, double>> values;
+};
+
+std::vector<SheetPose> sheet_poses() {
+  return {
+      {"rest", "front", "skin,eyes", {}},
+      {"rest", "three-quarter", "skin,eyes", {}},
+      {"skull under the skin", "front", "skin,skull,eyes", {}},
+      {"skull", "three-quarter", "skull", {}},
+      {"SMAS", "front", "smas,eyes", {}},
+      {"muscles", "front", "skull,muscles", {}},
+      {"muscles", "three-quarter", "skull,muscles", {}},
+      {"muscles under the skin", "side", "skin,muscles,skull", {}},
+      {"smile", "front", "skin,eyes", {{"arkit:mouthSmileLeft", 1}, {"arkit:mouthSmileRight", 1}, {"arkit:cheekSquintLeft", 0.6}, {"arkit:cheekSquintRight", 0.6}}},
+      {"smile", "three-quarter", "skin,eyes", {{"arkit:mouthSmileLeft", 1}, {"arkit:mouthSmileRight", 1}, {"arkit:cheekSquintLeft", 0.6}, {"arkit:cheekSquintRight", 0.6}}},
+      {"frown", "front", "skin,eyes", {{"arkit:mouthFrownLeft", 1}, {"arkit:mouthFrownRight", 1}, {"arkit:browDownLeft", 1}, {"arkit:browDownRight", 1}}},
+      {"surprise", "front", "skin,eyes", {{"arkit:browInnerUp", 1}, {"arkit:browOuterUpLeft", 1}, {"arkit:browOuterUpRight", 1}, {"arkit:eyeWideLeft", 1}, {"arkit:eyeWideRight", 1}, {"arkit:jawOpen", 0.5}}},
+      {"jaw open", "front", "skin,eyes", {{"jaw_open", 1}}},
+      {"jaw open", "side", "skin,skull", {{"jaw_open", 1}}},
+      {"blink", "front", "skin,eyes", {{"arkit:eyeBlinkLeft", 1}, {"arkit:eyeBlinkRight", 1}}},
+      {"pucker", "front", "skin,eyes", {{"arkit:mouthPucker", 1}}},
+      {"sneer", "front", "skin,eyes", {{"arkit:noseSneerLeft", 1}, {"arkit:noseSneerRight", 1}}},
+      {"left smile only", "front", "skin,eyes", {{"zygomaticus_major_left", 1}}},
+      {"brow raise", "front", "skin,eyes", {{"arkit:browInnerUp", 1}, {"arkit:browOuterUpLeft", 1}, {"arkit:browOuterUpRight", 1}}},
+      {"lower lip down", "front", "skin,eyes", {{"arkit:mouthLowerDownLeft", 1}, {"arkit:mouthLowerDownRight", 1}}},
+  };
+}
+
+view::Image contact_sheet(const std::filesystem::path& rig_path, const rig::Rig& rig) {
+  Face face(rig_path, {});
+  const view::Renderer renderer(440, 440);
+  std::vector<view::Tile> tiles;
+  for (const SheetPose& pose : sheet_poses()) {
+    face.clear();
+    face.reset();
+    for (const auto& [name, value] : pose.values) face.set(name, value);
+    face.pose();
+    tiles.push_back({renderer.draw(draw_face(face, rig, layers_from(pose.layers)), view::named_camera(pose.view, face_box(rig))), pose.caption});
+  }
+  return view::contact_sheet(tiles, 4);
+}
+
+void film(const std::filesystem::path& rig_path, const rig::Rig& rig, const std::filesystem::path& curves_path,
+          const std::filesystem::path& output) {
+  const Curves curves(curves_path);
+  Face face(rig_path, {});
+  const int size = 640, frames_per_second = 30;
+  const view::Renderer renderer(size, size);
+  view::Video video(output, size, size, frames_per_second);
+  const std::set<std::string> layers = layers_from("skin,eyes");
+  const int count = static_cast<int>(curves.duration() * frames_per_second) + 1;
+  for (int f = 0; f < count; ++f) {
+    const double time = static_cast<double>(f) / frames_per_second;
+    for (int half = 0; half < 2; ++half) {
+      curves.apply(time + 0.5 * half / frames_per_second, face);
+      face.step(0.5 / frames_per_second);
+    }
+    view::Camera camera = view::named_camera("front", face_box(rig));
+    camera.yaw = 28.0 * std::sin(0.45 * time);
+    video.add(renderer.draw(draw_face(face, rig, layers), camera));
+  }
+  video.finish();
+}
+
+void run(const Common& common, const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder);
+  Clock clock(common);
+  const std::filesystem::path head = folder / "head.obj", landmarks = folder / "head_landmarks.json", rig_path = folder / "rig.glb",
+                              curves = folder / "curves.csv";
+  write_embedded_head(head, landmarks);
+  BuildRequest request;
+  request.head = head;
+  request.landmarks = landmarks;
+  request.output = rig_path;
+  const rigging::BuildReport report = build_file(common, request);
+  for (const std::string& warning : report.warnings) common.warn(warning);
+  for (const auto& stage : report.stages) {
+    char line[96];
+    std::snprintf(line, sizeof line, "  %6.3f s  %s", stage.seconds, stage.name.c_str());
+    common.say(line);
+  }
+  clock.say("built " + rig_path.string() + ": " + std::to_string(report.muscles.size()) + " muscles, skull, SMAS, tissue");
+  write_demo_curves(curves);
+  PlayRequest play;
+  play.rig = rig_path;
+  play.curves = curves;
+  play.output = folder / "play.glb";
+  const PlayFigures played = play_file(common, play);
+  clock.say("played ten seconds into " + play.output.string() + " (" + std::to_string(played.milliseconds_a_frame).substr(0, 5) + " ms a frame)");
+  bake_file(common, rig_path, "arkit", folder / "arkit.glb");
+  clock.say("baked the ARKit shapes into " + (folder / "arkit.glb").string());
+  const rig::RigFile file = rig::read(formats::read_bytes(rig_path), rig_path.string());
+  view::write_png(folder / "contact_sheet.png", contact_sheet(rig_path, file.rig));
+  clock.say("drew " + (folder / "contact_sheet.png").string());
+  film(rig_path, file.rig, curves, folder / "demo.mp4");
+  clock.say("filmed " + (folder / "demo.mp4").string());
+  common.say("look at " + (folder / "contact_sheet.png").string() + " and " + (folder / "demo.mp4").string() + " first; open " +
+             (folder / "play.glb").string() + " in any glTF viewer");
+  common.report({{"out", folder.string()}, {"muscles", report.muscles.size()}, {"milliseconds_a_frame", played.milliseconds_a_frame}});
+}
+
+}  // namespace
+
+void add_demo(CLI::App& app, Common& common) {
+  auto folder = std::make_shared<std::filesystem::path>("out");
+  CLI::App* command = app.add_subcommand("demo", "The embedded head, end to end");
+  command->add_option("--out", *folder, "Folder for the results");
+  command->callback([folder, &common] { run(common, *folder); });
+}
+
+}  // namespace fascia::cli

@@ -1,0 +1,121 @@
+#include "cli/demo_curves.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "anatomy/anatomy.h"
+#include "formats/scene.h"
+#include "formats/write.h"
+#include "geometry/error.h"
+
+namespace fascia::cli {
+
+namespace {
+
+/// 0 before `begin`, 1 from `begin + rise` to `end - fall`, 0 after `end`; smooth in between.
+double plateau(double time, double begin, double rise, double end, double fall) {
+  const auto smooth = [](double x) {
+    const double t = std::clamp(x, 0.0, 1.0);
+    return t * t * (3.0 - 2.0 * t);
+  };
+  return smooth((time - begin) / rise) * (1.0 - smooth((time - (end - fall)) / fall));
+}
+
+double blink(double time, double at) { return plateau(time, at, 0.07, at + 0.22, 0.12); }
+
+/// Syllables: jaw and lips at about five a second, never the same twice.
+double speech(double time, double phase) {
+  const double envelope = plateau(time, 7.0, 0.3, 9.6, 0.3);
+  return envelope * std::max(0.0, 0.55 + 0.45 * std::sin(2 * M_PI * 4.3 * time + phase) + 0.2 * std::sin(2 * M_PI * 2.7 * time + 1.7 * phase)) * 0.7;
+}
+
+}  // namespace
+
+void write_embedded_head(const std::filesystem::path& head, const std::filesystem::path& landmarks) {
+  const anatomy::GenericAnatomy anatomy = anatomy::load_generic();
+  // The head as it is in the data, quads and texture coordinates too, and the skull's teeth with it.
+  std::string text(anatomy::embedded_file("head.obj"));
+  size_t base = 1;
+  for (size_t at = 0; at != std::string::npos; at = text.find('\n', at)) {
+    if (at > 0) ++at;
+    if (text.compare(at, 2, "v ") == 0) ++base;
+    if (at >= text.size()) break;
+  }
+  for (const char* name : {"teeth_upper", "teeth_lower"}) {
+    const anatomy::MeshObject* teeth = anatomy.skull_object(name);
+    if (!teeth) continue;
+    text += std::string("o ") + name + "\n";
+    for (const Vec3& p : teeth->mesh.vertices) {
+      char line[96];
+      std::snprintf(line, sizeof line, "v %.4f %.4f %.4f\n", 1e3 * p[0], 1e3 * p[1], 1e3 * p[2]);
+      text += line;
+    }
+    for (const Triangle& t : teeth->mesh.triangles) {
+      text += "f";
+      for (int corner : t) text += " " + std::to_string(base + static_cast<size_t>(corner));
+      text += "\n";
+    }
+    base += teeth->mesh.vertices.size();
+  }
+  formats::write_text(head, text);
+  nlohmann::ordered_json json = {{"units", "mm"}, {"landmarks", nlohmann::ordered_json::object()}};
+  for (const anatomy::Landmark& landmark : anatomy.landmarks)
+    if (landmark.skin) {
+      const Vec3 mm = 1e3 * *landmark.skin;
+      json["landmarks"][landmark.name] = {mm[0], mm[1], mm[2]};
+    }
+  formats::write_text(landmarks, json.dump(1) + "\n");
+}
+
+void write_demo_curves(const std::filesystem::path& path) {
+  struct Column {
+    std::string name;
+    double (*value)(double);
+  };
+  const auto smile = [](double t) { return plateau(t, 0.5, 0.5, 2.6, 0.6); };
+  const auto cheeks = [](double t) { return 0.7 * plateau(t, 0.6, 0.5, 2.5, 0.6); };
+  const auto frown = [](double t) { return plateau(t, 2.8, 0.5, 4.6, 0.5); };
+  const auto surprise = [](double t) { return plateau(t, 4.8, 0.25, 6.7, 0.6); };
+  const auto lids = [](double t) { return std::max({blink(t, 0.15), blink(t, 2.65), blink(t, 4.55), blink(t, 6.85), blink(t, 8.4)}); };
+  const std::vector<Column> columns = {
+      {"arkit:mouthSmileLeft", smile},
+      {"arkit:mouthSmileRight", smile},
+      {"arkit:cheekSquintLeft", cheeks},
+      {"arkit:cheekSquintRight", cheeks},
+      {"arkit:browDownLeft", frown},
+      {"arkit:browDownRight", frown},
+      {"arkit:mouthFrownLeft", frown},
+      {"arkit:mouthFrownRight", frown},
+      {"arkit:browInnerUp", surprise},
+      {"arkit:browOuterUpLeft", surprise},
+      {"arkit:browOuterUpRight", surprise},
+      {"arkit:eyeWideLeft", surprise},
+      {"arkit:eyeWideRight", surprise},
+      {"arkit:eyeBlinkLeft", lids},
+      {"arkit:eyeBlinkRight", lids},
+      {"jaw_open", [](double t) { return 0.55 * plateau(t, 4.85, 0.3, 6.6, 0.6) + 0.35 * speech(t, 0.0); }},
+      {"arkit:mouthFunnel", [](double t) { return 0.6 * speech(t, 2.0); }},
+      {"arkit:mouthPucker", [](double t) { return 0.4 * speech(t, 4.0); }},
+      {"arkit:mouthUpperUpLeft", [](double t) { return 0.4 * speech(t, 1.0); }},
+      {"arkit:mouthUpperUpRight", [](double t) { return 0.4 * speech(t, 1.0); }},
+  };
+  std::string text = "time";
+  for (const Column& column : columns) text += "," + column.name;
+  text += "\n";
+  for (int f = 0; f <= 600; ++f) {
+    const double time = f / 60.0;
+    char number[32];
+    std::snprintf(number, sizeof number, "%.5f", time);
+    text += number;
+    for (const Column& column : columns) {
+      std::snprintf(number, sizeof number, ",%.4f", column.value(time));
+      text += number;
+    }
+    text += "\n";
+  }
+  formats::write_text(path, text);
+}
+
+}  // namespace fascia::cli

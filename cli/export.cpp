@@ -1,0 +1,128 @@
+#include <CLI/CLI.hpp>
+#include <Eigen/LU>
+#include <memory>
+
+#include "cli/common.h"
+#include "cli/picture.h"
+#include "cli/posing.h"
+#include "formats/scene.h"
+#include "formats/write.h"
+#include "geometry/error.h"
+#include "rig/read/read.h"
+
+namespace fascia::cli {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Request {
+  std::filesystem::path rig, output;
+  std::string part;
+};
+
+/// Brings the rig's metres back to the input's axes and units.
+class ToInput {
+ public:
+  explicit ToInput(const rig::Rig& rig) : map_(rig.input_to_metres.cast<double>().inverse()) {}
+  Vec3 operator()(const rig::Vec3f& p) const { return transform_point(map_, p.cast<double>()); }
+  double scale() const { return map_.topLeftCorner<3, 1>().norm(); }
+
+ private:
+  Mat4 map_;
+};
+
+formats::NamedSurface surface_of(const std::string& name, const rig::Surface& surface, const ToInput& to_input) {
+  formats::NamedSurface out{name, {}, Vec3(0.85, 0.82, 0.72)};
+  for (const auto& p : surface.positions) out.mesh.vertices.push_back(to_input(p));
+  for (const auto& t : surface.triangles)
+    out.mesh.triangles.push_back({static_cast<int>(t[0]), static_cast<int>(t[1]), static_cast<int>(t[2])});
+  return out;
+}
+
+void add_face_parts(formats::Drawing& drawing, const Request& request, const std::function<bool(const std::string&)>& wanted) {
+  const Face face(request.rig, {FASCIA_SPACE_INPUT, "own", ""});
+  for (size_t m = 0; m < face.meshes().size(); ++m) {
+    if (!wanted(face.meshes()[m].part)) continue;
+    formats::NamedSurface surface{face.meshes()[m].name, {{}, face.meshes()[m].triangles}, Vec3(0.86, 0.69, 0.59)};
+    const auto flat = face.positions(m);
+    for (size_t i = 0; i + 2 < flat.size(); i += 3) surface.mesh.vertices.emplace_back(flat[i], flat[i + 1], flat[i + 2]);
+    drawing.surfaces.push_back(std::move(surface));
+  }
+}
+
+void add_muscles(formats::Drawing& drawing, const rig::Rig& rig, const ToInput& to_input) {
+  for (const rig::Muscle& muscle : rig.muscles) {
+    formats::NamedLines bundle{muscle.name, {}, muscle_colour(muscle.name)};
+    for (size_t f = 0; f + 1 < muscle.fibre_offsets.size(); ++f) {
+      std::vector<Vec3> line;
+      for (uint32_t p = muscle.fibre_offsets[f]; p < muscle.fibre_offsets[f + 1]; ++p) line.push_back(to_input(muscle.points[p]));
+      bundle.lines.push_back(std::move(line));
+    }
+    drawing.lines.push_back(std::move(bundle));
+  }
+}
+
+void write_landmarks(const std::filesystem::path& output, const rig::Rig& rig, const ToInput& to_input) {
+  if (output.extension() != ".json") throw Error("'" + output.string() + "': landmarks are written as .json");
+  const double metres = 1.0 / to_input.scale();
+  Json json;
+  // Only these three have a name in a landmark file; other units stand as the head file's own.
+  for (const auto& [name, value] : {std::pair{"m", 1.0}, {"cm", 0.01}, {"mm", 0.001}})
+    if (std::abs(metres / value - 1.0) < 1e-4) json["units"] = name;
+  const auto triple = [&](const rig::Vec3f& p) {
+    const Vec3 q = to_input(p);
+    return Json::array({q[0], q[1], q[2]});
+  };
+  json["landmarks"] = Json::object();
+  for (const rig::Landmark& landmark : rig.skull.landmarks)
+    json["landmarks"][landmark.name] = {{"skin", triple(landmark.skin)},
+                                        {"bone", triple(landmark.bone)},
+                                        {"depth_mm", 1e3 * landmark.depth},
+                                        {"confidence", landmark.confidence}};
+  formats::write_text(output, json.dump(1) + "\n");
+}
+
+void run(const Common& common, const Request& request) {
+  check_output(request.output);
+  const rig::RigFile file = rig::read(formats::read_bytes(request.rig), request.rig.string());
+  const rig::Rig& rig = file.rig;
+  const ToInput to_input(rig);
+  const bool all = request.part == "all";
+  if (request.part == "landmarks") {
+    write_landmarks(request.output, rig, to_input);
+  } else {
+    formats::Drawing drawing;
+    const auto is = [&](const char* part) { return all || request.part == part; };
+    if (is("skin")) add_face_parts(drawing, request, [](const std::string& part) { return part == "skin"; });
+    if (is("eyes")) add_face_parts(drawing, request, [](const std::string& part) { return part == "eye_left" || part == "eye_right"; });
+    if (is("cranium")) drawing.surfaces.push_back(surface_of("cranium", rig.skull.cranium, to_input));
+    if (is("mandible")) drawing.surfaces.push_back(surface_of("mandible", rig.skull.mandible, to_input));
+    if (is("teeth")) {
+      drawing.surfaces.push_back(surface_of("teeth_upper", rig.skull.teeth_upper, to_input));
+      drawing.surfaces.push_back(surface_of("teeth_lower", rig.skull.teeth_lower, to_input));
+    }
+    if (is("smas")) drawing.surfaces.push_back(surface_of("smas", rig.smas.surface, to_input));
+    if (is("muscles")) add_muscles(drawing, rig, to_input);
+    std::erase_if(drawing.surfaces, [](const auto& surface) { return surface.mesh.empty(); });
+    if (drawing.surfaces.empty() && drawing.lines.empty()) throw Error("'" + request.rig.string() + "' has no " + request.part);
+    formats::write(request.output, drawing);
+  }
+  common.say("wrote " + request.output.string());
+  common.report({{"output", request.output.string()}, {"part", request.part}});
+}
+
+}  // namespace
+
+void add_export(CLI::App& app, Common& common) {
+  auto request = std::make_shared<Request>();
+  CLI::App* command = app.add_subcommand("export", "Write one part of a rig as a mesh of its own");
+  command->add_option("RIG", request->rig, "Rig (.glb)")->required();
+  command->add_option("--part", request->part, "What to write")
+      ->required()
+      ->check(CLI::IsMember({"skin", "cranium", "mandible", "teeth", "eyes", "smas", "muscles", "landmarks", "all"}));
+  command->add_option("-o,--output", request->output, "File to write: .ply, .obj, .stl or .glb; landmarks .json")->required();
+  command->callback([request, &common] { run(common, *request); });
+}
+
+}  // namespace fascia::cli

@@ -1,0 +1,167 @@
+#include "cli/posing.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "formats/scene.h"
+#include "geometry/error.h"
+
+namespace fascia::cli {
+
+namespace {
+
+template <class T>
+T sized() {
+  T value = {};
+  value.struct_size = sizeof(T);
+  return value;
+}
+
+std::span<const float> as_span(const fascia_vectors& vectors) {
+  return {vectors.data, static_cast<size_t>(vectors.count) * 3};
+}
+
+int32_t level_index(const fascia_asset* asset, uint32_t count, const std::string& name) {
+  if (name.empty()) return -1;
+  std::string known;
+  for (uint32_t i = 0; i < count; ++i) {
+    auto level = sized<fascia_level_info>();
+    check(fascia_asset_get_level(asset, i, &level), "level");
+    if (name == level.name) return static_cast<int32_t>(i);
+    known += (known.empty() ? "" : ", ") + std::string(level.name);
+  }
+  throw Error("the rig has no level '" + name + "'; it has: " + known);
+}
+
+}  // namespace
+
+void check(fascia_result result, const std::string& what) {
+  if (result != FASCIA_OK) throw Error(what + ": " + fascia_last_message());
+}
+
+Face::Face(const std::filesystem::path& rig, const Options& options) {
+  const std::vector<uint8_t> bytes = formats::read_bytes(rig);
+  fascia_asset* asset = nullptr;
+  check(fascia_asset_load(bytes.data(), bytes.size(), &asset), "'" + rig.string() + "'");
+  asset_.reset(asset);
+  auto info = sized<fascia_asset_info>();
+  check(fascia_asset_get_info(asset, &info), "rig");
+  level_ = level_index(asset, info.level_count, options.level);
+  fascia_face_options face_options = fascia_default_face_options();
+  face_options.space = options.space;
+  face_options.level = level_;
+  if (options.solver == "bullet") face_options.solver = FASCIA_SOLVER_BULLET;
+  else if (options.solver != "own") throw Error("solver '" + options.solver + "' is unknown: use own or bullet");
+  fascia_face* face = nullptr;
+  check(fascia_face_create(asset, &face_options, &face), "'" + rig.string() + "'");
+  face_.reset(face);
+  if (level_ < 0) level_ = static_cast<int32_t>(info.level_count) - 1;
+  for (uint32_t m = 0; m < info.mesh_count; ++m) {
+    auto mesh = sized<fascia_mesh_info>();
+    check(fascia_asset_get_mesh(asset, m, &mesh), "mesh");
+    FaceMesh entry;
+    entry.mesh = mesh.mesh;
+    entry.primitive = mesh.primitive;
+    entry.vertex_count = mesh.vertex_count;
+    entry.name = mesh.name;
+    entry.part = mesh.part;
+    for (uint32_t t = 0; t < mesh.triangle_count; ++t)
+      entry.triangles.push_back({static_cast<int>(mesh.triangles[3 * t]), static_cast<int>(mesh.triangles[3 * t + 1]),
+                                 static_cast<int>(mesh.triangles[3 * t + 2])});
+    meshes_.push_back(std::move(entry));
+    const std::span<const float> now = positions(m);
+    rest_.emplace_back(now.begin(), now.end());
+  }
+}
+
+std::vector<std::string> Face::set_members(const std::string& set) const {
+  auto info = sized<fascia_asset_info>();
+  check(fascia_asset_get_info(asset_.get(), &info), "rig");
+  for (uint32_t s = 0; s < info.set_count; ++s) {
+    auto entry = sized<fascia_set_info>();
+    check(fascia_asset_get_set(asset_.get(), s, &entry), "set");
+    if (set == entry.name) return {entry.members, entry.members + entry.member_count};
+  }
+  throw Error("the rig has no vocabulary '" + set + "'");
+}
+
+std::vector<std::string> Face::channel_names() const {
+  auto channels = sized<fascia_channels>();
+  check(fascia_asset_get_channels(asset_.get(), &channels), "channels");
+  return {channels.names, channels.names + channels.count};
+}
+
+void Face::set(const std::string& name, double value) {
+  check(fascia_face_set(face_.get(), name.c_str(), static_cast<float>(value)), "'" + name + "'");
+}
+
+void Face::clear() { check(fascia_face_clear(face_.get()), "clear"); }
+void Face::pose() { check(fascia_face_pose(face_.get()), "pose"); }
+void Face::reset() { check(fascia_face_reset(face_.get()), "reset"); }
+
+bool Face::step(double seconds) {
+  const fascia_result result = fascia_face_step(face_.get(), static_cast<float>(seconds));
+  if (result == FASCIA_ERROR_DIVERGED) return false;
+  check(result, "step");
+  return true;
+}
+
+std::span<const float> Face::positions(size_t mesh) const {
+  auto vectors = sized<fascia_vectors>();
+  check(fascia_face_positions(face_.get(), static_cast<uint32_t>(mesh), &vectors), "positions");
+  return as_span(vectors);
+}
+
+std::span<const float> Face::normals(size_t mesh) const {
+  auto vectors = sized<fascia_vectors>();
+  check(fascia_face_normals(face_.get(), static_cast<uint32_t>(mesh), &vectors), "normals");
+  return as_span(vectors);
+}
+
+std::vector<std::pair<std::string, std::vector<std::vector<Vec3>>>> Face::fibres() const {
+  auto rest = sized<fascia_fibres>();
+  check(fascia_asset_fibres(asset_.get(), static_cast<uint32_t>(level_), &rest), "fibres");
+  auto points = sized<fascia_vectors>();
+  check(fascia_face_fibre_points(face_.get(), &points), "fibres");
+  std::vector<std::pair<std::string, std::vector<std::vector<Vec3>>>> muscles;
+  for (uint32_t f = 0; f < rest.fibre_count; ++f) {
+    if (muscles.empty() || muscles.back().first != rest.muscles[f]) muscles.push_back({rest.muscles[f], {}});
+    std::vector<Vec3> line;
+    for (uint32_t p = rest.offsets[f]; p < rest.offsets[f + 1]; ++p)
+      line.emplace_back(points.data[3 * p], points.data[3 * p + 1], points.data[3 * p + 2]);
+    muscles.back().second.push_back(std::move(line));
+  }
+  return muscles;
+}
+
+Mat4 Face::jaw() const {
+  float matrix[16];
+  check(fascia_face_jaw(face_.get(), matrix), "jaw");
+  return Eigen::Map<const Eigen::Matrix4f>(matrix).cast<double>();
+}
+
+std::vector<std::pair<std::string, double>> activations(const std::vector<std::string>& words,
+                                                        const std::filesystem::path& file) {
+  std::vector<std::pair<std::string, double>> values;
+  if (!file.empty()) {
+    const std::vector<uint8_t> bytes = formats::read_bytes(file);
+    const nlohmann::json content = nlohmann::json::parse(bytes.begin(), bytes.end(), nullptr, false);
+    if (!content.is_object() || !content.contains("activations") || !content["activations"].is_object())
+      throw Error("'" + file.string() + "' is not an activations file: {\"activations\": {NAME: VALUE, ...}}");
+    for (const auto& [name, value] : content["activations"].items()) {
+      if (!value.is_number()) throw Error("'" + file.string() + "': the activation '" + name + "' is not a number");
+      values.emplace_back(name, value.get<double>());
+    }
+  }
+  for (const std::string& word : words) {
+    const size_t at = word.find('=');
+    char* end = nullptr;
+    const double value = at == std::string::npos ? NAN : std::strtod(word.c_str() + at + 1, &end);
+    if (!std::isfinite(value) || !end || *end != 0 || end == word.c_str() + at + 1)
+      throw Error("--set '" + word + "' is not NAME=VALUE with a number");
+    values.emplace_back(word.substr(0, at), value);
+  }
+  return values;
+}
+
+}  // namespace fascia::cli

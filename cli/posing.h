@@ -1,0 +1,77 @@
+#pragma once
+
+#include <fascia/fascia.h>
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "geometry/mesh.h"
+
+namespace fascia::cli {
+
+/// One primitive of the rig's file, as the runtime lists it.
+struct FaceMesh {
+  uint32_t mesh = 0, primitive = 0, vertex_count = 0;
+  std::string name, part;
+  std::vector<Triangle> triangles;
+};
+
+/// A rig loaded through the runtime's own C interface, and one face of it. What fails throws fascia::Error.
+class Face {
+ public:
+  struct Options {
+    fascia_space space = FASCIA_SPACE_METRES;
+    std::string solver = "own";  ///< own or bullet
+    std::string level;           ///< low, medium, high; empty: the finest
+  };
+
+  Face(const std::filesystem::path& rig, const Options& options);
+
+  const std::vector<FaceMesh>& meshes() const { return meshes_; }
+  std::vector<std::string> set_members(const std::string& set) const;
+  std::vector<std::string> channel_names() const;
+
+  /// Sets a channel or a set's member; throws when there is none of that name.
+  void set(const std::string& name, double value);
+  void clear();
+  void pose();
+  /// Lets time pass; returns false when the simulation had to be reset.
+  bool step(double seconds);
+  void reset();
+
+  std::span<const float> positions(size_t mesh) const;
+  std::span<const float> normals(size_t mesh) const;
+  /// Positions at rest, in the same space.
+  std::span<const float> rest(size_t mesh) const { return rest_[mesh]; }
+  /// Fibres as they stand, grouped by muscle, in metres.
+  std::vector<std::pair<std::string, std::vector<std::vector<Vec3>>>> fibres() const;
+  Mat4 jaw() const;
+
+  fascia_face* handle() const { return face_.get(); }
+  fascia_asset* asset() const { return asset_.get(); }
+
+ private:
+  struct Release {
+    void operator()(fascia_asset* asset) const { fascia_asset_release(asset); }
+    void operator()(fascia_face* face) const { fascia_face_release(face); }
+  };
+  std::unique_ptr<fascia_asset, Release> asset_;
+  std::unique_ptr<fascia_face, Release> face_;
+  std::vector<FaceMesh> meshes_;
+  std::vector<std::vector<float>> rest_;
+  int32_t level_ = -1;
+};
+
+/// `NAME=VALUE` words and an activations file, in that order of strength: words win.
+std::vector<std::pair<std::string, double>> activations(const std::vector<std::string>& words,
+                                                        const std::filesystem::path& file);
+
+/// Throws fascia::Error with the runtime's last message when `result` is a failure.
+void check(fascia_result result, const std::string& what);
+
+}  // namespace fascia::cli
