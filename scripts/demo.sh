@@ -1,0 +1,10 @@
+#!/usr/bin/env bash
+# Sets up, builds, and shows the whole way on the embedded head; the results are in out/.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+started=$SECONDS
+scripts/setup.sh --demo
+cmake --preset release -DFASCIA_BUILD_TESTS=OFF >/dev/null
+cmake --build build --target fascia fascia_runtime fascia_samples
+echo "demo: set up and built in $((SECONDS - started)) s"
+build/bin/fascia demo --out out

@@ -1,0 +1,28 @@
+#!/usr/bin/env bash
+# Sets up, builds with warnings as errors, and runs the tests.
+#   scripts/test.sh [--full]
+# --full: also clang, sanitizers, the glTF validator and the demo.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+full=0
+case "${1:-}" in
+  '') ;;
+  --full) full=1 ;;
+  *) echo "usage: scripts/test.sh [--full]" >&2; exit 2 ;;
+esac
+
+if [ "$full" = 1 ]; then scripts/setup.sh --full; else scripts/setup.sh --test; fi
+
+run_suite() {  # preset, build folder, extra ctest arguments
+  cmake --preset "$1" >/dev/null
+  cmake --build "$2"
+  ctest --test-dir "$2" --output-on-failure -j2 "${@:3}"
+}
+
+run_suite ci build
+if [ "$full" = 1 ]; then
+  run_suite clang build/clang
+  ASAN_OPTIONS=detect_leaks=0 run_suite asan build/asan
+  tests/validator/validate.sh build/bin/fascia
+fi
