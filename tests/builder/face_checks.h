@@ -1,0 +1,47 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include "tests/builder/posed_face.h"
+
+namespace fascia::testing {
+
+/// What any adult face must do, in millimetres.
+inline void expect_face_moves_as_anatomy_says(PosedFace& face) {
+  EXPECT_EQ(face.report().bone_outside_skin, 0);
+  EXPECT_EQ(face.report().smas_outside_layers, 0);
+
+  face.pose({});
+  EXPECT_EQ(face.largest_motion(), 0.0) << "zero activation moves something";
+
+  face.pose({{"zygomaticus_major_left", 1}, {"zygomaticus_major_right", 1}});
+  for (const char* side : {"left", "right"}) {
+    const double outward = std::string(side) == "left" ? 1.0 : -1.0;
+    const Vec3 corner = face.moved(std::string("cheilion_") + side);
+    EXPECT_GT(corner.norm(), 5.0) << side;
+    EXPECT_LT(corner.norm(), 14.0) << side;
+    EXPECT_GT(corner[1], 1.5) << side << " corner goes up";
+    EXPECT_GT(outward * corner[0], 1.5) << side << " corner goes outward";
+  }
+
+  face.pose({{"frontalis_left", 1}, {"frontalis_right", 1}});
+  EXPECT_GE(face.moved("superciliare_left")[1], 4.0);
+  EXPECT_GE(face.moved("superciliare_right")[1], 4.0);
+
+  face.pose({{"corrugator_supercilii_left", 1}, {"corrugator_supercilii_right", 1}});
+  EXPECT_LT(face.moved("superciliare_mediale_left")[0], -0.8) << "brows draw together";
+  EXPECT_GT(face.moved("superciliare_mediale_right")[0], 0.8);
+
+  face.pose({{"jaw_open", 1}});
+  EXPECT_GE(face.moved("labiale_superius")[1] - face.moved("labiale_inferius")[1], 25.0) << "the lips part";
+  EXPECT_LT(face.moved("labiale_superius").norm(), 3.0) << "the upper lip stays";
+  EXPECT_GT(face.moved("buccale_left").norm(), 2.0) << "the cheeks follow";
+  EXPECT_LT(face.moved("buccale_left").norm(), 30.0);
+
+  face.pose({{"zygomaticus_major_left", 1}});
+  EXPECT_GT(face.moved("cheilion_left").norm(), 4.0);
+  EXPECT_LT(face.moved("cheilion_right").norm(), 1.0) << "one side stays one side";
+  EXPECT_LT(face.largest_skin_motion_right_of(-20.0), 1.0);
+}
+
+}  // namespace fascia::testing

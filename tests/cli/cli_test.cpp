@@ -1,0 +1,220 @@
+// The tool as a user runs it: exit codes, messages, outputs.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "cli/demo_curves.h"
+#include "formats/scene.h"
+
+namespace fascia::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+struct Outcome {
+  int code = -1;
+  std::string out, err;
+};
+
+std::string text_of(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+class Tool : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder = new fs::path(fs::temp_directory_path() / "fascia_cli_test");
+    fs::remove_all(*folder);
+    fs::create_directories(*folder);
+    write_embedded_head(at("head.obj"), at("landmarks.json"));
+    built = new Outcome(run("build " + at("head.obj") + " --landmarks " + at("landmarks.json") + " --detail low -o " + at("rig.glb") + " --json"));
+  }
+  static void TearDownTestSuite() {
+    fs::remove_all(*folder);
+    delete folder;
+    delete built;
+  }
+
+  static std::string at(const std::string& name) { return (*folder / name).string(); }
+
+  static Outcome run(const std::string& arguments) {
+    const std::string out = at("stdout.txt"), err = at("stderr.txt");
+    const int status = std::system((std::string(FASCIA_TOOL) + " " + arguments + " >" + out + " 2>" + err + " </dev/null").c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(out), text_of(err)};
+  }
+
+  static void expect_input_error(const std::string& arguments, const std::string& says) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.code, 1) << arguments << "\n" << outcome.err;
+    EXPECT_NE(outcome.err.find(says), std::string::npos) << arguments << "\n" << outcome.err;
+  }
+
+  static fs::path* folder;
+  static Outcome* built;
+};
+
+fs::path* Tool::folder = nullptr;
+Outcome* Tool::built = nullptr;
+
+TEST_F(Tool, BuildReportsOneJsonObject) {
+  ASSERT_EQ(built->code, 0) << built->err;
+  const json report = json::parse(built->out);
+  EXPECT_EQ(report["input"]["units"], "mm");
+  EXPECT_EQ(report["input"]["input_to_metres"].size(), 4u);
+  EXPECT_GE(report["stages"].size(), 5u);
+  EXPECT_EQ(report["skull"]["bone_outside_skin"], 0);
+  EXPECT_EQ(report["smas"]["outside_layers"], 0);
+  EXPECT_GT(report["smas"]["min_angle_deg"].get<double>(), 10.0);
+  EXPECT_GT(report["tissue"]["low"]["nodes"].get<int>(), 500);
+  std::set<std::string> names;
+  for (const json& muscle : report["muscles"]) names.insert(muscle["name"].get<std::string>());
+  for (const char* name : {"zygomaticus_major_left", "frontalis_medial_right", "mentalis_left", "depressor_anguli_oris_right",
+                           "orbicularis_oculi_left", "orbicularis_oris_upper_left", "corrugator_supercilii_left", "levator_labii_superioris_right"})
+    EXPECT_TRUE(names.count(name) || names.count(std::string(name).substr(0, std::string(name).rfind('_')))) << name;
+}
+
+TEST_F(Tool, WrongUsageIsTwo) {
+  EXPECT_EQ(run("").code, 2);
+  EXPECT_EQ(run("sculpt").code, 2);
+  EXPECT_EQ(run("build").code, 2);
+  EXPECT_EQ(run("build " + at("head.obj") + " -o " + at("x.glb") + " --detail enormous").code, 2);
+  EXPECT_EQ(run("export " + at("rig.glb") + " --part liver -o " + at("x.obj")).code, 2);
+  EXPECT_EQ(run("render " + at("rig.glb") + " --no-such-flag -o " + at("x.png")).code, 2);
+  EXPECT_EQ(run("--help").code, 0);
+  EXPECT_EQ(run("--version").code, 0);
+}
+
+TEST_F(Tool, FaultyInputIsOneAndNamed) {
+  std::ofstream(at("empty.glb"));
+  std::ofstream(at("text.glb")) << "hello";
+  const std::string rig = text_of(at("rig.glb"));
+  std::ofstream(at("cut.glb"), std::ios::binary) << rig.substr(0, rig.size() / 2);
+  for (const char* command : {"info ", "pose ", "render ", "bake "}) {
+    const std::string tail = std::string(command) == "info " ? "" : std::string(" -o ") + at(std::string(command) == "render " ? "x.png" : "x.glb");
+    expect_input_error(command + at("missing.glb") + tail, "missing.glb");
+    expect_input_error(command + at("empty.glb") + tail, "empty");
+    expect_input_error(command + at("text.glb") + tail, "text.glb");
+    expect_input_error(command + at("cut.glb") + tail, "cut.glb");
+    expect_input_error(command + at("head.obj") + tail, "head.obj");
+  }
+  expect_input_error("build " + at("missing.obj") + " -o " + at("x.glb"), "missing.obj");
+  expect_input_error("build " + at("head.obj") + " -o " + at("x.glb"), "--landmarks");
+  expect_input_error("build " + at("head.obj") + " --landmarks " + at("text.glb") + " -o " + at("x.glb"), "text.glb");
+  expect_input_error("build " + at("head.obj") + " --landmarks " + at("landmarks.json") + " -o " + at("x.fbx"), ".glb");
+  expect_input_error("pose " + at("rig.glb") + " --set no_such_muscle=1 -o " + at("x.glb"), "no_such_muscle");
+  expect_input_error("pose " + at("rig.glb") + " --set jaw_open -o " + at("x.glb"), "NAME=VALUE");
+  expect_input_error("pose " + at("rig.glb") + " --activations " + at("landmarks.json") + " -o " + at("x.glb"), "activations");
+  expect_input_error("play " + at("rig.glb") + " --curves " + at("landmarks.json") + " -o " + at("x.glb"), "landmarks.json");
+  expect_input_error("render " + at("rig.glb") + " --layers liver -o " + at("x.png"), "liver");
+  expect_input_error("render " + at("rig.glb") + " --view inside -o " + at("x.png"), "inside");
+  expect_input_error("fit " + at("rig.glb"), "yet to come");
+  EXPECT_FALSE(fs::exists(at("x.glb")));
+  EXPECT_FALSE(fs::exists(at("x.png")));
+}
+
+TEST_F(Tool, FailureWithJsonIsJsonToo) {
+  const Outcome outcome = run("info " + at("missing.glb") + " --json");
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_NE(json::parse(outcome.out)["error"].get<std::string>().find("missing.glb"), std::string::npos);
+}
+
+TEST_F(Tool, InfoKnowsChannelsAndSoundness) {
+  const json info = json::parse(run("info " + at("rig.glb") + " --channels --validate --json").out);
+  EXPECT_EQ(info["valid"], true);
+  EXPECT_EQ(info["sets"]["arkit"], 52);
+  EXPECT_EQ(info["channel_list"].size(), info["channels"].get<size_t>());
+}
+
+/// The lines of two texts that differ, as pairs.
+int differing_lines(const std::string& a, const std::string& b, bool* only_vertices) {
+  std::istringstream left(a), right(b);
+  int count = 0;
+  *only_vertices = true;
+  std::string x, y;
+  while (true) {
+    const bool more_left = static_cast<bool>(std::getline(left, x)), more_right = static_cast<bool>(std::getline(right, y));
+    if (more_left != more_right) *only_vertices = false;
+    if (!more_left || !more_right) return count;
+    if (x == y) continue;
+    ++count;
+    *only_vertices = *only_vertices && x.rfind("v ", 0) == 0 && y.rfind("v ", 0) == 0;
+  }
+}
+
+TEST_F(Tool, PosedObjDiffersOnlyInItsVertices) {
+  ASSERT_EQ(run("pose " + at("rig.glb") + " -o " + at("rest.obj")).code, 0);
+  EXPECT_EQ(text_of(at("rest.obj")), text_of(at("head.obj"))) << "zero activation is rest, to the byte";
+  ASSERT_EQ(run("pose " + at("rig.glb") + " --set jaw_open=1 -o " + at("open.obj")).code, 0);
+  bool only_vertices = false;
+  EXPECT_GT(differing_lines(text_of(at("head.obj")), text_of(at("open.obj")), &only_vertices), 200);
+  EXPECT_TRUE(only_vertices);
+}
+
+TEST_F(Tool, PosedGlbKeepsMeshesAndCounts) {
+  ASSERT_EQ(run("pose " + at("rig.glb") + " --set arkit:jawOpen=0.5 -o " + at("pose.glb")).code, 0);
+  const formats::Scene rest = formats::read(at("rig.glb")), posed = formats::read(at("pose.glb"));
+  ASSERT_EQ(rest.meshes.size(), posed.meshes.size());
+  for (size_t m = 0; m < rest.meshes.size(); ++m) {
+    EXPECT_EQ(rest.meshes[m].name, posed.meshes[m].name);
+    EXPECT_EQ(rest.meshes[m].positions.size(), posed.meshes[m].positions.size());
+    EXPECT_EQ(rest.meshes[m].triangles, posed.meshes[m].triangles);
+  }
+}
+
+TEST_F(Tool, ExportsEveryPart) {
+  for (const char* part : {"skin", "cranium", "mandible", "teeth", "eyes", "smas", "muscles", "all"})
+    for (const char* extension : {".ply", ".obj", ".glb"}) {
+      const std::string out = at(std::string(part) + extension);
+      const Outcome outcome = run("export " + at("rig.glb") + " --part " + part + " -o " + out);
+      EXPECT_EQ(outcome.code, 0) << part << extension << outcome.err;
+      EXPECT_GT(fs::file_size(out), 200u);
+    }
+  EXPECT_NE(text_of(at("muscles.obj")).find("\ng zygomaticus_major"), std::string::npos);
+  expect_input_error("export " + at("rig.glb") + " --part muscles -o " + at("m.stl"), "STL");
+}
+
+TEST_F(Tool, LandmarksGoOutAndComeBackIn) {
+  ASSERT_EQ(run("export " + at("rig.glb") + " --part landmarks -o " + at("out_landmarks.json")).code, 0);
+  const json out = json::parse(text_of(at("out_landmarks.json")));
+  EXPECT_EQ(out["units"], "mm");
+  EXPECT_TRUE(out["landmarks"]["nasion"].contains("bone"));
+  const Outcome again = run("build " + at("head.obj") + " --landmarks " + at("out_landmarks.json") + " --detail low -o " + at("again.glb"));
+  EXPECT_EQ(again.code, 0) << again.err;
+}
+
+TEST_F(Tool, PlaysCurvesIntoWeightsAndPointers) {
+  std::ofstream(at("curves.csv")) << "time,jaw_open,arkit:mouthSmileLeft,nobody_knows_me\n0,0,0,0\n0.25,0.5,0,1\n0.5,0,1,0\n";
+  const Outcome outcome = run("play " + at("rig.glb") + " --curves " + at("curves.csv") + " --fps 30 -o " + at("play.glb") + " --json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const json report = json::parse(outcome.out);
+  EXPECT_EQ(report["frames"], 16);
+  EXPECT_LE(report["morph_targets"].get<int>(), 64);
+  EXPECT_LE(report["largest_error_mm"].get<double>(), 0.1);
+  EXPECT_EQ(report["unmatched"], json::array({"nobody_knows_me"}));
+  EXPECT_EQ(report["resets"], 0);
+}
+
+TEST_F(Tool, BakesArkitByItsNames) {
+  const Outcome outcome = run("bake " + at("rig.glb") + " --shapes arkit -o " + at("arkit.glb") + " --json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const json names = json::parse(outcome.out)["shapes"];
+  EXPECT_EQ(names.size(), 52u);
+  EXPECT_NE(std::find(names.begin(), names.end(), "jawOpen"), names.end());
+  EXPECT_NE(text_of(at("arkit.glb")).find("\"targetNames\":[\""), std::string::npos);
+}
+
+TEST_F(Tool, Draws) {
+  for (const char* view : {"front", "side", "three-quarter", "back"}) {
+    const Outcome outcome = run("render " + at("rig.glb") + " --set jaw_open=0.5 --layers skin,skull,muscles,smas --size 200 --view " + view + " -o " + at("picture.png"));
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_GT(fs::file_size(at("picture.png")), 2000u);
+  }
+}
+
+}  // namespace
+}  // namespace fascia::cli

@@ -1,0 +1,88 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What each room may include, by the first folder of the path (docs/architecture.md).
+const std::map<std::string, std::set<std::string>> rooms = {
+    {"geometry", {}},
+    {"formats", {"geometry"}},
+    {"anatomy", {"geometry"}},
+    {"rig", {"geometry"}},
+    {"sim", {}},
+    {"builder", {"geometry", "formats", "anatomy", "rig", "sim"}},
+    {"runtime", {"rig/model", "rig/read", "sim", "geometry"}},
+    {"view", {"geometry", "rig"}},
+    {"cli", {"geometry", "formats", "anatomy", "rig", "sim", "builder", "runtime", "view"}},
+    {"samples", {}},
+};
+
+bool is_source(const fs::path& path) {
+  static const std::set<std::string> kinds = {".h", ".hpp", ".cpp", ".c"};
+  return kinds.count(path.extension().string()) > 0;
+}
+
+/// The quoted includes of a file, as written.
+std::vector<std::string> quoted_includes(const fs::path& path) {
+  std::vector<std::string> found;
+  std::ifstream file(path);
+  for (std::string line; std::getline(file, line);) {
+    const size_t at = line.find("#include \"");
+    if (at == std::string::npos || line.find_first_not_of(" \t") != at) continue;
+    const size_t start = at + 10;
+    found.push_back(line.substr(start, line.find('"', start) - start));
+  }
+  return found;
+}
+
+bool allowed(const std::string& room, const std::string& include) {
+  if (include.rfind(room + "/", 0) == 0) return true;
+  if (include.find('/') == std::string::npos) return true;  // a neighbour in the same folder
+  if (include.rfind("cmake/tinygltf/", 0) == 0) return room == "formats" || room == "rig";
+  for (const std::string& other : rooms.at(room))
+    if (include.rfind(other + "/", 0) == 0) return true;
+  // Only project rooms are judged: other paths are libraries or a room's own layout.
+  for (const auto& [name, uses] : rooms)
+    if (include.rfind(name + "/", 0) == 0) return false;
+  return true;
+}
+
+TEST(House, RoomsIncludeOnlyWhatTheyMay) {
+  int files = 0;
+  for (const auto& [room, uses] : rooms) {
+    const fs::path folder = fs::path(FASCIA_SOURCE) / room;
+    ASSERT_TRUE(fs::exists(folder)) << room;
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+      if (!entry.is_regular_file() || !is_source(entry.path())) continue;
+      ++files;
+      for (const std::string& include : quoted_includes(entry.path()))
+        EXPECT_TRUE(allowed(room, include)) << entry.path() << " may not include " << include;
+    }
+  }
+  EXPECT_GT(files, 60);
+}
+
+TEST(House, TheJudgeItselfCanSayNo) {
+  EXPECT_FALSE(allowed("geometry", "formats/scene.h"));
+  EXPECT_FALSE(allowed("sim", "rig/model/rig.h"));
+  EXPECT_FALSE(allowed("runtime", "rig/write/write.h"));
+  EXPECT_FALSE(allowed("samples", "geometry/mesh.h"));
+  EXPECT_TRUE(allowed("runtime", "rig/read/read.h"));
+}
+
+TEST(House, EigenStaysOutOfTheRuntimeHeader) {
+  const fs::path header = fs::path(FASCIA_SOURCE) / "runtime/include/fascia/fascia.h";
+  std::ifstream file(header);
+  ASSERT_TRUE(file.good());
+  for (std::string line; std::getline(file, line);) EXPECT_EQ(line.find("Eigen"), std::string::npos);
+}
+
+}  // namespace
