@@ -100,6 +100,19 @@ def vault_points(sections):
     return np.array(kept)
 
 
+def read_sections(path):
+    return np.array([[float(t) for t in row] for row in csv.reader(line for line in open(path) if line[0] not in "#a")])
+
+
+def onto_sections(points, sections):
+    """Each point on the plane of its nearest section point, when that is within 3 mm: the sections' solid
+    rounds thin edges such as the tip of the nasal bones, and it is the solid that is to fit."""
+    distance, i = cKDTree(sections[:, 2:5]).query(points)
+    normal = sections[i, 5:8]
+    offset = ((sections[i, 2:5] - points) * normal).sum(1)
+    return points + np.where(distance < 3, offset, 0)[:, None] * normal
+
+
 def main(head, folder):
     points, normals = read_skin(head)
     use = points[:, 1] > -40
@@ -110,9 +123,10 @@ def main(head, folder):
     for a in (source, target):
         a[[not n.endswith("_left") for n in names], 0] = 0
     deviation = np.array([DEVIATION.get(n[:-5] if n.endswith("_left") else n, 1.0) for n in names])
-    rows = np.array([[float(t) for t in r] for r in
-                     csv.reader(line for line in open(os.path.join(folder, "figures/skull_cranium_sections.csv"))
-                                if line[0] not in "#a")])
+    rows = read_sections(os.path.join(folder, "figures/skull_cranium_sections.csv"))
+    jaw = read_sections(os.path.join(folder, "figures/skull_mandible_sections.csv"))
+    source = onto_sections(source, np.r_[rows, jaw])
+    source[target[:, 0] == 0, 0] = 0
     vault = vault_points(rows[:, 2:5])
     warp = thin_plate(*both_sides(source, target, deviation), SMOOTHING)
     for _ in range(6):

@@ -26,8 +26,9 @@ Vec3 on_surface(const smas::ImplicitFunction& field, Vec3 point, bool in_midplan
     Vec3 gradient;
     const double value = field(point, &gradient);
     if (in_midplane) gradient.x() = 0;
-    if (!std::isfinite(value) || gradient.squaredNorm() < 1e-8) break;
-    point -= value * gradient / gradient.squaredNorm();
+    if (!std::isfinite(value) || !gradient.allFinite() || gradient.squaredNorm() < 1e-4) break;
+    // The field is about a distance; a long step would leave the sheet.
+    point -= std::clamp(value / gradient.norm(), -1.0, 1.0) * gradient.normalized();
     if (std::abs(value) < 1e-9) break;
   }
   if (in_midplane) point.x() = 0;
@@ -253,6 +254,9 @@ TriangleMesh symmetric_mesh(const smas::ImplicitFunction& field, const std::vect
   thin_out(0.9, field_normals(field, work.mesh), &work.mesh, &work.sizes);
   improve(field, options.passes, work);
   for (int pass = 0; pass < 5 && split_bridges(field, work) > 0; ++pass) {
+  }
+  for (const Vec3& point : work.mesh.vertices) {
+    if (!point.allFinite()) throw Error("a vertex left the surface: the figures are too sparse somewhere");
   }
   TriangleMesh whole = mirrored(work.mesh);
   const Connectivity links = connectivity(whole);

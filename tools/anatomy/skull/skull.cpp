@@ -51,12 +51,12 @@ std::vector<Part> make_skull(const Figures& figures) {
   const std::vector<OrientedPoint> cranium_points = carry(figures.to_generic, figures.cranium);
   const std::vector<OrientedPoint> mandible_points = carry(figures.to_generic, figures.mandible);
   const smas::ImplicitFunction jaw = section_surface(mandible_points);
-  const smas::ImplicitFunction skull_base = with_joint_space(section_surface(cranium_points), jaw, 1.5, 0.8);
+  const smas::ImplicitFunction skull_base = with_joint_space(section_surface(cranium_points), jaw, 2.2, 0.8);
   std::vector<Part> parts;
   parts.push_back({"cranium", symmetric_mesh(skull_base, positions(cranium_points), cranium)});
   parts.push_back({"mandible", symmetric_mesh(jaw, positions(mandible_points), mandible)});
-  parts.push_back({"teeth_upper", dental_row(figures.teeth_upper, figures.to_generic)});
-  parts.push_back({"teeth_lower", dental_row(figures.teeth_lower, figures.to_generic)});
+  parts.push_back({"teeth_upper", dental_row(figures.teeth_upper, figures.to_generic, 15.0)});
+  parts.push_back({"teeth_lower", dental_row(figures.teeth_lower, figures.to_generic, 11.5)});
   return parts;
 }
 

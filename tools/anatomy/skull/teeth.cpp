@@ -12,7 +12,6 @@ namespace {
 
 constexpr int around = 10;        // vertices of a ring
 constexpr double contact = 0.06;  // mm left free towards each neighbour
-constexpr double depth = 15.0;    // mm from the tip to the end of the stub
 
 /// How a tooth ends: height of the rim above and of the middle below the first section's level.
 struct Crown {
@@ -119,7 +118,7 @@ double volume(const TriangleMesh& mesh) {
   return sum;
 }
 
-TriangleMesh tooth_mesh(const Tooth& tooth, const splines::Warp& to_generic) {
+TriangleMesh tooth_mesh(const Tooth& tooth, const splines::Warp& to_generic, double depth) {
   Loft loft{tooth, to_generic, crown_of(tooth.name), tooth.axis.cross(tooth.mesial).normalized(), {}};
   const bool chewing = loft.crown.cusps >= 2;
   int previous = -1;
@@ -149,10 +148,10 @@ TriangleMesh tooth_mesh(const Tooth& tooth, const splines::Warp& to_generic) {
 
 }  // namespace
 
-TriangleMesh dental_row(const std::vector<Tooth>& left, const splines::Warp& to_generic) {
+TriangleMesh dental_row(const std::vector<Tooth>& left, const splines::Warp& to_generic, double depth) {
   TriangleMesh half;
   for (const Tooth& tooth : left) {
-    const TriangleMesh one = tooth_mesh(tooth, to_generic);
+    const TriangleMesh one = tooth_mesh(tooth, to_generic, depth);
     const int first = half.vertex_count();
     half.vertices.insert(half.vertices.end(), one.vertices.begin(), one.vertices.end());
     for (const Triangle& t : one.triangles) half.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
