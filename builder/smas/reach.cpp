@@ -81,6 +81,7 @@ void ReachField::add_eye(const Landmarks& landmarks, const std::string& side, do
   eye.down = std::max(-(below - eye.centre).dot(eye.y), least) + margin;
   eye.bend = 0.0;
   eye.near = -0.020 * scale_, eye.far = 0.020 * scale_;
+  eye.globe = 0.012 * scale_;  // half of an adult's 24 mm
   openings_.push_back(eye);
 }
 
@@ -190,6 +191,20 @@ bool ReachField::may_be_lining(const Vec3& point, const Vec3& normal) const {
   return false;
 }
 
+bool ReachField::is_socket(const Vec3& point, const Vec3& normal) const {
+  for (const Opening& opening : openings_) {
+    if (!(opening.globe > 0.0)) continue;
+    // Lids, temple and the side of the nose face away from the globe, or are in front of it and beside.
+    const Vec3 from_globe = point - (opening.centre - 0.8 * opening.globe * opening.z);
+    const double depth = (point - opening.centre).dot(opening.z), distance = from_globe.norm();
+    const double facing = -normal.dot(from_globe) / std::max(distance, 1e-12);
+    if (distance < 1.5 * opening.globe && facing > 0.2) return true;
+    if (distance < 2.1 * opening.globe && facing > 0.45) return true;
+    if (depth < -0.3 * opening.globe && distance < 2.7 * opening.globe && facing > 0.0) return true;
+  }
+  return false;
+}
+
 bool ReachField::near_opening(const Vec3& point) const {
   for (const Opening& opening : openings_)
     if ((point - opening.centre).norm() < opening.half_width + 0.04 * scale_) return true;
@@ -220,6 +235,7 @@ FacialSkin facial_skin(const TriangleMesh& skin, const Landmarks& landmarks, con
     const Triangle& c = skin.triangles[t];
     const Vec3 middle = (skin.vertices[c[0]] + skin.vertices[c[1]] + skin.vertices[c[2]]) / 3.0;
     const Vec3 normal = triangle_normal(skin, t);
+    if (field.is_socket(middle, normal)) keep[t] = false;
     if (field.may_be_lining(middle, normal) && normal.norm() > 0.5 &&
         query.first_hit(middle + near * normal, normal, far))
       keep[t] = false;

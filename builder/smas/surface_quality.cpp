@@ -351,6 +351,13 @@ void Improver::relax_worst(double below) {
     }
     return worst;
   };
+  std::vector<std::array<int, 2>> along(mesh_.vertices.size(), {-1, -1});
+  for (int t = 0; t < mesh_.triangle_count(); ++t)
+    for (int e = 0; e < 3; ++e)
+      if (links.neighbours[t][e] < 0) {
+        along[mesh_.triangles[t][e]][1] = mesh_.triangles[t][(e + 1) % 3];
+        along[mesh_.triangles[t][(e + 1) % 3]][0] = mesh_.triangles[t][e];
+      }
   for (int round = 0; round < 6; ++round) {
     std::vector<bool> poor(mesh_.vertices.size(), false);
     bool any = false;
@@ -358,8 +365,16 @@ void Improver::relax_worst(double below) {
       if (smallest_angle(at(t[0]), at(t[1]), at(t[2])) < below) poor[t[0]] = poor[t[1]] = poor[t[2]] = any = true;
     if (!any) return;
     for (int v = 0; v < mesh_.vertex_count(); ++v) {
-      if (!poor[v] || boundary[v]) continue;
-      const Vec3 x = normals_[v].unitOrthogonal(), y = normals_[v].cross(x);
+      if (!poor[v] || (boundary[v] && (!options_.move_boundary || along[v][0] < 0 || along[v][1] < 0))) continue;
+      Vec3 x = normals_[v].unitOrthogonal(), y = normals_[v].cross(x);
+      if (boundary[v]) {
+        // Along the boundary freely, across it only a little.
+        const Vec3 chord = at(along[v][1]) - at(along[v][0]);
+        x = chord - normals_[v] * normals_[v].dot(chord);
+        if (!(x.norm() > 0.0)) continue;
+        x.normalize();
+        y = options_.boundary_smoothing * normals_[v].cross(x);
+      }
       double best = worst_around(v, at(v));
       Vec3 best_point = at(v), best_normal = normals_[v];
       for (double length : {0.06, 0.15, 0.3})

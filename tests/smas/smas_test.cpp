@@ -175,6 +175,27 @@ TEST(LayerDepth, KeepsWithinBoneAndSkin) {
   EXPECT_LT(free_depth("labiale_superius"), free_depth("buccale_left"));
 }
 
+TEST(ReachField, TellsTheLiningOfAnEyeSocketFromLidsAndNose) {
+  const Landmarks landmarks = ict_landmarks();
+  const ReachField field(landmarks, {}, 0.0096);
+  for (const char* side : {"_left", "_right"}) {
+    const auto at = [&](const char* name) { return landmarks.at(std::string(name) + side); };
+    const Vec3 globe = 0.5 * (at("exocanthion") + at("endocanthion")) - Vec3(0, 0, 0.010);
+    // The wall of a socket 20 mm around the globe's centre, and the back of lids 14 mm before it.
+    for (const Vec3& direction : {Vec3(0, 0, -1), Vec3(0.6, 0.3, -0.7), Vec3(-0.5, 0.5, -0.7), Vec3(0, -0.7, -0.7)})
+      EXPECT_TRUE(field.is_socket(globe + 0.020 * direction.normalized(), -direction.normalized())) << side;
+    for (const Vec3& direction : {Vec3(0, 0.6, 0.8), Vec3(0, -0.6, 0.8)}) {
+      EXPECT_TRUE(field.is_socket(globe + 0.014 * direction, -direction)) << side;
+      EXPECT_FALSE(field.is_socket(globe + 0.015 * direction, direction)) << side;
+    }
+    // The side of the nose looks outward and forward, past the eye; brow and cheek look forward.
+    const double outward = std::string(side) == "_left" ? 1.0 : -1.0;
+    EXPECT_FALSE(field.is_socket(at("endocanthion") + Vec3(-outward * 0.006, 0, 0.004), Vec3(outward * 0.7, 0, 0.7).normalized())) << side;
+    for (const char* name : {"superciliare", "malare", "exocanthion", "palpebrale_superius", "palpebrale_inferius"})
+      EXPECT_FALSE(field.is_socket(at(name), Vec3(0, 0, 1))) << name << side;
+  }
+}
+
 TEST(Trim, CutsAlongTheZeroLine) {
   // Two triangles of the unit square, cut at x = .6 of them.
   TriangleMesh mesh{{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)}, {{0, 1, 2}, {0, 2, 3}}};
