@@ -214,6 +214,31 @@ int count_folds(const TriangleMesh& mesh, const std::vector<Vec3>& normals) {
   return folds;
 }
 
+// Drops triangles at the boundary that lie folded over or are slivers. Returns whether there were any.
+bool drop_poor_border(MarchingResult* surface) {
+  const Connectivity links = connectivity(surface->mesh);
+  const std::vector<bool> border = border_vertices(surface->mesh, links);
+  std::vector<Triangle> kept;
+  for (int t = 0; t < surface->mesh.triangle_count(); ++t) {
+    const Triangle& corners = surface->mesh.triangles[t];
+    if (border[corners[0]] || border[corners[1]] || border[corners[2]]) {
+      TriangleMesh one;
+      Vec3 facing = Vec3::Zero();
+      for (int v : corners) one.vertices.push_back(surface->mesh.vertices[v]), facing += surface->normals[v];
+      one.triangles = {{0, 1, 2}};
+      if (triangle_quality(one).min_angle < 22.0 || !(triangle_normal(one, 0).dot(facing) > 0.0)) continue;
+    }
+    kept.push_back(corners);
+  }
+  if (kept.size() == surface->mesh.triangles.size()) return false;
+  surface->mesh.triangles = std::move(kept);
+  // Vertices that no triangle uses any more go as well.
+  std::vector<double> inside(surface->mesh.vertices.size(), 1.0);
+  trim(0.35, &surface->mesh, &surface->normals, &surface->sizes, &inside);
+  keep_main_part(&surface->mesh, &surface->normals, &surface->sizes, &inside);
+  return true;
+}
+
 }  // namespace
 
 Result build(const Inputs& inputs, const Options& options) {
@@ -269,9 +294,15 @@ Result build(const Inputs& inputs, const Options& options) {
   quality.boundary_smoothing = 0.3;
   quality.passes = 4;
   result.evaluations += improve_triangles(function, quality, &surface.mesh, &surface.normals, &surface.sizes);
-  result.mesh = std::move(surface.mesh);
-  result.normals = std::move(surface.normals);
-  order_layers(face, skin, bones, options.clearance * scale, 0.06 * scale, &result);
+  // At openings, where the skin ends, being moved between the layers can spoil a triangle.
+  for (int round = 0; round < 4; ++round) {
+    result.mesh = surface.mesh;
+    result.normals = surface.normals;
+    result.outside_layers = 0;
+    order_layers(face, skin, bones, options.clearance * scale, 0.06 * scale, &result);
+    surface.mesh = result.mesh;
+    if (!drop_poor_border(&surface)) break;
+  }
 
   result.boundary = boundary_loops(result.mesh, connectivity(result.mesh));
   result.folds = count_folds(result.mesh, result.normals);
