@@ -17,7 +17,6 @@ namespace fascia::splines {
 namespace {
 
 constexpr double digits10 = 6e-11;
-constexpr double digits8 = 6e-9;
 
 std::vector<Vec3> square_rim() {
   return {{0.5, 0.5, 0}, {9.5, 0.5, 0}, {0.5, 9.5, 0}, {9.5, 9.5, 0},
