@@ -68,7 +68,7 @@ std::vector<SheetPose> sheet_poses() {
 }
 
 view::Image contact_sheet(const std::filesystem::path& rig_path, const rig::Rig& rig) {
-  Face face(rig_path, {});
+  Face face(rig_path, {FASCIA_SPACE_METRES, "own", "low"});
   const view::Renderer renderer(440, 440);
   std::vector<view::Tile> tiles;
   for (const SheetPose& pose : sheet_poses()) {
@@ -84,18 +84,16 @@ view::Image contact_sheet(const std::filesystem::path& rig_path, const rig::Rig&
 void film(const std::filesystem::path& rig_path, const rig::Rig& rig, const std::filesystem::path& curves_path,
           const std::filesystem::path& output) {
   const Curves curves(curves_path);
-  Face face(rig_path, {});
-  const int size = 640, frames_per_second = 30;
+  Face face(rig_path, {FASCIA_SPACE_METRES, "own", "low"});
+  const int size = 480, frames_per_second = 24;
   const view::Renderer renderer(size, size);
   view::Video video(output, size, size, frames_per_second);
   const std::set<std::string> layers = layers_from("skin,eyes");
   const int count = static_cast<int>(curves.duration() * frames_per_second) + 1;
   for (int f = 0; f < count; ++f) {
     const double time = static_cast<double>(f) / frames_per_second;
-    for (int half = 0; half < 2; ++half) {
-      curves.apply(time + 0.5 * half / frames_per_second, face);
-      face.step(0.5 / frames_per_second);
-    }
+    curves.apply(time, face);
+    face.step(1.0 / frames_per_second);
     view::Camera camera = view::named_camera("front", face_box(rig));
     camera.yaw = 28.0 * std::sin(0.45 * time);
     video.add(renderer.draw(draw_face(face, rig, layers), camera));
@@ -126,9 +124,11 @@ void run(const Common& common, const std::filesystem::path& folder) {
   play.rig = rig_path;
   play.curves = curves;
   play.output = folder / "play.glb";
+  play.frames_per_second = 30.0;
+  play.level = "low";
   const PlayFigures played = play_file(common, play);
   clock.say("played ten seconds into " + play.output.string() + " (" + std::to_string(played.milliseconds_a_frame).substr(0, 5) + " ms a frame)");
-  bake_file(common, rig_path, "arkit", folder / "arkit.glb");
+  bake_file(common, rig_path, "arkit", folder / "arkit.glb", "own", "low");
   clock.say("baked the ARKit shapes into " + (folder / "arkit.glb").string());
   const rig::RigFile file = rig::read(formats::read_bytes(rig_path), rig_path.string());
   view::write_png(folder / "contact_sheet.png", contact_sheet(rig_path, file.rig));

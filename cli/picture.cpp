@@ -3,6 +3,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "builder/skull/exterior.h"
 #include "geometry/error.h"
 
 namespace fascia::cli {
@@ -40,6 +41,17 @@ std::vector<Vec3> eye_colours(std::span<const float> rest, const rig::Eye& eye) 
   return colours;
 }
 
+/// Skin where light from outside reaches it at rest, mucosa where it does not: mouth, nostrils, behind the lids.
+std::vector<Vec3> skin_colours(std::span<const float> rest, const std::vector<Triangle>& triangles) {
+  TriangleMesh mesh;
+  for (size_t i = 0; i + 2 < rest.size(); i += 3) mesh.vertices.emplace_back(rest[i], rest[i + 1], rest[i + 2]);
+  mesh.triangles = triangles;
+  std::vector<Vec3> colours(mesh.vertices.size(), Vec3(0.50, 0.22, 0.20));
+  for (int t : skull::exterior(mesh).triangle_of)
+    for (int corner : triangles[static_cast<size_t>(t)]) colours[static_cast<size_t>(corner)] = skin_colour;
+  return colours;
+}
+
 Vec3 part_colour(const std::string& part) {
   if (part.rfind("teeth", 0) == 0) return tooth_colour;
   if (part.rfind("gums", 0) == 0 || part == "tongue" || part == "mouth_interior") return Vec3(0.72, 0.38, 0.36);
@@ -47,7 +59,8 @@ Vec3 part_colour(const std::string& part) {
   return skin_colour;
 }
 
-bool is_transparent_part(const std::string& part) { return part == "eye_surround"; }
+/// Cards that only their textures' transparency makes thin; plain, they would hide the face.
+bool is_transparent_part(const std::string& part) { return part == "eye_surround" || part == "lashes" || part == "hair"; }
 
 bool is_drawn(const std::string& part, const std::set<std::string>& layers) {
   if (part.rfind("eye_l", 0) == 0 || part.rfind("eye_r", 0) == 0) return layers.count("eyes") || layers.count("skin");
@@ -116,6 +129,8 @@ view::DrawList draw_face(const Face& face, const rig::Rig& rig, const std::set<s
     } else if (has_depth && mesh.part == "skin") {
       surface.opacity = 0.28;
       surface.is_two_sided = false;
+    } else if (mesh.part == "skin") {
+      surface.vertex_colours = face.skin_colours(m, [&] { return skin_colours(face.rest(m), mesh.triangles); });
     }
     list.surfaces.push_back(std::move(surface));
   }

@@ -48,6 +48,13 @@ class Face {
   std::span<const float> normals(size_t mesh) const;
   /// Positions at rest, in the same space.
   std::span<const float> rest(size_t mesh) const { return rest_[mesh]; }
+  /// Colours of a mesh's vertices, made by `make` at the first call and kept.
+  template <class Make>
+  const std::vector<Vec3>& skin_colours(size_t mesh, Make make) const {
+    auto [entry, is_new] = colours_.try_emplace(mesh);
+    if (is_new) entry->second = make();
+    return entry->second;
+  }
   /// Fibres as they stand, grouped by muscle, in metres.
   std::vector<std::pair<std::string, std::vector<std::vector<Vec3>>>> fibres() const;
   Mat4 jaw() const;
@@ -64,6 +71,7 @@ class Face {
   std::unique_ptr<fascia_face, Release> face_;
   std::vector<FaceMesh> meshes_;
   std::vector<std::vector<float>> rest_;
+  mutable std::map<size_t, std::vector<Vec3>> colours_;
   int32_t level_ = -1;
 };
 

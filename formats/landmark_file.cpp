@@ -42,8 +42,10 @@ class Reader {
   }
 
   void read_plain(const json& content) {
-    if (content.contains("units")) {
-      if (!content["units"].is_string()) fail("'units' must be \"m\", \"cm\" or \"mm\"");
+    if (content.contains("units") && content["units"].is_number()) {
+      file_.units = std::to_string(content["units"].get<double>());
+    } else if (content.contains("units")) {
+      if (!content["units"].is_string()) fail("'units' must be \"m\", \"cm\", \"mm\" or the metres of one unit");
       file_.units = content["units"].get<std::string>();
       if (file_.units != "m" && file_.units != "cm" && file_.units != "mm")
         fail("the units '" + file_.units + "' are unknown: use \"m\", \"cm\" or \"mm\"");

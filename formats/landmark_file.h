@@ -10,7 +10,7 @@ namespace fascia::formats {
 
 /// Landmarks as a file gives them: points on the skin in the head file's axes.
 struct LandmarkFile {
-  std::string units;  ///< "m", "cm", "mm" or empty when the file does not say (the head file's own)
+  std::string units;  ///< "m", "cm", "mm", metres a unit, or empty when the file does not say
   std::map<std::string, Vec3> points;
 };
 

@@ -5,6 +5,6 @@ cd "$(dirname "$0")/.."
 started=$SECONDS
 scripts/setup.sh --demo
 cmake --preset release -DFASCIA_BUILD_TESTS=OFF >/dev/null
-cmake --build build --target fascia fascia_runtime fascia_samples
+cmake --build build --target all
 echo "demo: set up and built in $((SECONDS - started)) s"
 build/bin/fascia demo --out out

@@ -22,7 +22,7 @@ std::map<std::string, Vec3> onto_skin(const formats::Scene& scene, const Triangl
                               " mm from the skin of '" + scene.path.string() + "'";
     if (off_mm > 20.0)
       throw Error(where + ": place it on the skin, or check that landmarks and head are in the same axes");
-    if (off_mm > 5.0) warnings.push_back(where + "; its nearest skin point is used");
+    if (off_mm > 8.0) warnings.push_back(where + "; its nearest skin point is used");
     projected[name] = hit.position;
   }
   return projected;

@@ -41,6 +41,7 @@ tissue::PartMesh part_mesh(const prepare::PreparedMesh& mesh, const MeshPart& pa
   for (uint32_t v : part.vertices) {
     map[v] = static_cast<int>(out.vertices.size());
     out.vertices.push_back(mesh.positions[v]);
+    if (part.part == prepare::Part::skin) out.skin_vertices.push_back(mesh.skin_vertices[v]);
   }
   for (const Triangle& t : mesh.triangles) {
     const Triangle corners = {map[static_cast<size_t>(t[0])], map[static_cast<size_t>(t[1])], map[static_cast<size_t>(t[2])]};

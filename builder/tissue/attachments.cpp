@@ -40,6 +40,26 @@ std::vector<Patch> patches_of(const TissueInputs& inputs) {
   return patches;
 }
 
+/// What cartilage, frenula and the mentalis hold to the skull beyond their surroundings: nose, lips, chin.
+struct Hold {
+  Vec3 centre;
+  double radius, factor;
+};
+
+std::vector<Hold> holds_of(const TissueInputs& inputs) {
+  const Vec3 glabella = landmark(inputs, "glabella"), nose = landmark(inputs, "subnasale"), tip = landmark(inputs, "pronasale");
+  const Vec3 chin = landmark(inputs, "gnathion"), sellion = landmark(inputs, "sellion");
+  const Vec3 mouth = 0.5 * (landmark(inputs, "cheilion_left") + landmark(inputs, "cheilion_right"));
+  const double third = glabella.y() - nose.y();
+  const Vec3 upper_lip(nose.x(), nose.y() + 0.45 * (mouth.y() - nose.y()), nose.z());
+  const Vec3 lower_lip(chin.x(), 0.6 * mouth.y() + 0.4 * chin.y(), 0.5 * (chin.z() + nose.z()));
+  return {{tip, 0.4 * third, 30.0},
+          {0.5 * (sellion + tip), 0.4 * third, 20.0},
+          {upper_lip, 0.28 * third, 14.0},
+          {lower_lip, 0.3 * third, 10.0},
+          {chin + Vec3(0, 0.1, 0) * third, 0.45 * third, 14.0}};
+}
+
 double smoothstep(double low, double high, double x) {
   const double t = std::clamp((x - low) / (high - low), 0.0, 1.0);
   return t * t * (3.0 - 2.0 * t);
@@ -53,6 +73,7 @@ Attachments attachments_of(const TissueInputs& inputs, const Columns& c) {
   a.bone.assign(n, 1.0);
   a.skin.assign(n, 1.0);
   const std::vector<Patch> patches = patches_of(inputs);
+  const std::vector<Hold> holds = holds_of(inputs);
   std::optional<spatial::SurfaceQuery> smas;
   const bool measured = !inputs.smas.empty() && inputs.smas_bone_attachment.size() == inputs.smas.vertices.size();
   if (measured) smas.emplace(inputs.smas);
@@ -80,8 +101,14 @@ Attachments attachments_of(const TissueInputs& inputs, const Columns& c) {
     const double lips = smoothstep(0.005, 0.016, c.opening_distance[static_cast<size_t>(Opening::mouth)][v]);
     const double lids = smoothstep(0.005, 0.012, std::min(c.opening_distance[static_cast<size_t>(Opening::eye_left)][v],
                                                           c.opening_distance[static_cast<size_t>(Opening::eye_right)][v]));
-    a.bone[v] *= 0.08 + 0.92 * lips * lids;
+    a.bone[v] *= 0.08 + 0.92 * lids * (0.3 + 0.7 * lips);
     if (!c.bone[v]) a.bone[v] *= 0.35;
+    double hold = 1.0;
+    for (const Hold& h : holds) {
+      const double r = (c.mesh.vertices[v] - h.centre).norm() / h.radius;
+      hold = std::max(hold, 1.0 + (h.factor - 1.0) * std::exp(-r * r));
+    }
+    a.bone[v] *= hold;
   }
   return a;
 }

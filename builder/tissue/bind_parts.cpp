@@ -4,6 +4,7 @@
 
 #include "builder/spatial/surface_query.h"
 #include "builder/tissue/bind.h"
+#include "builder/tissue/distance.h"
 #include "geometry/connectivity.h"
 
 namespace fascia::tissue {
@@ -77,6 +78,37 @@ void follow_roots(const PartMesh& part, const OuterSkin& outer, const std::vecto
   }
 }
 
+/// Gums, tongue and palate in one piece: each place goes with the teeth it is nearer to along the surface, so
+/// that the tongue goes with the lower gum it grows from. Without teeth the mouth's height decides.
+std::vector<float> between_the_jaws(const PartMesh& part, const TissueInputs& inputs) {
+  std::vector<int> vertex_map;
+  const TriangleMesh welded = weld({part.vertices, part.triangles}, 1e-6, &vertex_map);
+  std::array<std::vector<DistanceSeed>, 2> seeds;
+  for (const PartMesh& teeth : inputs.parts) {
+    if (teeth.part != "teeth_upper" && teeth.part != "teeth_lower") continue;
+    const spatial::SurfaceQuery query(TriangleMesh{teeth.vertices, teeth.triangles});
+    for (int v = 0; v < welded.vertex_count(); ++v)
+      if (query.closest(welded.vertices[static_cast<size_t>(v)], 0.002).found())
+        seeds[teeth.part == "teeth_lower"].push_back({v});
+  }
+  std::vector<float> weights(part.vertices.size());
+  if (seeds[0].empty() || seeds[1].empty()) {
+    const double height = inputs.landmarks.at("stomion").y();
+    for (size_t v = 0; v < weights.size(); ++v)
+      weights[v] = static_cast<float>(std::clamp(0.5 - (part.vertices[v].y() - height) / 0.012, 0.0, 1.0));
+    return weights;
+  }
+  const EdgeDistances upper = edge_distances(welded, seeds[0]), lower = edge_distances(welded, seeds[1]);
+  for (size_t v = 0; v < weights.size(); ++v) {
+    const auto w = static_cast<size_t>(vertex_map[v]);
+    const double to_upper = upper.distance[w], to_lower = lower.distance[w];
+    const double share = std::isinf(to_upper) ? 1.0 : std::isinf(to_lower) ? 0.0 : to_upper / std::max(to_upper + to_lower, 1e-9);
+    const double t = std::clamp((share - 0.25) / 0.5, 0.0, 1.0);
+    weights[v] = static_cast<float>(t * t * (3.0 - 2.0 * t));
+  }
+  return weights;
+}
+
 }  // namespace
 
 std::vector<rig::Binding> bind_parts(const TissueInputs& inputs, const FaceRegion& region, const Columns&,
@@ -86,7 +118,9 @@ std::vector<rig::Binding> bind_parts(const TissueInputs& inputs, const FaceRegio
   std::optional<spatial::SurfaceQuery> whole;
   for (const PartMesh& part : inputs.parts) {
     rig::Binding binding = empty_binding(part);
-    if (part.part == "skin") {
+    if (part.part == "skin" && part.skin_vertices.size() == part.vertices.size()) {
+      for (size_t v = 0; v < part.vertices.size(); ++v) put(binding, v, skin[static_cast<size_t>(part.skin_vertices[v])]);
+    } else if (part.part == "skin") {
       if (!whole) whole.emplace(inputs.skin);
       for (size_t v = 0; v < part.vertices.size(); ++v) {
         const spatial::ClosestPoint hit = whole->closest(part.vertices[v]);
@@ -100,7 +134,9 @@ std::vector<rig::Binding> bind_parts(const TissueInputs& inputs, const FaceRegio
       std::fill(binding.eye.begin(), binding.eye.end(), static_cast<uint8_t>(part.part == "eye_left" ? 1 : 2));
     } else if (part.part == "lashes" || part.part == "brows") {
       follow_roots(part, outer, skin, binding);
-    } else if (part.part == "other") {
+    } else if (part.part == "mouth_interior") {
+      binding.jaw_weights = between_the_jaws(part, inputs);
+    } else if (part.part == "other" || part.part == "eye_surround") {
       // Tear film, caruncle, stubble: whatever clings to the face goes with it, the rest stays.
       for (size_t v = 0; v < part.vertices.size(); ++v) {
         const OuterSkin::Place place = outer.at(part.vertices[v]);
