@@ -5,6 +5,8 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <iostream>
+#include <memory>
+#include <vector>
 
 #include "geometry/error.h"
 
@@ -39,8 +41,9 @@ void add_to_come(CLI::App& app) {
                                    std::pair{"batch", "building many heads"},
                                    std::pair{"view", "the window"}}) {
     CLI::App* command = app.add_subcommand(name, std::string(what) + " (to come)");
-    command->allow_extras();
-    command->callback([name = std::string(name), what = std::string(what)] {
+    const auto unread = std::make_shared<std::vector<std::string>>();
+    command->add_option("ARGUMENTS", *unread, "Not read yet");
+    command->callback([unread, name = std::string(name), what = std::string(what)] {
       throw Error("'fascia " + name + "' is yet to come: " + what + " is not in this version");
     });
   }

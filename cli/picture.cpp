@@ -1,9 +1,10 @@
 #include "cli/picture.h"
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <sstream>
 
-#include "builder/skull/exterior.h"
+#include "builder/spatial/surface_query.h"
 #include "geometry/error.h"
 
 namespace fascia::cli {
@@ -41,14 +42,24 @@ std::vector<Vec3> eye_colours(std::span<const float> rest, const rig::Eye& eye) 
   return colours;
 }
 
-/// Skin where light from outside reaches it at rest, mucosa where it does not: mouth, nostrils, behind the lids.
+/// Skin, and mucosa where at rest the skin itself closes in on all sides: mouth, nostrils, behind the lids.
 std::vector<Vec3> skin_colours(std::span<const float> rest, const std::vector<Triangle>& triangles) {
   TriangleMesh mesh;
   for (size_t i = 0; i + 2 < rest.size(); i += 3) mesh.vertices.emplace_back(rest[i], rest[i + 1], rest[i + 2]);
   mesh.triangles = triangles;
-  std::vector<Vec3> colours(mesh.vertices.size(), Vec3(0.50, 0.22, 0.20));
-  for (int t : skull::exterior(mesh).triangle_of)
-    for (int corner : triangles[static_cast<size_t>(t)]) colours[static_cast<size_t>(corner)] = skin_colour;
+  const std::vector<Vec3> normals = vertex_normals(mesh);
+  const spatial::SurfaceQuery surface(mesh);
+  const double reach = 0.06, start = 0.0003;  // metres: across a mouth, off the surface itself
+  std::vector<Vec3> colours(mesh.vertices.size(), skin_colour);
+  for (size_t v = 0; v < colours.size(); ++v) {
+    const Vec3& n = normals[v];
+    if (n.squaredNorm() < 0.5) continue;
+    const Vec3 across = n.unitOrthogonal(), along = n.cross(across);
+    int open = 0;
+    for (const Vec3& d : {n, Vec3(n + across), Vec3(n - across), Vec3(n + along), Vec3(n - along)})
+      open += !surface.first_hit(mesh.vertices[v] + start * n, d.normalized(), reach);
+    if (open == 0) colours[v] = Vec3(0.50, 0.22, 0.20);
+  }
   return colours;
 }
 

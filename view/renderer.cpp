@@ -4,7 +4,9 @@
 #include <epoxy/gl.h>
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cmath>
+#include <map>
 
 #include "geometry/error.h"
 
@@ -108,6 +110,20 @@ Mat4 perspective(const Camera& camera, double aspect) {
   return p;
 }
 
+/// Vertex normals that see through texture seams: vertices at one place share theirs.
+std::vector<Vec3> seamless_normals(const DrawSurface& surface) {
+  std::map<std::array<double, 3>, int> first;
+  std::vector<int> shared;
+  for (const Vec3& p : surface.positions)
+    shared.push_back(first.try_emplace({p[0], p[1], p[2]}, static_cast<int>(shared.size())).first->second);
+  TriangleMesh welded{surface.positions, surface.triangles};
+  for (Triangle& t : welded.triangles)
+    for (int& corner : t) corner = shared[static_cast<size_t>(corner)];
+  std::vector<Vec3> normals = vertex_normals(welded);
+  for (size_t v = 0; v < normals.size(); ++v) normals[v] = normals[static_cast<size_t>(shared[v])];
+  return normals;
+}
+
 /// Position, normal and colour of every vertex, interleaved.
 std::vector<float> interleave(const std::vector<Vec3>& positions, const std::vector<Vec3>& normals,
                               const std::vector<Vec3>& colours, const Vec3& colour) {
@@ -202,7 +218,7 @@ struct Renderer::State {
   }
 
   void draw_surface(const DrawSurface& surface) const {
-    const std::vector<Vec3> normals = vertex_normals({surface.positions, surface.triangles});
+    const std::vector<Vec3> normals = seamless_normals(surface);
     const std::vector<float> data = interleave(surface.positions, normals, surface.vertex_colours, surface.colour);
     glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(data.size() * 4), data.data(), GL_STREAM_DRAW);
     glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(surface.triangles.size() * 12), surface.triangles.data(), GL_STREAM_DRAW);

@@ -14,7 +14,7 @@ struct PartMesh {
   std::string part;  ///< skin, eye_left, eye_right, eye_surround, teeth_upper, teeth_lower, gums_upper, gums_lower, mouth_interior, tongue, lashes, brows, hair, other
   std::vector<Vec3> vertices;                  ///< metres, in the file's order
   std::vector<fascia::Triangle> triangles;
-  std::vector<int> skin_vertices;  ///< of a skin part: the vertex of `TissueInputs::skin` each one is, or none known
+  std::vector<int> skin_vertices = {};  ///< of a skin part: the vertex of `TissueInputs::skin` each one is, or none known
 };
 
 /// All that the lattice is made from. Metres; see rig/model/rig.h for axes.

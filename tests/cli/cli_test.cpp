@@ -74,7 +74,7 @@ TEST_F(Tool, BuildReportsOneJsonObject) {
   std::set<std::string> names;
   for (const json& muscle : report["muscles"]) names.insert(muscle["name"].get<std::string>());
   for (const char* name : {"zygomaticus_major_left", "frontalis_medial_right", "mentalis_left", "depressor_anguli_oris_right",
-                           "orbicularis_oculi_left", "orbicularis_oris_upper_left", "corrugator_supercilii_left", "levator_labii_superioris_right"})
+                           "orbicularis_oculi_left", "orbicularis_oris_marginal_upper_left", "corrugator_supercilii_left", "levator_labii_superioris_right"})
     EXPECT_TRUE(names.count(name) || names.count(std::string(name).substr(0, std::string(name).rfind('_')))) << name;
 }
 
