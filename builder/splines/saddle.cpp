@@ -1,0 +1,117 @@
+#include "builder/splines/saddle.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+
+namespace fascia::splines {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+void SaddleSolver::reduce(const MatrixXd& polynomial) {
+  Eigen::ColPivHouseholderQR<MatrixXd> qr;
+  qr.setThreshold(1e-10);
+  qr.compute(polynomial);
+  rank_ = static_cast<int>(qr.rank());
+  reflectors_ = MatrixXd::Zero(rows_, rank_);
+  triangle_ = MatrixXd::Zero(rank_, rank_);
+  for (Index j = 0; j < rank_; ++j) {
+    reflectors_(j, j) = 1;
+    reflectors_.col(j).tail(rows_ - j - 1) = qr.matrixQR().col(j).tail(rows_ - j - 1);
+    const double tau = qr.hCoeffs()[j];
+    triangle_(j, j) = tau;
+    if (j > 0)
+      triangle_.col(j).head(j) = -tau * triangle_.topLeftCorner(j, j) *
+                                 (reflectors_.leftCols(j).transpose() * reflectors_.col(j)).eval();
+  }
+  const MatrixXd pivoted = qr.matrixR().topRows(rank_).triangularView<Eigen::Upper>();
+  upper_ = pivoted * qr.colsPermutation().transpose();
+  square_inverse_ = (upper_ * upper_.transpose()).inverse();
+}
+
+MatrixXd SaddleSolver::turn(const MatrixXd& x) const {
+  return x - reflectors_ * (triangle_ * (reflectors_.transpose() * x));
+}
+
+MatrixXd SaddleSolver::turn_back(const MatrixXd& x) const {
+  return x - reflectors_ * (triangle_.transpose() * (reflectors_.transpose() * x));
+}
+
+bool SaddleSolver::compute(MatrixXd kernel, const MatrixXd& polynomial, bool definite) {
+  rows_ = static_cast<int>(kernel.rows());
+  definite_ = definite;
+  if (!definite) {
+    const Index m = polynomial.cols();
+    MatrixXd all = MatrixXd::Zero(rows_ + m, rows_ + m);
+    all.topLeftCorner(rows_, rows_) = kernel.selfadjointView<Eigen::Lower>();
+    all.topRightCorner(rows_, m) = polynomial;
+    all.bottomLeftCorner(m, rows_) = polynomial.transpose();
+    whole_.compute(all);
+    rank_ = static_cast<int>(m);
+    return whole_.rcond() > 1e-15;
+  }
+  reduce(polynomial);
+  // Q^T K Q = K - X V^T - V X^T with X = W - V (T^T V^T W) / 2 and W = K V T: one pass over K.
+  reduced_ = std::move(kernel);
+  MatrixXd X = reduced_.selfadjointView<Eigen::Lower>() * reflectors_ * triangle_;
+  X -= 0.5 * reflectors_ * (triangle_.transpose() * (reflectors_.transpose() * X)).eval();
+  MatrixXd left(rows_, 2 * rank_), right(rows_, 2 * rank_);
+  left << X, reflectors_;
+  right << reflectors_, X;
+  reduced_.triangularView<Eigen::Lower>() -= left * right.transpose();
+  const Index free = rows_ - rank_;
+  if (free == 0) return true;
+  auto block = reduced_.bottomRightCorner(free, free);
+  Eigen::LLT<Eigen::Ref<MatrixXd>> cholesky(block);
+  return cholesky.info() == Eigen::Success && block.diagonal().allFinite();
+}
+
+// Of all a with R a = x the shortest.
+MatrixXd SaddleSolver::determined(const MatrixXd& x) const {
+  return upper_.transpose() * (square_inverse_ * x);
+}
+
+void SaddleSolver::solve(const MatrixXd& top, const MatrixXd& bottom, MatrixXd& c, MatrixXd& a) const {
+  if (!definite_) {
+    MatrixXd right = MatrixXd::Zero(rows_ + rank_, top.cols());
+    right.topRows(rows_) = top;
+    if (bottom.rows() > 0) right.bottomRows(rank_) = bottom;
+    const MatrixXd solution = whole_.solve(right);
+    c = solution.topRows(rows_);
+    a = solution.bottomRows(rank_);
+    return;
+  }
+  const Index free = rows_ - rank_;
+  const auto below = reduced_.bottomLeftCorner(free, rank_);
+  MatrixXd turned = turn_back(top);
+  MatrixXd local = MatrixXd::Zero(rows_, top.cols());
+  if (bottom.rows() > 0) {
+    local.topRows(rank_) = square_inverse_ * (upper_ * bottom);
+    turned.bottomRows(free) -= below * local.topRows(rank_);
+    const MatrixXd corner = reduced_.topLeftCorner(rank_, rank_).selfadjointView<Eigen::Lower>();
+    turned.topRows(rank_) -= corner * local.topRows(rank_);
+  }
+  if (free > 0) {
+    const auto lower = reduced_.bottomRightCorner(free, free).triangularView<Eigen::Lower>();
+    MatrixXd part = turned.bottomRows(free);
+    lower.solveInPlace(part);
+    lower.transpose().solveInPlace(part);
+    local.bottomRows(free) = part;
+  }
+  a = determined(turned.topRows(rank_) - below.transpose() * local.bottomRows(free));
+  c = turn(local);
+}
+
+MatrixXd SaddleSolver::inverse_block() const {
+  if (!definite_) return whole_.inverse().topLeftCorner(rows_, rows_);
+  const Index free = rows_ - rank_;
+  MatrixXd basis = MatrixXd::Zero(rows_, free);
+  basis.bottomRows(free).setIdentity();
+  basis = turn(basis).transpose().eval();  // Z^T
+  if (free > 0) reduced_.bottomRightCorner(free, free).triangularView<Eigen::Lower>().solveInPlace(basis);
+  MatrixXd out = MatrixXd::Zero(rows_, rows_);
+  out.selfadjointView<Eigen::Lower>().rankUpdate(basis.transpose());
+  return out.selfadjointView<Eigen::Lower>();
+}
+
+}  // namespace fascia::splines
