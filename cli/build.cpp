@@ -84,7 +84,7 @@ void say_report(const Common& common, const rigging::BuildReport& report, const 
   }
   size_t fibres = 0;
   for (const auto& muscle : report.muscles) fibres += static_cast<size_t>(muscle.fibres);
-  common.say("units " + report.units + "; " + std::to_string(report.landmarks_given) + " landmarks given; skull fitted to " +
+  common.say("units " + report.units + "; " + std::to_string(report.landmarks_found) + " landmarks found, " + std::to_string(report.landmarks_given) + " given; skull fitted to " +
              fixed(report.landmark_rms_mm, 1) + " mm; SMAS of " + std::to_string(report.smas_triangles) + " triangles; " +
              std::to_string(report.muscles.size()) + " muscles, " + std::to_string(fibres) + " fibres");
   common.say("built in " + fixed(total, 2) + " s (" + stages + ")");

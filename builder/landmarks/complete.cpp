@@ -11,17 +11,6 @@ namespace fascia::landmarks {
 
 namespace {
 
-/// The skin point that stands for a carried landmark: the nearest that faces as the landmark does, so that
-/// nothing lands on the lining of mouth or lids.
-std::optional<spatial::ClosestPoint> facing_point(const spatial::SurfaceQuery& skin, const Vec3& carried, const Vec3& normal) {
-  const spatial::ClosestPoint near = skin.closest(carried);
-  if (near.found() && near.pseudonormal.dot(normal) > 0.3) return near;
-  const double reach = 0.015;
-  if (const auto hit = skin.first_hit(carried + reach * normal, -normal, 2.0 * reach)) return skin.closest(hit->position);
-  if (near.found()) return near;
-  return std::nullopt;
-}
-
 [[noreturn]] void fail_for_lack(const std::map<std::string, Vec3>& given, const anatomy::GenericAnatomy& anatomy) {
   std::string missing;
   for (const anatomy::Landmark& landmark : anatomy.landmarks)
@@ -30,6 +19,15 @@ std::optional<spatial::ClosestPoint> facing_point(const spatial::SurfaceQuery& s
 }
 
 }  // namespace
+
+std::optional<spatial::ClosestPoint> facing_point(const spatial::SurfaceQuery& skin, const Vec3& carried, const Vec3& normal) {
+  const spatial::ClosestPoint near = skin.closest(carried);
+  if (near.found() && near.pseudonormal.dot(normal) > 0.3) return near;
+  const double reach = 0.015;
+  if (const auto hit = skin.first_hit(carried + reach * normal, -normal, 2.0 * reach)) return skin.closest(hit->position);
+  if (near.found()) return near;
+  return std::nullopt;
+}
 
 std::map<std::string, SkinLandmark> complete(const std::map<std::string, Vec3>& given,
                                              const anatomy::GenericAnatomy& anatomy,

@@ -1,20 +1,15 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 
 #include "anatomy/anatomy.h"
+#include "builder/landmarks/skin_landmark.h"
 #include "builder/spatial/surface_query.h"
 #include "geometry/mesh.h"
 
 namespace fascia::landmarks {
-
-/// A landmark on the skin of this head.
-struct SkinLandmark {
-  Vec3 position = Vec3::Zero();  ///< metres, on the skin
-  double confidence = 1.0;       ///< 1: given by hand; less: carried over from the generic head
-  bool is_given = true;
-};
 
 /// All skin landmarks of `anatomy` on this head: the given ones as they are, the others carried over from the
 /// generic head by the thin-plate spline through the given ones and put on the skin.

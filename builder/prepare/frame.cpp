@@ -33,33 +33,6 @@ std::string unit_name(double metres) {
   return std::to_string(metres);
 }
 
-TriangleMesh joined(const formats::Scene& scene) {
-  TriangleMesh all;
-  for (const formats::SceneMesh& mesh : scene.meshes) {
-    const int base = all.vertex_count();
-    all.vertices.insert(all.vertices.end(), mesh.positions.begin(), mesh.positions.end());
-    for (const Triangle& t : mesh.triangles) all.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
-  }
-  return all;
-}
-
-/// Brings the landmarks' numbers to the file's: a landmark file may be in millimetres for a head in
-/// metres. Of the decimal ratios the one that puts them on the surface is the right one.
-std::map<std::string, Vec3> in_file_units(const formats::LandmarkFile& given, const spatial::SurfaceQuery& surface) {
-  double best = 1e300, ratio = 1.0;
-  for (double candidate : {1.0, 1e-3, 1e3, 1e-2, 1e2, 1e-1, 1e1}) {
-    double sum = 0.0;
-    for (const auto& [name, p] : given.points) sum += surface.closest(candidate * p).distance;
-    if (sum < 0.5 * best) {
-      best = sum;
-      ratio = candidate;
-    }
-  }
-  std::map<std::string, Vec3> points;
-  for (const auto& [name, p] : given.points) points[name] = ratio * p;
-  return points;
-}
-
 struct Similarity {
   double scale = 1.0;
   Mat3 rotation = Mat3::Identity();
@@ -119,8 +92,7 @@ Mat4 compose(double scale, const Mat3& rotation) {
 Frame from_landmarks(const formats::Scene& scene, const formats::LandmarkFile& given,
                      const std::map<std::string, Vec3>& reference, const PrepareOptions& options) {
   Frame frame;
-  const spatial::SurfaceQuery surface(joined(scene));
-  frame.landmarks = in_file_units(given, surface);
+  frame.landmarks = in_file_units(scene, given).points;
   std::vector<Vec3> here, generic;
   for (const auto& [name, p] : frame.landmarks)
     if (const auto known = reference.find(name); known != reference.end()) {
@@ -158,7 +130,7 @@ double likely_unit(double height) {
 
 Frame from_convention(const formats::Scene& scene, const PrepareOptions& options) {
   Frame frame;
-  const Vec3 size = bounds(joined(scene).vertices).size();
+  const Vec3 size = bounds(joined_meshes(scene).vertices).size();
   const bool is_gltf = scene.kind == formats::FileKind::glb || scene.kind == formats::FileKind::gltf;
   const bool z_up = options.up == "z" || (options.up == "auto" && !is_gltf && size[2] > 1.4 * size[1]);
   Mat3 axes = Mat3::Identity();
@@ -172,6 +144,37 @@ Frame from_convention(const formats::Scene& scene, const PrepareOptions& options
 }
 
 }  // namespace
+
+TriangleMesh joined_meshes(const formats::Scene& scene, const std::string& only) {
+  TriangleMesh all;
+  std::string known;
+  for (const formats::SceneMesh& mesh : scene.meshes) {
+    known += (known.empty() ? "" : ", ") + mesh.name;
+    if (!only.empty() && mesh.name != only) continue;
+    const int base = all.vertex_count();
+    all.vertices.insert(all.vertices.end(), mesh.positions.begin(), mesh.positions.end());
+    for (const Triangle& t : mesh.triangles) all.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
+  }
+  if (!only.empty() && all.empty()) throw Error("'" + scene.path.string() + "' has no mesh '" + only + "'; it has: " + known);
+  return all;
+}
+
+formats::LandmarkFile in_file_units(const formats::Scene& scene, const formats::LandmarkFile& given) {
+  if (given.points.empty()) return given;
+  const spatial::SurfaceQuery surface(joined_meshes(scene));
+  double best = 1e300, ratio = 1.0;
+  for (double candidate : {1.0, 1e-3, 1e3, 1e-2, 1e2, 1e-1, 1e1}) {
+    double sum = 0.0;
+    for (const auto& [name, p] : given.points) sum += surface.closest(candidate * p).distance;
+    if (sum < 0.5 * best) {
+      best = sum;
+      ratio = candidate;
+    }
+  }
+  formats::LandmarkFile file = given;
+  for (auto& [name, p] : file.points) p *= ratio;
+  return file;
+}
 
 Frame find_frame(const formats::Scene& scene, const formats::LandmarkFile& given,
                  const std::map<std::string, Vec3>& reference, const PrepareOptions& options) {

@@ -79,18 +79,10 @@ int skin_component(const formats::Scene& scene, const WeldedScene& welded, const
   std::vector<double> score(components.size());
   for (size_t c = 0; c < components.size(); ++c) score[c] = 1e-6 * components[c].area;
   if (!options.skin.empty()) {
-    bool found = false;
+    joined_meshes(scene, options.skin);  // says which names there are when this is none
     for (size_t c = 0; c < components.size(); ++c)
       for (int m : components[c].meshes)
-        if (scene.meshes[static_cast<size_t>(m)].name == options.skin) {
-          score[c] += 1e3 * components[c].area;
-          found = true;
-        }
-    if (!found) {
-      std::string known;
-      for (const auto& mesh : scene.meshes) known += (known.empty() ? "" : ", ") + mesh.name;
-      throw Error("'" + scene.path.string() + "' has no mesh '" + options.skin + "'; it has: " + known);
-    }
+        if (scene.meshes[static_cast<size_t>(m)].name == options.skin) score[c] += 1e3 * components[c].area;
   }
   if (!landmarks.empty()) {
     const spatial::SurfaceQuery surface(welded.surface);

@@ -63,6 +63,14 @@ struct PrepareOptions {
   std::string skin;            ///< name of the mesh that is the skin; empty: found
 };
 
+/// The landmarks' coordinates in the head file's units: of the decimal ratios the one that puts them on the surface, for a
+/// landmark file may be in millimetres beside a head in metres.
+formats::LandmarkFile in_file_units(const formats::Scene& scene, const formats::LandmarkFile& given);
+
+/// All meshes of `scene` as one, in the file's axes and units; of the mesh named `only` alone when that is not empty.
+/// Throws fascia::Error, naming the meshes there are, when `only` names none.
+TriangleMesh joined_meshes(const formats::Scene& scene, const std::string& only = "");
+
 /// Finds units, axes and parts of `scene`, and welds its skin.
 ///
 /// `given` are the landmarks by hand, `reference` the generic head's skin landmarks by the same names (metres,

@@ -3,12 +3,10 @@
 #include <chrono>
 #include <cmath>
 
-#include "builder/landmarks/complete.h"
 #include "builder/muscles/muscles.h"
 #include "builder/rigging/stages.h"
 #include "builder/skull/skull.h"
 #include "builder/smas/smas.h"
-#include "builder/spatial/surface_query.h"
 #include "builder/tissue/build.h"
 #include "geometry/error.h"
 
@@ -56,32 +54,33 @@ void report_landmarks(const std::map<std::string, landmarks::SkinLandmark>& all,
     if (known && known->required && landmark.confidence < 0.5) report.low_confidence.push_back(name);
   }
   for (const std::string& name : report.low_confidence)
-    report.warnings.push_back("landmark '" + name + "' was carried over from the generic head with low confidence; give it in --landmarks");
+    report.warnings.push_back("landmark '" + name + "' was placed with low confidence; look at it with 'fascia export --part landmarks' and give it in --landmarks");
+}
+
+/// The same meshes with their triangles facing the other way.
+formats::Scene turned_over(formats::Scene scene) {
+  for (formats::SceneMesh& mesh : scene.meshes)
+    for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
+  return scene;
 }
 
 }  // namespace
 
-BuildResult build_rig(const formats::Scene& scene, const formats::LandmarkFile& given,
+BuildResult build_rig(const formats::Scene& file, const formats::LandmarkFile& given,
                       const anatomy::GenericAnatomy& anatomy, const BuildOptions& options) {
   BuildResult result;
   BuildReport& report = result.report;
-  if (given.points.empty())
-    throw Error("'" + scene.path.string() +
-                "': landmarks are not found on a mesh yet; give --landmarks FILE with points on the skin "
-                "('docs/landmarks.md' names them)");
   Stages stages(options, report);
+  const LocatedHead located = stages.run("head", [&] { return locate_head(file, given, anatomy, options.prepare); });
+  const formats::Scene scene = located.found && located.found->is_inside_out ? turned_over(file) : file;
   const prepare::PreparedHead head = stages.run(
-      "prepare", [&] { return prepare::prepare(scene, given, reference_points(anatomy), options.prepare); });
+      "prepare", [&] { return prepare::prepare(scene, located.landmarks, reference_points(anatomy), options.prepare); });
   report.units = head.units;
   report.input_to_metres = head.input_to_metres;
   report.warnings = head.warnings;
 
-  const auto all_landmarks = stages.run("landmarks", [&] {
-    std::vector<std::string> unknown;
-    auto all = landmarks::complete(head.landmarks, anatomy, spatial::SurfaceQuery(head.skin), &unknown);
-    for (const std::string& name : unknown) report.warnings.push_back("landmark '" + name + "' is not known and was left out");
-    return all;
-  });
+  const SkinLandmarks all_landmarks =
+      stages.run("landmarks", [&] { return place_landmarks(located, head, given, anatomy, report.warnings); });
   report_landmarks(all_landmarks, anatomy, report);
   const std::map<std::string, Vec3> points = places(all_landmarks);
 

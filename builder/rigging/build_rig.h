@@ -58,8 +58,8 @@ struct BuildResult {
 
 /// Builds the rig of `scene`.
 ///
-/// `landmarks` are the given ones (see formats/landmark_file.h); all that `anatomy` marks as required must be
-/// among them. Throws fascia::Error naming the stage's part at fault and the remedy.
+/// `landmarks` are the given ones (see formats/landmark_file.h), none as a rule: the rest is found, or, where all
+/// that `anatomy` marks as required are given, carried over through them. Throws fascia::Error naming the stage's part at fault and the remedy.
 BuildResult build_rig(const formats::Scene& scene, const formats::LandmarkFile& landmarks,
                       const anatomy::GenericAnatomy& anatomy, const BuildOptions& options = {});
 

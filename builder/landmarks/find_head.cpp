@@ -1,0 +1,124 @@
+#include "builder/landmarks/find_head.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "builder/landmarks/registration.h"
+#include "builder/landmarks/spheres.h"
+#include "geometry/error.h"
+
+namespace fascia::landmarks {
+
+namespace {
+
+/// Measured: faces fit by 0.52 and more (0.7 as a rule); spheres, cubes, limbs, lumps and the backs of heads by 0.49 and less.
+constexpr double least_likeness = 0.51;
+constexpr double sure_likeness = 0.62;
+
+struct Candidate {
+  Placement placement;
+  size_t lump = 0;
+  double residual = 1.0;  ///< metres of the generic head
+  double likeness = 0.0;
+};
+
+bool are_alike(const GenericFace& face, const Placement& a, const Placement& b) {
+  const Vec3 apart = a(face.vault.centre) - b(face.vault.centre);
+  return apart.norm() < 0.012 * a.scale && std::abs(std::log(a.scale / b.scale)) < 0.1 &&
+         (a.rotation.transpose() * b.rotation).trace() > 1.0 + 2.0 * std::cos(12.0 * EIGEN_PI / 180.0);
+}
+
+void sort_and_keep(std::vector<Candidate>& all, const GenericFace& face, size_t count) {
+  std::stable_sort(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) { return a.residual < b.residual; });
+  std::vector<Candidate> kept;
+  for (const Candidate& candidate : all) {
+    if (kept.size() == count) break;
+    const bool is_known = std::any_of(kept.begin(), kept.end(),
+                                      [&](const Candidate& other) { return are_alike(face, candidate.placement, other.placement); });
+    if (!is_known) kept.push_back(candidate);
+  }
+  all = std::move(kept);
+}
+
+/// The samples about each lump, made when first asked for.
+class LumpSamples {
+ public:
+  LumpSamples(const TriangleMesh& mesh, const spatial::SurfaceQuery& surface, const std::vector<Ball>& lumps)
+      : mesh_(mesh), surface_(surface), lumps_(lumps) {}
+  const Neighbours& operator()(size_t lump) {
+    std::optional<Neighbours>& samples = samples_[lump];
+    if (!samples) {
+      const Ball about{lumps_[lump].centre, 1.9 * lumps_[lump].radius};
+      samples.emplace(open_samples(sample_evenly(mesh_, 5000, about), surface_));
+    }
+    return *samples;
+  }
+
+ private:
+  const TriangleMesh& mesh_;
+  const spatial::SurfaceQuery& surface_;
+  const std::vector<Ball>& lumps_;
+  std::map<size_t, std::optional<Neighbours>> samples_;
+};
+
+double likeness_of(const GenericFace& face, const Samples& samples, const Placement& placement) {
+  RegistrationOptions coarse;
+  coarse.stride = 3;
+  coarse.lambdas = {10, 3, 1};
+  return fitted_share(face, register_face(face, samples, placement, {}, coarse));
+}
+
+}  // namespace
+
+TriangleMesh turned_over(TriangleMesh mesh) {
+  for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
+  return mesh;
+}
+
+FoundHead find_head(const GenericFace& face, const TriangleMesh& input, const std::string& path, const std::optional<Placement>& hint) {
+  const int sample_count = 8000;
+  FoundHead found;
+  TriangleMesh mesh = input;
+  spatial::SurfaceQuery surface(mesh);
+  Samples even = sample_evenly(mesh, sample_count);
+  found.is_inside_out = is_inside_out(even, surface);
+  if (found.is_inside_out) {
+    mesh = turned_over(std::move(mesh));
+    surface = spatial::SurfaceQuery(mesh);
+    even = sample_evenly(mesh, sample_count);
+  }
+  std::vector<Ball> lumps;
+  std::vector<Candidate> candidates;
+  if (hint) {
+    lumps = {{(*hint)(face.vault.centre), face.vault.radius * hint->scale}};
+    candidates = {{*hint}};
+  } else {
+    lumps = round_lumps(open_samples(even, surface), 7);
+    for (size_t l = 0; l < lumps.size(); ++l)
+      for (const Guess& guess : guess_placements(face, surface, lumps[l], 16)) candidates.push_back({guess.placement, l});
+  }
+  LumpSamples near(mesh, surface, lumps);
+  for (Candidate& candidate : candidates)
+    if (near(candidate.lump).samples().size() >= 50)
+      candidate.placement = refine_placement(face, near(candidate.lump), candidate.placement, 8, 6, &candidate.residual);
+  sort_and_keep(candidates, face, 8);
+  const Candidate* best = nullptr;
+  for (Candidate& candidate : candidates) {
+    if (candidate.residual >= 1.0) continue;
+    candidate.placement = refine_placement(face, near(candidate.lump), candidate.placement, 12, 2, &candidate.residual);
+    candidate.likeness = likeness_of(face, near(candidate.lump).samples(), candidate.placement);
+    if (!best || candidate.likeness > best->likeness) best = &candidate;
+    if (best->likeness > sure_likeness) break;
+  }
+  if (!best || best->likeness < least_likeness)
+    throw Error("'" + path + "': no face was found in it. If there is one, give --landmarks FILE with at least four points on the "
+                "skin that are not in one plane, such as pronasale, menton, exocanthion_left and exocanthion_right; "
+                "if it is one mesh among many, name it with --skin");
+  found.placement = best->placement;
+  found.likeness = best->likeness;
+  return found;
+}
+
+}  // namespace fascia::landmarks

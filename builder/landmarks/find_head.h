@@ -1,0 +1,29 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "builder/landmarks/placement.h"
+
+namespace fascia::landmarks {
+
+/// A face found in a mesh.
+struct FoundHead {
+  Placement placement;         ///< of the generic head, in the mesh's own axes and units
+  double likeness = 0.0;       ///< share of the generic face that the mesh follows, see fitted_share
+  bool is_inside_out = false;  ///< the mesh's triangles face inward
+};
+
+/// `mesh` with its triangles facing the other way.
+TriangleMesh turned_over(TriangleMesh mesh);
+
+/// Finds the head in `mesh`: any pose, size and place; a bust, a whole body, or a face alone.
+///
+/// Round lumps are the candidates; on each the generic head is turned to where the radial extents agree and drawn
+/// close by iterative closest points; then it is bent onto the mesh a little, and how much of the face fits decides.
+/// `hint` says where the head stands, by given landmarks, and spares the search.
+/// Throws fascia::Error when nothing in the mesh is a face; `path` names the file in the message.
+FoundHead find_head(const GenericFace& face, const TriangleMesh& mesh, const std::string& path,
+                    const std::optional<Placement>& hint = std::nullopt);
+
+}  // namespace fascia::landmarks

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <vector>
+
+#include "anatomy/anatomy.h"
+#include "builder/landmarks/samples.h"
+
+namespace fascia::landmarks {
+
+/// The generic head as what is compared with a mesh: points of its outer skin, dense about eyes, nose and mouth.
+struct GenericFace {
+  Samples points;                ///< metres, rig frame; mirror-symmetric about x = 0
+  std::vector<int> mirror;       ///< the other side's point; a midline point's own index
+  std::vector<double> weights;   ///< what a point says about the head's place: 1 face .. 0 neck
+  std::vector<bool> is_face;     ///< in front of the ears, between hairline and chin
+  TriangleMesh skin;             ///< the whole skin
+  Ball vault;                    ///< sphere through the outer skin above the neck
+};
+
+/// Takes the points from the skin of `anatomy`'s head, its skin landmarks among them.
+/// Throws fascia::Error when the anatomy has no skin.
+GenericFace generic_face(const anatomy::GenericAnatomy& anatomy);
+
+}  // namespace fascia::landmarks

@@ -1,0 +1,86 @@
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
+
+#include "builder/landmarks/complete.h"
+#include "builder/landmarks/find.h"
+#include "builder/rigging/stages.h"
+
+namespace fascia::rigging {
+
+namespace {
+
+bool has_all_required(const formats::LandmarkFile& given, const anatomy::GenericAnatomy& anatomy) {
+  for (const anatomy::Landmark& landmark : anatomy.landmarks)
+    if (landmark.required && !given.points.count(landmark.name)) return false;
+  return true;
+}
+
+/// Where the given landmarks put the generic head; nothing when they are fewer than four or lie in a plane.
+std::optional<landmarks::Placement> placement_of(const formats::LandmarkFile& given, const anatomy::GenericAnatomy& anatomy) {
+  std::vector<Vec3> generic, here;
+  for (const auto& [name, p] : given.points)
+    if (const anatomy::Landmark* known = anatomy.landmark(name); known && known->skin) {
+      generic.push_back(*known->skin);
+      here.push_back(p);
+    }
+  if (generic.size() < 4) return std::nullopt;
+  const auto count = static_cast<Eigen::Index>(generic.size());
+  Eigen::Matrix3Xd from(3, count), to(3, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    from.col(i) = generic[static_cast<size_t>(i)];
+    to.col(i) = here[static_cast<size_t>(i)];
+  }
+  const Eigen::Matrix3Xd centred = from.colwise() - from.rowwise().mean();
+  if (Eigen::JacobiSVD<Eigen::Matrix3Xd>(centred).singularValues()[2] < 0.004) return std::nullopt;
+  const Mat4 map = Eigen::umeyama(from, to, true);
+  landmarks::Placement placement;
+  placement.scale = map.topLeftCorner<3, 1>().norm();
+  placement.rotation = map.topLeftCorner<3, 3>() / placement.scale;
+  placement.shift = map.topRightCorner<3, 1>();
+  return placement;
+}
+
+/// `placement` in the file's axes and units, in those that `map` (a similarity) leads to.
+landmarks::Placement mapped(const landmarks::Placement& placement, const Mat4& map) {
+  landmarks::Placement result;
+  const double scale = map.topLeftCorner<3, 1>().norm();
+  result.scale = scale * placement.scale;
+  result.rotation = map.topLeftCorner<3, 3>() / scale * placement.rotation;
+  result.shift = transform_point(map, placement.shift);
+  return result;
+}
+
+}  // namespace
+
+LocatedHead locate_head(const formats::Scene& scene, const formats::LandmarkFile& given, const anatomy::GenericAnatomy& anatomy,
+                        const prepare::PrepareOptions& options) {
+  LocatedHead located;
+  located.landmarks = given;
+  if (has_all_required(given, anatomy)) return located;
+  located.landmarks = prepare::in_file_units(scene, given);
+  located.generic = landmarks::generic_face(anatomy);
+  const TriangleMesh mesh = prepare::joined_meshes(scene, options.skin);
+  located.found = landmarks::find_head(*located.generic, mesh, scene.path.string(), placement_of(located.landmarks, anatomy));
+  for (const auto& [name, p] : landmarks::rough_landmarks(*located.generic, anatomy, mesh, *located.found))
+    located.landmarks.points.emplace(name, p);
+  return located;
+}
+
+SkinLandmarks place_landmarks(const LocatedHead& located, const prepare::PreparedHead& head, const formats::LandmarkFile& given,
+                              const anatomy::GenericAnatomy& anatomy, std::vector<std::string>& warnings) {
+  std::map<std::string, Vec3> by_hand;
+  for (const auto& [name, p] : head.landmarks)
+    if (given.points.count(name)) by_hand[name] = p;
+  std::vector<std::string> unknown;
+  const spatial::SurfaceQuery skin(head.skin);
+  SkinLandmarks all;
+  if (located.found) {
+    all = landmarks::find(*located.generic, anatomy, skin, mapped(located.found->placement, head.input_to_metres), by_hand, &unknown);
+  } else {
+    all = landmarks::complete(by_hand, anatomy, skin, &unknown);
+  }
+  for (const std::string& name : unknown) warnings.push_back("landmark '" + name + "' is not known and was left out");
+  return all;
+}
+
+}  // namespace fascia::rigging
