@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "builder/muscles/muscles.h"
+#include "builder/rigging/find_landmarks.h"
 #include "builder/rigging/stages.h"
 #include "builder/skull/skull.h"
 #include "builder/smas/smas.h"
@@ -33,13 +34,6 @@ class Stages {
   BuildReport& report_;
 };
 
-std::map<std::string, Vec3> reference_points(const anatomy::GenericAnatomy& anatomy) {
-  std::map<std::string, Vec3> points;
-  for (const anatomy::Landmark& landmark : anatomy.landmarks)
-    if (landmark.skin) points[landmark.name] = *landmark.skin;
-  return points;
-}
-
 std::map<std::string, Vec3> places(const std::map<std::string, landmarks::SkinLandmark>& all) {
   std::map<std::string, Vec3> points;
   for (const auto& [name, landmark] : all) points[name] = landmark.position;
@@ -57,30 +51,22 @@ void report_landmarks(const std::map<std::string, landmarks::SkinLandmark>& all,
     report.warnings.push_back("landmark '" + name + "' was placed with low confidence; look at it with 'fascia export --part landmarks' and give it in --landmarks");
 }
 
-/// The same meshes with their triangles facing the other way.
-formats::Scene turned_over(formats::Scene scene) {
-  for (formats::SceneMesh& mesh : scene.meshes)
-    for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
-  return scene;
-}
-
 }  // namespace
 
-BuildResult build_rig(const formats::Scene& file, const formats::LandmarkFile& given,
+BuildResult build_rig(const formats::Scene& scene, const formats::LandmarkFile& given,
                       const anatomy::GenericAnatomy& anatomy, const BuildOptions& options) {
   BuildResult result;
   BuildReport& report = result.report;
   Stages stages(options, report);
-  const LocatedHead located = stages.run("head", [&] { return locate_head(file, given, anatomy, options.prepare); });
-  const formats::Scene scene = located.found && located.found->is_inside_out ? turned_over(file) : file;
-  const prepare::PreparedHead head = stages.run(
-      "prepare", [&] { return prepare::prepare(scene, located.landmarks, reference_points(anatomy), options.prepare); });
+  const FoundLandmarks found = stages.run("landmarks", [&] { return find_landmarks(scene, given, anatomy, options.prepare); });
+  const prepare::PreparedHead& head = found.head;
+  const SkinLandmarks& all_landmarks = found.landmarks;
+  // One stage of three parts: the head's place tells units and parts, which tell where the landmarks are.
+  report.stages = {{"head", found.seconds[0]}, {"prepare", found.seconds[1]}, {"landmarks", found.seconds[2]}};
   report.units = head.units;
   report.input_to_metres = head.input_to_metres;
   report.warnings = head.warnings;
-
-  const SkinLandmarks all_landmarks =
-      stages.run("landmarks", [&] { return place_landmarks(located, head, given, anatomy, report.warnings); });
+  report.warnings.insert(report.warnings.end(), found.warnings.begin(), found.warnings.end());
   report_landmarks(all_landmarks, anatomy, report);
   const std::map<std::string, Vec3> points = places(all_landmarks);
 

@@ -1,8 +1,11 @@
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
+#include <chrono>
+#include <optional>
 
 #include "builder/landmarks/complete.h"
 #include "builder/landmarks/find.h"
+#include "builder/rigging/find_landmarks.h"
 #include "builder/rigging/stages.h"
 
 namespace fascia::rigging {
@@ -50,7 +53,12 @@ landmarks::Placement mapped(const landmarks::Placement& placement, const Mat4& m
   return result;
 }
 
-}  // namespace
+/// The head as found in a file, before its units and axes are known.
+struct LocatedHead {
+  formats::LandmarkFile landmarks;                ///< given ones and, where those are missing, rough ones; file's units
+  std::optional<landmarks::FoundHead> found;      ///< nothing when all required landmarks are given
+  std::optional<landmarks::GenericFace> generic;  ///< with `found`
+};
 
 LocatedHead locate_head(const formats::Scene& scene, const formats::LandmarkFile& given, const anatomy::GenericAnatomy& anatomy,
                         const prepare::PrepareOptions& options) {
@@ -81,6 +89,43 @@ SkinLandmarks place_landmarks(const LocatedHead& located, const prepare::Prepare
   }
   for (const std::string& name : unknown) warnings.push_back("landmark '" + name + "' is not known and was left out");
   return all;
+}
+
+/// The same meshes with their triangles facing the other way.
+formats::Scene turned_over(formats::Scene scene) {
+  for (formats::SceneMesh& mesh : scene.meshes)
+    for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
+  return scene;
+}
+
+Points reference_points(const anatomy::GenericAnatomy& anatomy) {
+  Points points;
+  for (const anatomy::Landmark& landmark : anatomy.landmarks)
+    if (landmark.skin) points[landmark.name] = *landmark.skin;
+  return points;
+}
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+}  // namespace
+
+FoundLandmarks find_landmarks(const formats::Scene& scene, const formats::LandmarkFile& given,
+                              const anatomy::GenericAnatomy& anatomy, const prepare::PrepareOptions& options) {
+  FoundLandmarks result;
+  const double started = now();
+  const LocatedHead located = locate_head(scene, given, anatomy, options);
+  if (located.found) {
+    result.likeness = located.found->likeness;
+    result.is_inside_out = located.found->is_inside_out;
+  }
+  const double located_at = now();
+  const Points reference = reference_points(anatomy);
+  result.head = result.is_inside_out ? prepare::prepare(turned_over(scene), located.landmarks, reference, options)
+                                     : prepare::prepare(scene, located.landmarks, reference, options);
+  const double prepared_at = now();
+  result.landmarks = place_landmarks(located, result.head, given, anatomy, result.warnings);
+  result.seconds = {located_at - started, prepared_at - located_at, now() - prepared_at};
+  return result;
 }
 
 }  // namespace fascia::rigging

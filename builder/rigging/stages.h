@@ -1,11 +1,9 @@
 #pragma once
 
 #include <map>
-#include <optional>
 #include <string>
 
 #include "anatomy/anatomy.h"
-#include "builder/landmarks/find_head.h"
 #include "builder/landmarks/skin_landmark.h"
 #include "builder/prepare/prepare.h"
 #include "builder/rigging/build_rig.h"
@@ -19,21 +17,6 @@ namespace fascia::rigging {
 
 using SkinLandmarks = std::map<std::string, landmarks::SkinLandmark>;
 using Points = std::map<std::string, Vec3>;
-
-/// The head as found in a file, before its units and axes are known.
-struct LocatedHead {
-  formats::LandmarkFile landmarks;                ///< given ones and, where those are missing, rough ones; file's units
-  std::optional<landmarks::FoundHead> found;      ///< nothing when all required landmarks are given
-  std::optional<landmarks::GenericFace> generic;  ///< with `found`
-};
-
-/// Finds the head in `scene` unless `given` has all required landmarks. Throws fascia::Error when there is no face.
-LocatedHead locate_head(const formats::Scene& scene, const formats::LandmarkFile& given, const anatomy::GenericAnatomy& anatomy,
-                        const prepare::PrepareOptions& options);
-
-/// All landmarks on the prepared head: the given ones, and those found or carried over.
-SkinLandmarks place_landmarks(const LocatedHead& located, const prepare::PreparedHead& head, const formats::LandmarkFile& given,
-                              const anatomy::GenericAnatomy& anatomy, std::vector<std::string>& warnings);
 
 /// Fits the generic skull under the head's skin; teeth the head has serve as evidence.
 skull::FitResult fit_skull(const anatomy::GenericAnatomy& anatomy, const prepare::PreparedHead& head,

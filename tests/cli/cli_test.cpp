@@ -61,6 +61,15 @@ class Tool : public ::testing::Test {
 fs::path* Tool::folder = nullptr;
 Outcome* Tool::built = nullptr;
 
+TEST_F(Tool, FindsTheLandmarksItself) {
+  const Outcome found = run("build " + at("head.obj") + " --detail low -o " + at("found.glb") + " --json");
+  ASSERT_EQ(found.code, 0) << found.err;
+  const json report = json::parse(found.out);
+  EXPECT_EQ(report["landmarks"]["given"], 0);
+  EXPECT_GT(report["landmarks"]["found"], 100);
+  EXPECT_TRUE(report["landmarks"]["low_confidence"].empty()) << report["landmarks"];
+}
+
 TEST_F(Tool, BuildReportsOneJsonObject) {
   ASSERT_EQ(built->code, 0) << built->err;
   const json report = json::parse(built->out);
@@ -103,7 +112,9 @@ TEST_F(Tool, FaultyInputIsOneAndNamed) {
     expect_input_error(command + at("head.obj") + tail, "head.obj");
   }
   expect_input_error("build " + at("missing.obj") + " -o " + at("x.glb"), "missing.obj");
-  expect_input_error("build " + at("head.obj") + " -o " + at("x.glb"), "--landmarks");
+  std::ofstream(at("cube.obj")) << ("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\nv 1 1 1\n"
+                        "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n");
+  expect_input_error("build " + at("cube.obj") + " -o " + at("x.glb"), "no face was found");
   expect_input_error("build " + at("head.obj") + " --landmarks " + at("text.glb") + " -o " + at("x.glb"), "text.glb");
   expect_input_error("build " + at("head.obj") + " --landmarks " + at("landmarks.json") + " -o " + at("x.fbx"), ".glb");
   expect_input_error("pose " + at("rig.glb") + " --set no_such_muscle=1 -o " + at("x.glb"), "no_such_muscle");

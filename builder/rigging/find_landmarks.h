@@ -1,0 +1,31 @@
+#pragma once
+
+#include <array>
+#include <map>
+#include <string>
+
+#include "anatomy/anatomy.h"
+#include "builder/landmarks/skin_landmark.h"
+#include "builder/prepare/prepare.h"
+#include "formats/landmark_file.h"
+#include "formats/scene.h"
+
+namespace fascia::rigging {
+
+/// The head of a file with its parts known and its landmarks placed.
+struct FoundLandmarks {
+  prepare::PreparedHead head;
+  std::map<std::string, landmarks::SkinLandmark> landmarks;  ///< metres, rig frame
+  double likeness = 1.0;             ///< share of the generic face that the mesh follows; 1 when nothing was searched
+  bool is_inside_out = false;        ///< the file's triangles face inward; those of `head` were turned
+  std::array<double, 3> seconds{};   ///< for finding the head, preparing it, placing the landmarks
+  std::vector<std::string> warnings;
+};
+
+/// Finds the head in `scene`, prepares it and places all skin landmarks: the given ones as they are, the rest found,
+/// or, where all that `anatomy` marks as required are given, carried over through them.
+/// Throws fascia::Error when there is no face, and as `prepare` does.
+FoundLandmarks find_landmarks(const formats::Scene& scene, const formats::LandmarkFile& given,
+                              const anatomy::GenericAnatomy& anatomy, const prepare::PrepareOptions& options = {});
+
+}  // namespace fascia::rigging

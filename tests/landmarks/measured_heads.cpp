@@ -1,0 +1,212 @@
+#include "tests/landmarks/measured_heads.h"
+
+#include <meshoptimizer.h>
+
+#include <algorithm>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "builder/landmarks/samples.h"
+#include "builder/spatial/surface_query.h"
+#include "formats/landmark_file.h"
+
+namespace fascia::testing {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Multi-PIE numbers of the landmarks that shape defines.
+const std::map<std::string, int>& multi_pie_numbers() {
+  static const std::map<std::string, int> numbers = {
+      {"gnathion", 8},          {"pronasale", 30},        {"subnasale", 33},        {"exocanthion_right", 36},
+      {"endocanthion_right", 39}, {"endocanthion_left", 42}, {"exocanthion_left", 45}, {"cheilion_right", 48},
+      {"labiale_superius", 51}, {"cheilion_left", 54},    {"labiale_inferius", 57}, {"stomion", 62}};
+  return numbers;
+}
+
+size_t head_mesh(const formats::Scene& scene) {
+  for (size_t m = 0; m < scene.meshes.size(); ++m)
+    if (scene.meshes[m].name == "head") return m;
+  return 0;
+}
+
+template <class Change>
+MeasuredHead changed(MeasuredHead head, const std::string& how, Change change) {
+  for (formats::SceneMesh& mesh : head.scene.meshes)
+    for (Vec3& p : mesh.positions) p = change(p);
+  for (auto& [name, p] : head.truth) p = change(p);
+  head.name += " " + how;
+  return head;
+}
+
+}  // namespace
+
+fs::path measured_data() {
+  const fs::path data = fs::path(FASCIA_MEASURED_DATA) / "data";
+  return fs::exists(data / "ict/landmarks68.json") ? data : fs::path();
+}
+
+std::map<std::string, int> ict_landmark_vertices() {
+  static const std::map<std::string, int> vertices = [] {
+    std::ifstream file(measured_data() / "ict/landmarks68.json");
+    const auto positions = nlohmann::json::parse(file).at("positions_m");
+    const formats::Scene scene = formats::read(measured_data() / "ict/neutral.glb");
+    const std::vector<Vec3>& all = scene.meshes[head_mesh(scene)].positions;
+    std::map<std::string, int> found;
+    for (const auto& [name, number] : multi_pie_numbers()) {
+      const auto& p = positions.at(static_cast<size_t>(number));
+      const Vec3 at(p[0], p[1], p[2]);
+      const auto nearest = std::min_element(all.begin(), all.end(), [&](const Vec3& a, const Vec3& b) { return (a - at).norm() < (b - at).norm(); });
+      found[name] = static_cast<int>(nearest - all.begin());
+    }
+    return found;
+  }();
+  return vertices;
+}
+
+MeasuredHead ict_head(const std::string& name) {
+  MeasuredHead head;
+  head.name = name;
+  head.scene = formats::read(measured_data() / "ict" / (name + ".glb"));
+  for (const auto& [landmark, vertex] : ict_landmark_vertices())
+    head.truth[landmark] = head.scene.meshes[head_mesh(head.scene)].positions[static_cast<size_t>(vertex)];
+  return head;
+}
+
+MeasuredHead makehuman() {
+  MeasuredHead head;
+  head.name = "makehuman";
+  head.millimetres = 100;
+  head.scene = formats::read(measured_data() / "heads/makehuman_body.obj");
+  const auto all = formats::read_landmarks(fs::path(FASCIA_TEST_DATA) / "makehuman_landmarks.json").points;
+  for (const auto& [name, number] : multi_pie_numbers())
+    if (const auto at = all.find(name); at != all.end()) head.truth[name] = at->second;
+  return head;
+}
+
+MeasuredHead moved(MeasuredHead head, const Mat3& rotation, const Vec3& shift) {
+  return changed(std::move(head), "turned", [&](const Vec3& p) { return Vec3(rotation * p + shift); });
+}
+
+MeasuredHead in_units(MeasuredHead head, double units_per_metre) {
+  head.millimetres /= units_per_metre;
+  return changed(std::move(head), "in " + std::to_string(static_cast<int>(units_per_metre)) + "ths of a metre",
+                 [&](const Vec3& p) { return Vec3(units_per_metre * p); });
+}
+
+MeasuredHead noisy(MeasuredHead head, double millimetres, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal(0.0, millimetres / head.millimetres);
+  for (formats::SceneMesh& mesh : head.scene.meshes) {
+    // Vertices that are doubled along texture seams are one point of a scan.
+    std::map<std::array<double, 3>, Vec3> once;
+    for (Vec3& p : mesh.positions) {
+      const auto [at, is_new] = once.try_emplace({p[0], p[1], p[2]}, Vec3::Zero());
+      if (is_new) at->second = Vec3(normal(random), normal(random), normal(random));
+      p += at->second;
+    }
+  }
+  head.name += " noisy";
+  return head;
+}
+
+MeasuredHead decimated(MeasuredHead head, int triangles) {
+  size_t total = 0;
+  for (const formats::SceneMesh& mesh : head.scene.meshes) total += mesh.triangles.size();
+  const double ratio = static_cast<double>(triangles) / static_cast<double>(total);
+  for (formats::SceneMesh& mesh : head.scene.meshes) {
+    std::vector<float> positions;
+    std::vector<unsigned> indices;
+    for (const Vec3& p : mesh.positions)
+      for (int axis = 0; axis < 3; ++axis) positions.push_back(static_cast<float>(p[axis]));
+    for (const Triangle& t : mesh.triangles)
+      for (int v : t) indices.push_back(static_cast<unsigned>(v));
+    const size_t goal = std::max<size_t>(12, static_cast<size_t>(ratio * static_cast<double>(mesh.triangles.size()))) * 3;
+    indices.resize(meshopt_simplify(indices.data(), indices.data(), indices.size(), positions.data(), mesh.positions.size(), 12, goal, 1.0f));
+    mesh.triangles.clear();
+    for (size_t i = 0; i + 2 < indices.size(); i += 3)
+      mesh.triangles.push_back({static_cast<int>(indices[i]), static_cast<int>(indices[i + 1]), static_cast<int>(indices[i + 2])});
+  }
+  head.name += " decimated";
+  return head;
+}
+
+MeasuredHead subdivided(MeasuredHead head, int rounds) {
+  formats::SceneMesh& mesh = head.scene.meshes[head_mesh(head.scene)];
+  for (int round = 0; round < rounds; ++round) {
+    std::map<std::pair<int, int>, int> middles;
+    std::vector<Triangle> finer;
+    const auto middle = [&](int a, int b) {
+      const auto [at, is_new] = middles.try_emplace({std::min(a, b), std::max(a, b)}, static_cast<int>(mesh.positions.size()));
+      if (is_new) mesh.positions.push_back(0.5 * (mesh.positions[static_cast<size_t>(a)] + mesh.positions[static_cast<size_t>(b)]));
+      return at->second;
+    };
+    for (const Triangle& t : mesh.triangles) {
+      const int x = middle(t[0], t[1]), y = middle(t[1], t[2]), z = middle(t[2], t[0]);
+      finer.insert(finer.end(), {{t[0], x, z}, {t[1], y, x}, {t[2], z, y}, {x, y, z}});
+    }
+    mesh.triangles = std::move(finer);
+  }
+  mesh.uvs.clear();
+  head.name += " subdivided";
+  return head;
+}
+
+MeasuredHead skin_only(MeasuredHead head) {
+  const size_t at = head_mesh(head.scene);
+  head.scene.meshes = {head.scene.meshes[at]};
+  head.name += " skin only";
+  return head;
+}
+
+MeasuredHead without_lining(MeasuredHead head) {
+  // On the mean head, with eyes and teeth in place, the lining is what no ray out of 26 leaves.
+  static const std::vector<bool> is_lining = [] {
+    const formats::Scene scene = formats::read(measured_data() / "ict/neutral.glb");
+    TriangleMesh all;
+    std::vector<size_t> first;
+    for (const auto& mesh : scene.meshes) {
+      const int base = all.vertex_count();
+      first.push_back(all.triangles.size());
+      all.vertices.insert(all.vertices.end(), mesh.positions.begin(), mesh.positions.end());
+      for (const Triangle& t : mesh.triangles) all.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
+    }
+    const spatial::SurfaceQuery surface(all);
+    const formats::SceneMesh& skin = scene.meshes[head_mesh(scene)];
+    std::vector<bool> lining(skin.triangles.size(), true);
+    for (size_t t = 0; t < lining.size(); ++t) {
+      const int index = static_cast<int>(first[head_mesh(scene)] + t);
+      const Vec3 centre = position(all, {index, Vec3::Constant(1.0 / 3.0)}), normal = triangle_normal(all, index);
+      for (int d = 0; d < 27 && lining[t]; ++d) {
+        const Vec3 direction(d % 3 - 1, d / 3 % 3 - 1, d / 9 - 1);
+        if (direction.norm() > 0 && direction.normalized().dot(normal) > 0.2 && !surface.blocked(centre + 2e-5 * normal, direction)) lining[t] = false;
+      }
+    }
+    return lining;
+  }();
+  head = skin_only(std::move(head));
+  std::vector<Triangle> kept;
+  for (size_t t = 0; t < is_lining.size(); ++t)
+    if (!is_lining[t]) kept.push_back(head.scene.meshes[0].triangles[t]);
+  head.scene.meshes[0].triangles = std::move(kept);
+  head.name += " without lining";
+  return head;
+}
+
+MeasuredHead with_holes(MeasuredHead head, double radius_mm, int count, unsigned seed) {
+  formats::SceneMesh& mesh = head.scene.meshes[head_mesh(head.scene)];
+  std::mt19937 random(seed);
+  for (int hole = 0; hole < count; ++hole) {
+    const Vec3 centre = mesh.positions[random() % mesh.positions.size()];
+    std::erase_if(mesh.triangles, [&](const Triangle& t) {
+      return (mesh.positions[static_cast<size_t>(t[0])] - centre).norm() < radius_mm / head.millimetres;
+    });
+  }
+  head.name += " with holes";
+  return head;
+}
+
+}  // namespace fascia::testing
