@@ -2,13 +2,13 @@
 
 #include <algorithm>
 
+#include "builder/geodesics/ray.h"
+
 namespace fascia::geodesics {
 
 namespace {
 
 using Node = Workspace::Node;
-
-double cross(const Vec2& a, const Vec2& b) { return a[0] * b[1] - a[1] * b[0]; }
 
 /// Positive when `c` lies to the left of the line from `a` to `b`.
 double side(const Node& a, const Node& b, const Node& c) {
@@ -16,56 +16,57 @@ double side(const Node& a, const Node& b, const Node& c) {
 }
 
 /// Third corner of the triangle left of `half_edge`, which is laid from `origin` to `target`.
-Vec2 unfold(const Surface& surface, int half_edge, const Vec2& origin, const Vec2& target) {
+inline Vec2 unfold(const Surface& surface, int half_edge, const Vec2& origin, const Vec2& target) {
   const Vec2 along = target - origin;
   const Vec2& apex = surface.apex[half_edge];
   return origin + apex[0] * along + apex[1] * Vec2(-along[1], along[0]);
 }
 
-int add_node(Workspace& workspace, const Vec2& place, int first, bool left) {
-  Node node;
+void set_node(Node& node, const Vec2& place, int first, bool left) {
   node.place = place;
   node.first = node.last = first;
+  node.parent = -1;
   node.left = left;
-  workspace.nodes.push_back(node);
-  return static_cast<int>(workspace.nodes.size()) - 1;
 }
 
 /// Nodes of the unfolded strip: node 0 is `from`, the last `to`, one a vertex and stay in the strip.
 void unfold_strip(const Surface& surface, const SurfacePoint& from, const SurfacePoint& to, Workspace& workspace) {
   const std::vector<int>& strip = workspace.strip;
   const int count = static_cast<int>(strip.size());
-  workspace.nodes.clear();
+  workspace.nodes.resize(static_cast<size_t>(count) + 3);
   workspace.left_node.resize(count);
   workspace.right_node.resize(count);
+  Node* const nodes = workspace.nodes.data();
   // Facing the way out of a triangle, the half-edge's target is on the left, its origin on the right.
   const int h = strip[0];
   const Vec2 right(0.0, 0.0), left(surface.length[h], 0.0);
   const Vec2 behind = unfold(surface, h, right, left);
   const Vec3& weights = from.barycentric;
-  add_node(workspace,
+  set_node(nodes[0],
            weights[h % 3] * right + weights[Surface::next(h) % 3] * left + weights[Surface::previous(h) % 3] * behind,
            -1, false);
-  workspace.right_node[0] = add_node(workspace, right, 0, false);
-  workspace.left_node[0] = add_node(workspace, left, 0, true);
-  for (int k = 1; k <= count; ++k) {
+  set_node(nodes[1], right, 0, false);
+  set_node(nodes[2], left, 0, true);
+  int r = 1, l = 2;
+  workspace.right_node[0] = r;
+  workspace.left_node[0] = l;
+  for (int k = 1; k < count; ++k) {
     const int entered = surface.twin[strip[k - 1]];
-    const int l = workspace.left_node[k - 1], r = workspace.right_node[k - 1];
-    const Vec2 ahead = unfold(surface, entered, workspace.nodes[l].place, workspace.nodes[r].place);
-    if (k == count) {
-      const Vec3& w = to.barycentric;
-      add_node(workspace,
-               w[entered % 3] * workspace.nodes[l].place + w[Surface::next(entered) % 3] * workspace.nodes[r].place +
-                   w[Surface::previous(entered) % 3] * ahead,
-               count, false);
-      break;
-    }
+    const Vec2 ahead = unfold(surface, entered, nodes[l].place, nodes[r].place);
     const bool turns_right = strip[k] == Surface::next(entered);  // the vertex ahead stays on the left
-    const int added = add_node(workspace, ahead, k, turns_right);
-    workspace.left_node[k] = turns_right ? added : l;
-    workspace.right_node[k] = turns_right ? r : added;
-    workspace.nodes[workspace.left_node[k]].last = workspace.nodes[workspace.right_node[k]].last = k;
+    set_node(nodes[k + 2], ahead, k, turns_right);
+    (turns_right ? l : r) = k + 2;
+    workspace.left_node[k] = l;
+    workspace.right_node[k] = r;
+    nodes[l].last = nodes[r].last = k;
   }
+  const int entered = surface.twin[strip[count - 1]];
+  const Vec2 ahead = unfold(surface, entered, nodes[l].place, nodes[r].place);
+  const Vec3& w = to.barycentric;
+  set_node(nodes[count + 2],
+           w[entered % 3] * nodes[l].place + w[Surface::next(entered) % 3] * nodes[r].place +
+               w[Surface::previous(entered) % 3] * ahead,
+           count, false);
 }
 
 /// The funnel: nodes of the left chain from its far end to the apex, then the right chain outwards.

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "builder/geodesics/funnel.h"
+#include "builder/geodesics/ray.h"
 #include "builder/geodesics/strip.h"
 #include "geometry/error.h"
 
@@ -13,8 +14,6 @@ namespace fascia::geodesics {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-
-double cross(const Vec2& a, const Vec2& b) { return a[0] * b[1] - a[1] * b[0]; }
 
 double angle_between(const Vec2& a, const Vec2& b) { return std::atan2(std::abs(cross(a, b)), a.dot(b)); }
 
@@ -213,6 +212,12 @@ void measure_pins(const Surface& surface, Workspace& workspace, PathCounters& co
   }
 }
 
+/// The strip as it is crossed from its other end.
+void turn_strip(const Surface& surface, std::vector<int>& strip) {
+  std::reverse(strip.begin(), strip.end());
+  for (int& h : strip) h = surface.twin[h];
+}
+
 /// Total order of points, so that a path and its reverse are computed alike.
 bool ordered(const SurfacePoint& a, const SurfacePoint& b) {
   if (a.triangle != b.triangle) return a.triangle < b.triangle;
@@ -296,9 +301,14 @@ void connect_into(const Surface& surface, const SurfacePoint& from, const Surfac
   if (turned) std::swap(a, b);
   path.counters = PathCounters();
   bool traced = !options.search_first && trace_strip(surface, a, b, workspace);
+  if (!traced && !options.search_first && trace_strip(surface, b, a, workspace)) {
+    traced = true;
+    turn_strip(surface, workspace.strip);
+  }
+  if (!traced && !options.search_first) path.counters.cut = traced = cut_strip(surface, a, b, workspace);
   if (!traced) {
     path.counters.searched = true;
-    path.counters.searched_edges = search_strip(surface, a, b, workspace);
+    path.counters.searched_vertices = search_strip(surface, a, b, workspace);
   }
   path.counters.traced_triangles = static_cast<int>(workspace.strip.size()) + 1;
   straighten_strip(surface, a, b, options, workspace, path);

@@ -10,8 +10,9 @@ namespace fascia::geodesics {
 /// What a path went through, for logs and tests (THESIS names the counts of section 5.3.1).
 struct PathCounters {
   int traced_triangles = 0;   ///< triangles the first strip crosses
-  bool searched = false;      ///< the projected trace stalled and the strip was searched instead
-  int searched_edges = 0;     ///< edges the search visited
+  bool cut = false;           ///< the projected trace stalled and the strip was cut by a plane instead
+  bool searched = false;      ///< that ran out too and the strip was searched instead
+  int searched_vertices = 0;  ///< vertices the search visited
   int passes = 0;             ///< times the strip was pulled taut
   int rerouted_vertices = 0;  ///< vertices the strip was led around on the other side
   int pinned_vertices = 0;    ///< vertices the final path goes through
@@ -49,9 +50,9 @@ class Workspace {
   /// Strips: half-edges crossed, each in the triangle that is left.
   std::vector<int> strip, rerouted;
   /// Search and trace marks, valid where the stamp equals `epoch`.
-  std::vector<uint32_t> triangle_stamp, edge_stamp;
-  std::vector<double> edge_cost;
-  std::vector<int> edge_parent;
+  std::vector<uint32_t> triangle_stamp, vertex_stamp, vertex_done;
+  std::vector<double> vertex_cost;
+  std::vector<int> vertex_parent, vertex_entry, way, left_turn, right_turn;
   std::vector<std::pair<double, int>> heap;
   uint32_t epoch = 0;
   /// Unfolded strip and funnel.

@@ -225,6 +225,29 @@ TEST(Connect, IsLocallyShortest) {
   EXPECT_GT(pinned, 0) << "the surface should have saddle vertices to pass";
 }
 
+TEST(Connect, CutsOrSearchesWhereTheTraceStalls) {
+  const Surface surface = make_surface(
+      grid(60, 60, [](double u, double v) {
+        // Steep bowls, in which the projected trace gets caught.
+        const double x = std::sin(12 * u), y = std::sin(11 * v);
+        return Vec3(u, v, 0.3 * x * x * y * y * y * y);
+      }));
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> unit(0.05, 0.95);
+  int cut = 0;
+  for (int i = 0; i < 200; ++i) {
+    const SurfacePoint a = below(surface.mesh, unit(random), unit(random));
+    const SurfacePoint b = below(surface.mesh, unit(random), unit(random));
+    const Path path = connect(surface, a, b);
+    expect_sound(surface, path);
+    PathOptions searched;
+    searched.search_first = true;
+    EXPECT_LE(path.length, connect(surface, a, b, searched).length * 1.25);
+    cut += path.counters.cut || path.counters.searched;
+  }
+  EXPECT_GT(cut, 0);
+}
+
 TEST(Connect, GoesAroundAHole) {
   TriangleMesh mesh = plane(20);
   std::vector<Triangle> kept;
