@@ -1,6 +1,7 @@
 #include "builder/splines/editable.h"
 
 #include <Eigen/LU>
+#include <Eigen/QR>
 #include <algorithm>
 #include <string>
 
@@ -31,6 +32,14 @@ void add_weight(std::vector<double>& weights, int count_before, double weight) {
   if (weights.empty() && weight == 1) return;
   if (weights.empty()) weights.assign(static_cast<size_t>(count_before), 1);
   weights.push_back(weight);
+}
+
+// Sites left on a line or plane make the bordered system singular; factored anew it is not.
+bool determines(const MatrixXd& polynomial) {
+  if (polynomial.rows() < polynomial.cols()) return false;
+  Eigen::ColPivHouseholderQR<MatrixXd> qr;
+  qr.setThreshold(1e-8);
+  return qr.compute(polynomial).rank() == polynomial.cols();
 }
 
 void check_index(int at, int count, const char* what) {
@@ -142,7 +151,7 @@ void EditableFactorisation::State::change(const Sites& changed, size_t dropped, 
   if (fresh) after.insert(after.begin() + static_cast<std::ptrdiff_t>(at), *fresh);
   check_duplicates(after, system.options.dimension);
   const bool anew = border.cols() + 2 > edit_limit || solver.rank() < monomials() ||
-                    after.size() < static_cast<size_t>(monomials()) || columns.size() + 2 > base.size();
+                    columns.size() + 2 > base.size() || !determines(system.polynomial_matrix(after));
   const Sites before = sites;
   sites = changed;
   if (anew) {
@@ -161,8 +170,8 @@ void EditableFactorisation::State::change(const Sites& changed, size_t dropped, 
     place.insert(place.begin() + static_cast<std::ptrdiff_t>(at), -static_cast<int>(columns.size()));
   }
   complement();
-  // Removing sites can leave a line or plane: then the bordered system is singular, the factor anew is not.
-  if (!columns.empty() && !(schur.rcond() > 1e-14)) factor();
+  // A last guard: rows so many or so near that the border has lost too many digits.
+  if (!columns.empty() && !(schur.rcond() > 1e-12)) factor();
 }
 
 EditableFactorisation::EditableFactorisation(const Sites& sites, const SplineOptions& options, int edit_limit)

@@ -1,5 +1,9 @@
 #include "builder/splines/evaluate.h"
 
+#include <algorithm>
+
+#include "builder/splines/simd.h"
+
 namespace fascia::splines {
 namespace {
 
@@ -27,13 +31,87 @@ double kernel_sum(const SplineCoefficients& s, int output, const Vec3& q) {
   return out;
 }
 
+Vec3 to_local(const SplineCoefficients& s, const Vec3& point) {
+  Vec3 q = (point - s.centre) * s.scale;
+  if (s.dimension == 2) q.z() = 0;
+  return q;
+}
+
+constexpr size_t block = 256;
+
+// values = monomials times coefficients at `size` points, a column of the block for each monomial.
+void polynomial_block(const SplineCoefficients& s, const double* x, const double* y, const double* z, size_t size,
+                      double* values, size_t value_stride) {
+  for (int k = 0; k < s.outputs; ++k)
+    std::fill_n(values + k * value_stride, size, 0.0);
+  const double* coordinates[3] = {x, y, z};
+  double monomial[block];
+  for (size_t j = 0; j < s.monomials.size(); ++j) {
+    std::fill_n(monomial, size, 1.0);
+    for (int axis = 0; axis < 3; ++axis)
+      for (int power = 0; power < s.monomials[j][axis]; ++power)
+        for (size_t i = 0; i < size; ++i)
+          monomial[i] *= coordinates[axis][i];
+    for (int k = 0; k < s.outputs; ++k) {
+      const double coefficient = s.polynomial(static_cast<Eigen::Index>(j), k);
+      double* column = values + k * value_stride;
+      for (size_t i = 0; i < size; ++i)
+        column[i] += coefficient * monomial[i];
+    }
+  }
+}
+
+void evaluate_in_vectors(const SplineCoefficients& s, int exponent, const Vec3* points, size_t count,
+                         double* values, size_t value_stride) {
+  double x[block], y[block], z[block];
+  for (size_t begin = 0; begin < count; begin += block) {
+    const size_t size = std::min(block, count - begin);
+    for (size_t i = 0; i < size; ++i) {
+      const Vec3 q = to_local(s, points[begin + i]);
+      x[i] = q.x();
+      y[i] = q.y();
+      z[i] = q.z();
+    }
+    polynomial_block(s, x, y, z, size, values + begin, value_stride);
+    for (int first = 0; first < s.outputs; first += 4) {
+      simd::Sum sum{};
+      sum.x = s.x.data();
+      sum.y = s.y.data();
+      sum.z = s.z.data();
+      sum.centres = static_cast<size_t>(s.centres);
+      sum.stride = static_cast<size_t>(s.stride);
+      sum.weights = s.c.data() + first * sum.stride;
+      sum.outputs = std::min(4, s.outputs - first);
+      sum.exponent = exponent;
+      sum.sign = s.kernel.sign();
+      sum.px = x;
+      sum.py = y;
+      sum.pz = z;
+      sum.points = size;
+      sum.values = values + begin + first * value_stride;
+      sum.value_stride = value_stride;
+      simd::functions().sum(sum);
+    }
+  }
+}
+
 }  // namespace
+
+int simd_exponent(const Kernel& kernel) {
+  for (int exponent : {1, 3, 5})
+    if (kernel.exponent() == exponent) return exponent;
+  return 0;
+}
 
 void evaluate_points(const SplineCoefficients& s, const Vec3* points, size_t count, double* values,
                      size_t value_stride) {
+  const int exponent = simd_exponent(s.kernel);
+  if (exponent > 0 && s.bx.empty()) {
+    evaluate_in_vectors(s, exponent, points, count, values, value_stride);
+    return;
+  }
   for (size_t i = 0; i < count; ++i) {
-    Vec3 q = (points[i] - s.centre) * s.scale;
-    if (s.dimension == 2) q.z() = 0;
+    const Vec3 q = to_local(s, points[i]);
     for (int k = 0; k < s.outputs; ++k)
       values[i + k * value_stride] = kernel_sum(s, k, q) + polynomial_value(s, k, q);
   }

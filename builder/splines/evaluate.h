@@ -11,6 +11,9 @@ namespace fascia::splines {
 void evaluate_points(const SplineCoefficients& spline, const Vec3* points, size_t count, double* values,
                      size_t value_stride);
 
+/// The kernel's exponent when the vector loops know it (1, 3, 5), else 0.
+int simd_exponent(const Kernel& kernel);
+
 /// Value of one output at local point `q` (see SplineCoefficients) and its gradient in user units.
 double evaluate_gradient(const SplineCoefficients& spline, int output, const Vec3& q, Vec3& gradient);
 

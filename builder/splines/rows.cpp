@@ -8,6 +8,8 @@
 #include <map>
 #include <string>
 
+#include "builder/splines/evaluate.h"
+#include "builder/splines/simd.h"
 #include "geometry/error.h"
 
 namespace fascia::splines {
@@ -140,11 +142,22 @@ VectorXd System::polynomial_row(const Row& row) const {
 MatrixXd System::kernel_matrix(std::span<const Row> rows) const {
   const Index n = static_cast<Index>(rows.size());
   MatrixXd K(n, n);
-  for (Index j = 0; j < n; ++j) {
-    for (Index i = j; i < n; ++i)
-      K(i, j) = entry(rows[i], rows[j]);
-    K(j, j) += rows[j].ridge;
+  const auto derivative = [](const Row& row) { return row.derivative; };
+  const int exponent = simd_exponent(kernel);
+  if (exponent > 0 && std::none_of(rows.begin(), rows.end(), derivative)) {
+    MatrixXd points(n, 3);
+    for (Index i = 0; i < n; ++i)
+      points.row(i) = rows[i].point.transpose();
+    const double* x = points.data();
+    const size_t count = rows.size();
+    simd::functions().kernel_matrix({x, x + n, x + 2 * n, count, exponent, kernel.sign(), K.data(), count});
+  } else {
+    for (Index j = 0; j < n; ++j)
+      for (Index i = j; i < n; ++i)
+        K(i, j) = entry(rows[i], rows[j]);
   }
+  for (Index j = 0; j < n; ++j)
+    K(j, j) += rows[j].ridge;
   return K;
 }
 

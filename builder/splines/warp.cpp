@@ -7,13 +7,13 @@
 namespace fascia::splines {
 
 Warp::Warp(Spline displacement) : displacement_(std::move(displacement)), identity_(false) {
-  if (displacement_.outputs() != 3 || displacement_.dimension() != 3)
-    throw Error("warp: the displacement must be a spline from space to 3 numbers");
+  if (displacement_.outputs() != displacement_.dimension())
+    throw Error("warp: the displacement must be a spline from space to 3 numbers or from the plane to 2");
 }
 
 Vec3 Warp::operator()(const Vec3& point) const {
   if (identity_) return point;
-  Vec3 shift;
+  Vec3 shift = Vec3::Zero();
   displacement_.evaluate(point, shift.data());
   return point + shift;
 }
@@ -23,7 +23,7 @@ std::vector<Vec3> Warp::operator()(std::span<const Vec3> points) const {
   if (identity_) return out;
   const Eigen::MatrixXd shift = displacement_.values(points);
   for (size_t i = 0; i < out.size(); ++i)
-    out[i] += shift.row(static_cast<Eigen::Index>(i)).transpose();
+    out[i].head(shift.cols()) += shift.row(static_cast<Eigen::Index>(i)).transpose();
   return out;
 }
 
@@ -33,7 +33,9 @@ TriangleMesh Warp::operator()(const TriangleMesh& mesh) const {
 
 Mat3 Warp::jacobian(const Vec3& point) const {
   if (identity_) return Mat3::Identity();
-  return Mat3::Identity() + displacement_.jacobian(point);
+  Mat3 out = Mat3::Identity();
+  out.topRows(displacement_.outputs()) += displacement_.jacobian(point);
+  return out;
 }
 
 Warp fit_warp(std::span<const Vec3> source, std::span<const Vec3> target, const WarpOptions& options) {
@@ -44,11 +46,12 @@ Warp fit_warp(std::span<const Vec3> source, std::span<const Vec3> target, const 
   sites.points.assign(source.begin(), source.end());
   sites.weights = options.weights;
   SplineOptions spline;
+  spline.dimension = options.dimension;
   spline.exponent = options.exponent;
   spline.lambda = options.lambda;
-  Eigen::MatrixXd shift(sites.value_count(), 3);
+  Eigen::MatrixXd shift(sites.value_count(), options.dimension);
   for (int i = 0; i < sites.value_count(); ++i)
-    shift.row(i) = (target[i] - source[i]).transpose();
+    shift.row(i) = (target[i] - source[i]).head(options.dimension).transpose();
   return Warp(fit(sites, shift, spline));
 }
 

@@ -12,14 +12,15 @@ struct WarpOptions {
   double exponent = 1;          ///< 1: thin plate in space
   double lambda = 0;            ///< smoothing, see SplineOptions
   std::vector<double> weights;  ///< one a landmark, empty: 1 each
+  int dimension = 3;            ///< 2: the plane
 };
 
-/// A map of space onto itself: x -> x + u(x), u a polyharmonic spline with affine part.
-/// The default is the identity.
+/// A map of space or the plane onto itself: x -> x + u(x), u a polyharmonic spline with affine part. A map of
+/// the plane leaves z alone. The default is the identity.
 class Warp {
  public:
   Warp() = default;
-  /// `displacement` has three outputs.
+  /// `displacement` has as many outputs as dimensions.
   explicit Warp(Spline displacement);
 
   Vec3 operator()(const Vec3& point) const;
@@ -30,6 +31,7 @@ class Warp {
   /// that landmark's own term is left out.
   Mat3 jacobian(const Vec3& point) const;
 
+  int dimension() const { return identity_ ? 3 : displacement_.dimension(); }
   bool identity() const { return identity_; }
   const Spline& displacement() const { return displacement_; }
 

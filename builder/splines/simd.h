@@ -1,0 +1,64 @@
+#pragma once
+
+// The inner loops of splines, once for each width of vector unit; plain numbers only, so that no inline
+// function of a library is compiled for a machine that may not be there.
+
+#include <cstddef>
+
+namespace fascia::splines::simd {
+
+/// Kernel sums of power kernels sign r^exponent, exponent 1 or 3 or 5, at many points:
+/// values[i + k * value_stride] += sum_j weights[k * stride + j] phi(|p_i - centre_j|) for `outputs` <= 4.
+struct Sum {
+  const double *x, *y, *z;  ///< centres
+  size_t centres;
+  const double* weights;  ///< outputs * stride
+  size_t stride;
+  int outputs;
+  int exponent;
+  double sign;
+  const double *px, *py, *pz;  ///< points
+  size_t points;
+  double* values;
+  size_t value_stride;
+};
+
+/// Lower triangle, column by column, of the matrix of phi(|p_i - p_j|) for the same kernels.
+struct KernelMatrix {
+  const double *x, *y, *z;
+  size_t count;
+  int exponent;
+  double sign;
+  double* entries;  ///< column-major
+  size_t stride;
+};
+
+/// Cholesky factor in place of the lower triangle of an n by n column-major matrix; false when it is not
+/// positive definite.
+struct Cholesky {
+  double* entries;
+  size_t count;
+  size_t stride;
+};
+
+/// The widest of avx512, avx2 and the baseline that this processor runs; the environment variable
+/// FASCIA_SIMD=baseline|avx2 takes a narrower one.
+struct Functions {
+  const char* name;
+  void (*sum)(const Sum&);
+  void (*kernel_matrix)(const KernelMatrix&);
+  bool (*cholesky)(const Cholesky&);
+};
+const Functions& functions();
+
+namespace baseline {
+extern const Functions table;
+}
+namespace avx2 {
+extern const Functions table;
+}
+namespace avx512 {
+extern const Functions table;
+}
+
+}  // namespace fascia::splines::simd
