@@ -63,7 +63,8 @@ int main(int argc, char** argv) {
   const bench::Workload work = bench::workload(count);
   Eigen::MatrixXd weights;
   std::vector<bench::Point> carried;
-  const double fitting = bench::milliseconds([&] { weights = fit(work.source, work.target); });
+  const double fitting =
+      bench::median_milliseconds(bench::fit_repeats(count), [&] { weights = fit(work.source, work.target); });
   const double apply = bench::milliseconds([&] { carried = carry(work.source, weights, work.points); });
   bench::report("dense LU", count, fitting, apply);
   if (argc > 2) bench::write_points(argv[2], carried);

@@ -16,11 +16,10 @@ int main(int argc, char** argv) {
   };
   const std::vector<Vec3> source = vectors(work.source), target = vectors(work.target),
                           points = vectors(work.points);
-  fascia::splines::fit_warp(std::vector<Vec3>(source.begin(), source.begin() + 4),
-                            std::vector<Vec3>(target.begin(), target.begin() + 4));
   fascia::splines::Warp warp;
   std::vector<Vec3> carried;
-  const double fit = bench::milliseconds([&] { warp = fascia::splines::fit_warp(source, target); });
+  const double fit = bench::median_milliseconds(bench::fit_repeats(count),
+                                                [&] { warp = fascia::splines::fit_warp(source, target); });
   const double apply = bench::milliseconds([&] { carried = warp(points); });
   bench::report("fascia", count, fit, apply);
   if (argc > 2) {

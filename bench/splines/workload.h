@@ -50,6 +50,21 @@ double milliseconds(const Work& work) {
   return now() - start;
 }
 
+/// Median over repeats of a short job, so that none is judged by its first, cold run.
+template <class Work>
+double median_milliseconds(int repeats, const Work& work) {
+  std::vector<double> times;
+  for (int i = 0; i < repeats; ++i)
+    times.push_back(milliseconds(work));
+  std::nth_element(times.begin(), times.begin() + repeats / 2, times.end());
+  return times[static_cast<size_t>(repeats / 2)];
+}
+
+/// How often a fit of `count` landmarks is repeated.
+inline int fit_repeats(int count) {
+  return std::max(1, 2000 / count);
+}
+
 /// One line of JSON on standard output.
 inline void report(const std::string& program, int count, double fit, double warp) {
   std::printf("{\"program\": \"%s\", \"landmarks\": %d, \"fit_ms\": %.4f, \"warp_ms\": %.4f}\n",

@@ -33,6 +33,17 @@ struct KernelMatrix {
   size_t stride;
 };
 
+/// Lower triangle of a column-major matrix minus left right^T, both `count` by `rank`, column-major and
+/// without gaps.
+struct RankUpdate {
+  double* entries;
+  size_t count;
+  size_t stride;
+  const double* left;
+  const double* right;
+  size_t rank;
+};
+
 /// Cholesky factor in place of the lower triangle of an n by n column-major matrix; false when it is not
 /// positive definite.
 struct Cholesky {
@@ -47,6 +58,7 @@ struct Functions {
   const char* name;
   void (*sum)(const Sum&);
   void (*kernel_matrix)(const KernelMatrix&);
+  void (*rank_update)(const RankUpdate&);
   bool (*cholesky)(const Cholesky&);
 };
 const Functions& functions();

@@ -182,6 +182,22 @@ void kernel_matrix(const KernelMatrix& m) {
     matrix_exponent<5>(m);
 }
 
+void rank_update(const RankUpdate& m) {
+  for (size_t j = 0; j < m.count; ++j) {
+    double* column = m.entries + j * m.stride;
+    size_t i = j;
+    for (; i + lanes <= m.count; i += lanes) {
+      Vector total = load(column + i);
+      for (size_t r = 0; r < m.rank; ++r)
+        total -= splat(m.right[j + r * m.count]) * load(m.left + i + r * m.count);
+      store(column + i, total);
+    }
+    for (; i < m.count; ++i)
+      for (size_t r = 0; r < m.rank; ++r)
+        column[i] -= m.right[j + r * m.count] * m.left[i + r * m.count];
+  }
+}
+
 // Cholesky by blocks of columns: factor the block on the diagonal, solve the panel below it, and take the
 // panel's square from what is right of it; nearly all the work is the last, in tiles held in registers.
 constexpr size_t block_columns = 64;
@@ -307,6 +323,6 @@ bool cholesky(const Cholesky& m) {
 }  // namespace
 
 extern const Functions table;
-const Functions table = {FASCIA_SIMD_NAME, sum, kernel_matrix, cholesky};
+const Functions table = {FASCIA_SIMD_NAME, sum, kernel_matrix, rank_update, cholesky};
 
 }  // namespace fascia::splines::simd::FASCIA_SIMD_NAMESPACE

@@ -95,6 +95,22 @@ TEST(Simd, KernelMatricesOnEveryUnit) {
   }
 }
 
+TEST(Simd, RankUpdatesOnEveryUnit) {
+  for (int n : {1, 6, 17, 50}) {
+    const Eigen::MatrixXd left = Eigen::MatrixXd::Random(n, 8), right = Eigen::MatrixXd::Random(n, 8);
+    const Eigen::MatrixXd before = Eigen::MatrixXd::Random(n, n);
+    for (const Functions* functions : all()) {
+      Eigen::MatrixXd after = before;
+      const size_t count = static_cast<size_t>(n);
+      functions->rank_update({after.data(), count, count, left.data(), right.data(), 8});
+      const Eigen::MatrixXd exact = before - left * right.transpose();
+      for (int j = 0; j < n; ++j)
+        for (int i = 0; i < n; ++i)
+          EXPECT_NEAR(after(i, j), i >= j ? exact(i, j) : before(i, j), 1e-14);
+    }
+  }
+}
+
 TEST(Simd, CholeskyOfEverySizeOnEveryUnit) {
   for (int n : {1, 2, 3, 7, 24, 25, 63, 64, 65, 88, 127, 129, 200, 263}) {
     const Eigen::MatrixXd root = Eigen::MatrixXd::Random(n, n);

@@ -140,7 +140,7 @@ view::Image figure_4_5() {
   const int vertex = 20 * 14 + 1;
   const std::vector<int> rings = splines::vertex_rings(mesh, links, vertex, 2);
   const Patch patch = splines::vertex_patch(mesh, links, vertex);
-  view::Camera camera = tilted(3.4);
+  view::Camera camera = tilted(4.4);
   camera.target = upright(mesh.vertices[vertex]);
   view::DrawSurface whole;
   whole.positions = upright_all(mesh.vertices);
