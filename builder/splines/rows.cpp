@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <string>
 
 #include "builder/splines/evaluate.h"
@@ -19,8 +20,22 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-std::array<double, 3> key(const Vec3& p) {
-  return {p.x(), p.y(), p.z()};
+// For each row the first one at the same point.
+std::vector<int> first_at_point(std::span<const Row> rows) {
+  std::vector<int> order(rows.size()), first(rows.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto before = [&](int i, int j) {
+    const Vec3 &p = rows[i].point, &q = rows[j].point;
+    for (int axis = 0; axis < 3; ++axis)
+      if (p[axis] != q[axis]) return p[axis] < q[axis];
+    return i < j;
+  };
+  std::sort(order.begin(), order.end(), before);
+  for (size_t k = 0; k < order.size(); ++k) {
+    const bool same = k > 0 && rows[order[k]].point == rows[order[k - 1]].point;
+    first[order[k]] = same ? first[order[k - 1]] : order[k];
+  }
+  return first;
 }
 
 Vec3 flattened(Vec3 p, int dimension) {
@@ -204,20 +219,23 @@ std::vector<Row> make_rows(const System& system, const Sites& sites) {
 
 // Two values at one point contradict each other or say the same twice: both leave the system singular.
 void check_duplicates(std::span<const Row> rows, int dimension) {
-  std::map<std::array<double, 3>, int> seen;
-  std::map<std::array<double, 3>, std::vector<int>> groups;
+  const std::vector<int> first = first_at_point(rows);
+  std::vector<int> value_at(rows.size(), -1);
+  std::map<int, std::vector<int>> groups;
   for (size_t i = 0; i < rows.size(); ++i) {
     if (rows[i].ridge > 0) continue;
     if (rows[i].derivative) {
-      groups[key(rows[i].point)].push_back(static_cast<int>(i));
+      groups[first[i]].push_back(static_cast<int>(i));
       continue;
     }
-    const auto [at, fresh] = seen.emplace(key(rows[i].point), static_cast<int>(i));
-    if (!fresh)
-      throw Error("spline: data " + std::to_string(at->second) + " and " + std::to_string(i) +
-                  " are at the same point; merge them or smooth (lambda > 0)");
+    int& other = value_at[first[i]];
+    if (other >= 0)
+      throw Error("spline: data " + std::to_string(other) + " and " + std::to_string(i) +
+                  " are at the same point, where they repeat or contradict each other; merge them or smooth "
+                  "(lambda > 0)");
+    other = static_cast<int>(i);
   }
-  for (const auto& [point, members] : groups) {
+  for (const auto& [place, members] : groups) {
     MatrixXd directions(dimension, static_cast<Index>(members.size()));
     for (size_t k = 0; k < members.size(); ++k)
       directions.col(static_cast<Index>(k)) = rows[members[k]].direction.normalized().head(dimension);
@@ -254,14 +272,14 @@ Spline make_spline(const System& system, std::span<const Row> rows, const Matrix
   out.polynomial = a;
 
   // Rows at one place become one centre.
-  std::map<std::array<double, 3>, int> places;
+  const std::vector<int> first = first_at_point(rows);
   std::vector<int> centre_of(rows.size());
   std::vector<Vec3> centres;
   bool derivatives = false;
   for (size_t i = 0; i < rows.size(); ++i) {
-    const auto [at, fresh] = places.emplace(key(rows[i].point), static_cast<int>(centres.size()));
+    const bool fresh = first[i] == static_cast<int>(i);
+    centre_of[i] = fresh ? static_cast<int>(centres.size()) : centre_of[first[i]];
     if (fresh) centres.push_back(rows[i].point);
-    centre_of[i] = at->second;
     derivatives |= rows[i].derivative;
     // c^T K c = c^T (y - P a) - c^T ridge c, and c is orthogonal to P.
     const Index r = static_cast<Index>(i);

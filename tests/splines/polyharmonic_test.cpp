@@ -9,6 +9,7 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <string>
 
 #include "builder/splines/warp.h"
 #include "geometry/error.h"
@@ -297,6 +298,38 @@ TEST(Factorisation, PointsOnAPlaneLineOrSingleSpotLeaveTheRestConstant) {
   Sites one;
   one.points = {{4, 5, 6}};
   EXPECT_NEAR(fit(one, Eigen::MatrixXd::Constant(1, 1, 7), {}).scalar({-1, 0, 2}), 7, 1e-12);
+}
+
+std::string message(const Sites& sites, const SplineOptions& options) {
+  try {
+    Factorisation factorisation(sites, options);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Factorisation, SaysWhichDataAreAtFault) {
+  Sites sites;
+  sites.points = random_points(10, 20);
+  sites.points[8] = sites.points[2];
+  EXPECT_NE(message(sites, {}).find("data 2 and 8 are at the same point"), std::string::npos)
+      << message(sites, {});
+  sites.points[8] = sites.points[2] + Vec3(1e-17, 0, 0);
+  SplineOptions options;
+  options.exponent = 5;
+  sites.points[2] = Vec3(0.1, 0.2, 0.3);
+  sites.points[8] = Vec3(0.1 + 1e-15, 0.2, 0.3);
+  EXPECT_NE(message(sites, options).find("data 2 and 8"), std::string::npos) << message(sites, options);
+
+  Sites line;
+  for (int i = 0; i < 6; ++i)
+    line.points.emplace_back(i, 2 * i, 0);
+  EXPECT_EQ(message(line, {}), "");
+  options = {};
+  options.require_full_rank = true;
+  EXPECT_NE(message(line, options).find("only 2 of the 4 polynomial terms"), std::string::npos)
+      << message(line, options);
 }
 
 TEST(Factorisation, RefusesWhatCannotBeSolved) {
