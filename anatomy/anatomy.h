@@ -83,6 +83,7 @@ struct OrificeBand {
   std::string orifice;  ///< mouth, eye_left or eye_right
   double inner = 0.0, outer = 0.0;        ///< metres
   double begin_angle = 0.0, end_angle = 0.0;  ///< radians, begin < end
+  bool medial_on_bone = false;  ///< the ring's medial end hangs on the canthal ligament and the bone behind it
   bool upper() const { return begin_angle + end_angle > 0.0; }
 };
 

@@ -49,6 +49,9 @@ OrificeBand band_of(const Fields& fields) {
   band.outer = distance[1] * 1e-3;
   band.begin_angle = angles[0] * radians;
   band.end_angle = angles[1] * radians;
+  const std::string end = fields.text_or("medial_end", "free");
+  if (end != "free" && end != "cranium") fields.fail("\"medial_end\" must be free or cranium");
+  band.medial_on_bone = end == "cranium";
   return band;
 }
 

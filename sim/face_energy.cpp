@@ -108,15 +108,19 @@ double FaceModel::actuator_energy(const Frame& frame, const Vec3* x, Vec3* gradi
   }
   for (size_t p = 0; p < frame.pressures.size(); ++p) {
     if (frame.pressures[p] == 0.0) continue;
-    const auto& columns = lattice_.triangles[lattice_.pressure_prism[p]];
-    const uint32_t inner = 2 * lattice_.columns;
-    const uint32_t n[3] = {inner + columns[0], inner + columns[1], inner + columns[2]};
-    const Vec3 a = x[n[0]] - pressure_origins_[p], b = x[n[1]] - pressure_origins_[p], c = x[n[2]] - pressure_origins_[p];
-    const double share = frame.pressures[p] / 6.0;
-    energy -= share * a.dot(b.cross(c));
-    gradient[n[0]] -= share * b.cross(c);
-    gradient[n[1]] -= share * c.cross(a);
-    gradient[n[2]] -= share * a.cross(b);
+    // Work of the pressure on the volume that the SMAS has swept from where bones alone would carry it: to first order
+    // a push along the triangle's normal, however far the patch's rim lies from its middle.
+    std::array<Vec3, 6> swept;
+    std::array<uint32_t, 3> nodes{};
+    for (size_t k = 0; k < 3; ++k) {
+      nodes[k] = lattice_.columns + lattice_.triangles[lattice_.pressure_prism[p]][k];
+      swept[k] = x[nodes[k]];
+      swept[k + 3] = frame.carried[nodes[k]];
+    }
+    constexpr std::array<uint32_t, 6> corners = {0, 1, 2, 3, 4, 5};
+    energy -= frame.pressures[p] * prism_volume(corners, swept.data());
+    const auto push = prism_volume_gradient(corners, swept.data());
+    for (size_t k = 0; k < 3; ++k) gradient[nodes[k]] -= frame.pressures[p] * push[k];
   }
   for (size_t c = 0; c < contact_radii_.size(); ++c)
     energy += globe_energy(lattice_.globe_contact_node[c],

@@ -73,16 +73,6 @@ void FaceModel::make_elements() {
     tethers_.push_back({lattice_.tether_nodes[t], normal, lattice_.tether_normal_stiffness[t],
                         lattice_.tether_tangential_stiffness[t]});
   }
-  std::map<uint32_t, std::pair<Vec3, int>> centres;  // by channel: what a pressure pushes away from
-  for (size_t p = 0; p < lattice_.pressure_prism.size(); ++p) {
-    auto& [sum, count] = centres.try_emplace(lattice_.pressure_channel[p], Vec3::Zero(), 0).first->second;
-    for (const uint32_t column : lattice_.triangles[lattice_.pressure_prism[p]]) {
-      sum += rest_[2 * columns + column];
-      ++count;
-    }
-  }
-  for (const uint32_t channel : lattice_.pressure_channel)
-    pressure_origins_.push_back(centres[channel].first / centres[channel].second);
   for (size_t c = 0; c < lattice_.globe_contact_node.size(); ++c) {
     const uint32_t globe = lattice_.globe_contact_globe[c];
     const double distance = (rest_[lattice_.globe_contact_node[c]] - lattice_.globe_centre[globe].cast<double>()).norm();

@@ -101,7 +101,6 @@ class FaceModel {
   std::vector<Prism> prisms_;
   std::vector<Tether> tethers_;
   std::vector<double> fibre_lengths_;  // taper-weighted, at rest
-  Positions pressure_origins_;
   std::vector<double> contact_radii_;
   Positions balance_;  // gradient at rest: what is subtracted so that rest is rest to the last bit
   Eigen::SparseMatrix<double, Eigen::RowMajor> stiffness_;

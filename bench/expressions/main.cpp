@@ -1,7 +1,11 @@
 // How much of measured expressions the simulated ones explain: for each ARKit shape of a reference face
-// 1 - sum|u-v|^2 / sum|v|^2 over its skin, and the mean error over vertices that move more than 0.5 mm.
+// 1 - sum|u-v|^2 / sum|v|^2 over its face, the same over all its skin with the linings of mouth and eye sockets, and the
+// mean error over vertices of the skin that move more than 0.5 mm. Beside them what tells a wrong amplitude from a wrong
+// direction: the factor that would serve best, and the share explained with it.
 //
-//   bench_expressions [neutral|person_0|...]... [--sheet FILE.png] [--level NAME]
+//   bench_expressions [neutral|person_0|...]... [--sheet FILE.png] [--level NAME] [--rigs DIR]
+//
+// With --rigs the rigs are left in DIR and nothing is scored.
 //
 // Doing nothing scores 0 and about 3 mm, a half-amplitude copy 0.75 and 1.5 mm. mouthClose is scored as jawOpen + mouthClose.
 // The shapes are one sculpted, nearly mirrored set shared by all people: a reference, not an independent sample.
@@ -31,8 +35,12 @@ namespace fs = std::filesystem;
 
 const fs::path measured = fs::path(FASCIA_MEASURED_DATA) / "data/ict";
 
+/// The head mesh lists its face first; neck and the linings of mouth and eye sockets follow.
+constexpr size_t face_vertices = 9916;
+
 struct Score {
-  double explained = 0.0, error_mm = 0.0;
+  double explained = 0.0, skin_explained = 0.0, error_mm = 0.0;
+  double best_scale = 0.0, at_best_scale = 0.0;  ///< of the face
   int turned = 0;  ///< triangles that the simulation turns over and the reference does not
 };
 
@@ -56,12 +64,17 @@ formats::LandmarkFile landmarks_on(const formats::Scene& person) {
 Score score(const std::vector<Vec3>& rest, const std::vector<Triangle>& triangles, const std::vector<Vec3>& simulated,
             const std::vector<Vec3>& truth) {
   Score result;
-  double miss = 0.0, all = 0.0, error = 0.0;
+  double miss[2] = {}, all[2] = {}, own = 0.0, both = 0.0, error = 0.0;  // [0] face, [1] lining
   int moving = 0;
   std::vector<Vec3> posed(rest.size()), wanted(rest.size());
   for (size_t v = 0; v < rest.size(); ++v) {
-    miss += (simulated[v] - truth[v]).squaredNorm();
-    all += truth[v].squaredNorm();
+    const int part = v < face_vertices ? 0 : 1;
+    miss[part] += (simulated[v] - truth[v]).squaredNorm();
+    all[part] += truth[v].squaredNorm();
+    if (part == 0) {
+      own += simulated[v].squaredNorm();
+      both += simulated[v].dot(truth[v]);
+    }
     if (truth[v].norm() > 0.0005) {
       error += (simulated[v] - truth[v]).norm();
       ++moving;
@@ -69,7 +82,10 @@ Score score(const std::vector<Vec3>& rest, const std::vector<Triangle>& triangle
     posed[v] = rest[v] + simulated[v];
     wanted[v] = rest[v] + truth[v];
   }
-  result.explained = 1.0 - miss / all;
+  result.explained = 1.0 - miss[0] / all[0];
+  result.skin_explained = 1.0 - (miss[0] + miss[1]) / (all[0] + all[1]);
+  result.best_scale = own > 0.0 ? both / own : 0.0;
+  result.at_best_scale = own > 0.0 ? both * both / (own * all[0]) : 0.0;
   result.error_mm = moving ? 1e3 * error / moving : 0.0;
   const TriangleMesh a{rest, triangles}, b{posed, triangles}, c{wanted, triangles};
   for (int t = 0; t < a.triangle_count(); ++t) {
@@ -125,25 +141,28 @@ void add_tiles(std::vector<view::Tile>& tiles, const view::Renderer& renderer, c
   }
 }
 
-void run_person(const std::string& person, const std::string& level, const std::string& sheet) {
+void run_person(const std::string& person, const std::string& level, const std::string& sheet, const std::string& rigs) {
   const formats::Scene scene = formats::read(measured / (person + ".glb"));
   const auto anatomy = anatomy::load_generic();
   rigging::BuildOptions options;
+  if (!level.empty()) options.detail = level;
   const rigging::BuildResult built = rigging::build_rig(scene, landmarks_on(scene), anatomy, options);
   const std::vector<uint8_t> bytes = rig::write(rigging::gltf_source(scene, built.report.input_to_metres), built.rig);
-  const fs::path rig_path = fs::temp_directory_path() / ("fascia_bench_" + person + ".glb");
+  const fs::path rig_path = (rigs.empty() ? fs::temp_directory_path() / "fascia_bench_" : fs::path(rigs) / "").string() + person + ".glb";
   formats::write_bytes(rig_path, bytes.data(), bytes.size());
+  if (!rigs.empty()) return;
   cli::Face face(rig_path, {FASCIA_SPACE_INPUT, "own", level});
   const formats::SceneMesh& head = head_mesh(scene);
   const std::vector<MeasuredShape> shapes = measured_shapes(measured / "expressions.glb", "head");
   std::map<std::string, const MeasuredShape*> by_name;
   for (const MeasuredShape& shape : shapes) by_name[shape.name] = &shape;
 
-  std::printf("%s\n%-22s %9s %9s %7s\n", person.c_str(), "shape", "explained", "error mm", "turned");
+  std::printf("%s\n%-22s %9s %9s %9s %7s %10s %10s\n", person.c_str(), "shape", "explained", "all skin", "error mm", "turned",
+              "best scale", "share at it");
   std::vector<view::Tile> tiles;
   std::unique_ptr<view::Renderer> renderer;
   if (!sheet.empty()) renderer = std::make_unique<view::Renderer>(300, 340);
-  double sum = 0.0, errors = 0.0, sum_without_look = 0.0;
+  double sum = 0.0, skin_sum = 0.0, best_sum = 0.0, errors = 0.0, sum_without_look = 0.0;
   int without_look = 0;
   for (const MeasuredShape& shape : shapes) {
     std::map<std::string, double> values = {{"arkit:" + shape.name, 1.0}};
@@ -154,8 +173,11 @@ void run_person(const std::string& person, const std::string& level, const std::
     }
     const std::vector<Vec3> simulated = simulated_displacement(face, values);
     const Score result = score(head.positions, head.triangles, simulated, truth);
-    std::printf("%-22s %9.3f %9.2f %7d\n", shape.name.c_str(), result.explained, result.error_mm, result.turned);
+    std::printf("%-22s %9.3f %9.3f %9.2f %7d %10.2f %10.3f\n", shape.name.c_str(), result.explained, result.skin_explained,
+                result.error_mm, result.turned, result.best_scale, result.at_best_scale);
     sum += result.explained;
+    skin_sum += result.skin_explained;
+    best_sum += result.at_best_scale;
     errors += result.error_mm;
     if (shape.name.rfind("eyeLook", 0) != 0) {
       sum_without_look += result.explained;
@@ -163,8 +185,9 @@ void run_person(const std::string& person, const std::string& level, const std::
     }
     if (renderer) add_tiles(tiles, *renderer, head, simulated, truth, shape.name, result);
   }
-  std::printf("%-22s %9.3f %9.2f\n%-22s %9.3f\n\n", "mean", sum / static_cast<double>(shapes.size()),
-              errors / static_cast<double>(shapes.size()), "mean without eyeLook", sum_without_look / without_look);
+  const auto count = static_cast<double>(shapes.size());
+  std::printf("%-22s %9.3f %9.3f %9.2f %29.3f\n%-22s %9.3f\n\n", "mean", sum / count, skin_sum / count, errors / count,
+              best_sum / count, "mean without eyeLook", sum_without_look / without_look);
   if (renderer) view::write_png(sheet, view::contact_sheet(tiles, 9));
   fs::remove(rig_path);
 }
@@ -175,11 +198,12 @@ void run_person(const std::string& person, const std::string& level, const std::
 
 int main(int argc, char** argv) {
   std::vector<std::string> people;
-  std::string sheet, level;
+  std::string sheet, level, rigs;
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
     if (word == "--sheet" && i + 1 < argc) sheet = argv[++i];
     else if (word == "--level" && i + 1 < argc) level = argv[++i];
+    else if (word == "--rigs" && i + 1 < argc) rigs = argv[++i];
     else people.push_back(word);
   }
   if (people.empty()) people = {"neutral"};
@@ -188,7 +212,7 @@ int main(int argc, char** argv) {
     return 0;
   }
   try {
-    for (const std::string& person : people) fascia::bench::run_person(person, level, sheet);
+    for (const std::string& person : people) fascia::bench::run_person(person, level, sheet, rigs);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "bench_expressions: %s\n", error.what());
     return 1;

@@ -156,6 +156,7 @@ Result build(const Inputs& inputs, const Options& options) {
       const OrificeNet& net = nets.at(from.band->orifice);
       muscle.fibres = from.kind == MuscleKind::compressor ? lay_compressors(depths, net, from, options)
                                                           : lay_rings(depths, net, from, options);
+      if (from.band->medial_on_bone) muscle.origin_on = Attachment::cranium;
     } else {
       const Course course{from, make_place(inputs, options, from, true), make_place(inputs, options, from, false),
                           carried(inputs, from.waypoints)};

@@ -194,6 +194,25 @@ OrificeNet orifice_net(const Carrier& smas, const std::map<std::string, Vec3>& l
   return net;
 }
 
+namespace {
+
+/// Fibres that hang on the canthal ligament draw together towards it: what share of its distance from the orifice a fibre
+/// keeps at `share` of its way from the medial end.
+double kept_distance(double share) {
+  constexpr double at_ligament = 0.35, way = 0.35;
+  const double t = std::clamp(share / way, 0.0, 1.0);
+  return at_ligament + (1.0 - at_ligament) * t * t * (3.0 - 2.0 * t);
+}
+
+/// Whether the band's first angle is its end nearer the median plane.
+bool begins_medially(const anatomy::OrificeBand& band) {
+  const double medial = band.orifice == "eye_left" ? kPi : 0.0;
+  const auto off = [&](double angle) { return std::abs(std::remainder(angle - medial, 2 * kPi)); };
+  return off(band.begin_angle) < off(band.end_angle);
+}
+
+}  // namespace
+
 std::vector<Fibre> lay_rings(const Depths& depths, const OrificeNet& net, const anatomy::Muscle& muscle,
                              const Options& options) {
   const anatomy::OrificeBand& band = *muscle.band;
@@ -205,9 +224,13 @@ std::vector<Fibre> lay_rings(const Depths& depths, const OrificeNet& net, const 
     Fibre fibre;
     fibre.bundle = i * muscle.bundles / count;
     const std::vector<double> rays = along_ring(net, distance, band.begin_angle, band.end_angle, points);
-    for (int k = 0; k < points; ++k)
-      fibre.points.push_back(at_depth(depths, net.point(rays[k], distance),
-                                      sampled(muscle.depth_fraction, double(k) / (points - 1))));
+    const bool medial_first = begins_medially(band);
+    for (int k = 0; k < points; ++k) {
+      const double share = double(k) / (points - 1);
+      const double kept = band.medial_on_bone ? kept_distance(medial_first ? share : 1.0 - share) : 1.0;
+      fibre.points.push_back(at_depth(depths, net.point(rays[k], kept * distance), sampled(muscle.depth_fraction, share)));
+    }
+    if (band.medial_on_bone && !medial_first) std::reverse(fibre.points.begin(), fibre.points.end());
     fibres.push_back(std::move(fibre));
   }
   return fibres;

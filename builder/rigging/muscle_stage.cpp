@@ -16,6 +16,7 @@ rig::FibreEnd fibre_end(anatomy::Attachment on) {
   switch (on) {
     case anatomy::Attachment::mandible: return rig::FibreEnd::mandible;
     case anatomy::Attachment::skin: return rig::FibreEnd::skin;
+    case anatomy::Attachment::galea:
     case anatomy::Attachment::smas:
     case anatomy::Attachment::modiolus:
     case anatomy::Attachment::tarsus: return rig::FibreEnd::smas;

@@ -14,7 +14,8 @@ void add_fibres(const TissueInputs& inputs, const TissueOptions& options, const 
 /// raises the lower lid, `eye_pitch_<side>` takes both lids along; and the globes they rest on.
 void add_lids(const TissueInputs& inputs, const TissueOptions& options, const Columns& columns, rig::TissueLevel& level);
 
-/// Air in the mouth: `buccal_pressure_<side>` on the cheeks, `lip_pressure_upper` and `lip_pressure_lower` behind the lips.
-void add_pressures(const TissueInputs& inputs, const Columns& columns, rig::TissueLevel& level);
+/// Air in the mouth: `buccal_pressure_<side>` on its half of the
+/// vestibule, behind cheek and lips.
+void add_pressures(const TissueInputs& inputs, const TissueOptions& options, const Columns& columns, rig::TissueLevel& level);
 
 }  // namespace fascia::tissue

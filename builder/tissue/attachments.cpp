@@ -53,11 +53,11 @@ std::vector<Hold> holds_of(const TissueInputs& inputs) {
   const double third = glabella.y() - nose.y();
   const Vec3 upper_lip(nose.x(), nose.y() + 0.45 * (mouth.y() - nose.y()), nose.z());
   const Vec3 lower_lip(chin.x(), 0.6 * mouth.y() + 0.4 * chin.y(), 0.5 * (chin.z() + nose.z()));
-  return {{tip, 0.4 * third, 30.0},
-          {0.5 * (sellion + tip), 0.4 * third, 20.0},
-          {upper_lip, 0.28 * third, 14.0},
-          {lower_lip, 0.3 * third, 10.0},
-          {chin + Vec3(0, 0.1, 0) * third, 0.45 * third, 14.0}};
+  return {{tip, 0.4 * third, 3.9},
+          {0.5 * (sellion + tip), 0.4 * third, 2.9},
+          {upper_lip, 0.28 * third, 5.0},
+          {lower_lip, 0.3 * third, 6.0},
+          {chin + Vec3(0, 0.1, 0) * third, 0.45 * third, 1.4}};
 }
 
 double smoothstep(double low, double high, double x) {
@@ -72,6 +72,7 @@ Attachments attachments_of(const TissueInputs& inputs, const Columns& c) {
   Attachments a;
   a.bone.assign(n, 1.0);
   a.skin.assign(n, 1.0);
+  a.normal.assign(n, 1.0);
   const std::vector<Patch> patches = patches_of(inputs);
   const std::vector<Hold> holds = holds_of(inputs);
   std::optional<spatial::SurfaceQuery> smas;
@@ -101,14 +102,20 @@ Attachments attachments_of(const TissueInputs& inputs, const Columns& c) {
     const double lips = smoothstep(0.005, 0.016, c.opening_distance[static_cast<size_t>(Opening::mouth)][v]);
     const double lids = smoothstep(0.005, 0.012, std::min(c.opening_distance[static_cast<size_t>(Opening::eye_left)][v],
                                                           c.opening_distance[static_cast<size_t>(Opening::eye_right)][v]));
-    a.bone[v] *= 0.08 + 0.92 * lids * (0.3 + 0.7 * lips);
-    if (!c.bone[v]) a.bone[v] *= 0.35;
+    const double near = 0.08 + 0.92 * lids * (0.08 + 0.92 * lips);
+    a.bone[v] *= near;
+    a.normal[v] = near;
+    if (!c.bone[v]) {  // mucosa behind, and air
+      a.bone[v] *= 0.35;
+      a.normal[v] *= 0.1;
+    }
     double hold = 1.0;
     for (const Hold& h : holds) {
       const double r = (c.mesh.vertices[v] - h.centre).norm() / h.radius;
       hold = std::max(hold, 1.0 + (h.factor - 1.0) * std::exp(-r * r));
     }
     a.bone[v] *= hold;
+    a.normal[v] *= hold;
   }
   return a;
 }

@@ -44,7 +44,7 @@ double smoothstep(double low, double high, double x) {
 double lid_share(const Columns& c, size_t v) {
   const double distance = std::min(c.opening_distance[static_cast<size_t>(Opening::eye_left)][v],
                                    c.opening_distance[static_cast<size_t>(Opening::eye_right)][v]);
-  return 0.2 + 0.8 * smoothstep(0.008, 0.018, distance);
+  return 0.04 + 0.96 * smoothstep(0.008, 0.016, distance);
 }
 
 /// Relaxed lips are softer than the face around them: what share of its stiffness they have.
@@ -117,7 +117,7 @@ void add_retinacula(const Columns& c, const Attachments& attachments, const Tiss
       const double t = std::max(thickness, 0.001);
       return shear * area / t * (edge + t * t) / edge;  // two springs, each half, over the cosine squared
     };
-    const double skin = 0.5 * (attachments.skin[a] + attachments.skin[b]);
+    const double skin = 0.5 * (attachments.skin[a] + attachments.skin[b]) * std::min(lid_share(c, a), lid_share(c, b));
     const double k = crossing(0.5 * (c.smas_depth[a] + c.smas_depth[b]), m.fat_shear * skin);
     spring(a, n + b, k);
     spring(b, n + a, k);
@@ -133,11 +133,13 @@ void add_tethers(const Columns& c, const Attachments& attachments, const TissueM
   for (size_t v = 0; v < n; ++v) {
     if (c.rim[v]) continue;
     const double depth = std::clamp(c.inner_depth[v] - c.smas_depth[v], 0.002, 0.02);
-    const double share = c.area[v] * attachments.bone[v] / std::max(depth, 0.5 * m.glide_depth);
+    const double layer = c.area[v] / std::max(depth, 0.5 * m.glide_depth);
+    // Bone bears what presses on it through whatever depth; planes glide the wider the deeper they are.
+    const double across = c.area[v] / std::clamp(depth, 0.0025, 0.005);
     level.tether_nodes.push_back(static_cast<uint32_t>(n + v));
     level.tether_normals.push_back(c.normals[v].cast<float>());
-    level.tether_normal_stiffness.push_back(static_cast<float>(m.glide_normal * share));
-    level.tether_tangential_stiffness.push_back(static_cast<float>(m.glide_shear * share));
+    level.tether_normal_stiffness.push_back(static_cast<float>(m.glide_normal * across * attachments.normal[v]));
+    level.tether_tangential_stiffness.push_back(static_cast<float>(m.glide_shear * layer * attachments.bone[v]));
   }
   // Behind the lips the lining turns over onto the gums and is bound down there: lips hang from this fold.
   for (const auto& loop : boundary_loops(c.mesh, connectivity(c.mesh)))

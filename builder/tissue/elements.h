@@ -8,9 +8,10 @@ namespace fascia::tissue {
 rig::TissueLevel make_level(const TissueInputs& inputs, const TissueOptions& options, const LevelOptions& level,
                             const Columns& columns);
 
-/// How firmly each column's SMAS sits on what lies behind it (1 the mean of a face, 0 free) and on the skin.
+/// How firmly each column's SMAS is held by what lies behind it, along the plane it glides on (`bone`) and across it
+/// (`normal`), and by the skin: 1 the mean of a face, 0 free.
 struct Attachments {
-  std::vector<double> bone, skin;
+  std::vector<double> bone, normal, skin;
 };
 Attachments attachments_of(const TissueInputs& inputs, const Columns& columns);
 

@@ -77,7 +77,9 @@ void add_fibres(const TissueInputs& inputs, const TissueOptions& options, const 
         level.fibre_anchor.push_back(end);
         // A free end takes up the pull over a few millimetres, so that no node is drawn out alone.
         const double middle = k + 1 < kept.size() ? 0.5 * (along[k] + along[k + 1]) : length;
-        const double spread = std::min(options.material.insertion_spread, 0.35 * length);
+        // A ring that hangs on one bone gives its pull to the skin all along its way.
+        const bool hung_ring = muscle.kind == "sphincter_ring" && bony(muscle.origin) != bony(muscle.insertion);
+        const double spread = hung_ring ? 0.9 * length : std::min(options.material.insertion_spread, 0.35 * length);
         double taper = 1.0;
         if (!bony(muscle.insertion)) taper = std::min(taper, (length - middle) / spread);
         if (!bony(muscle.origin)) taper = std::min(taper, middle / spread);
@@ -93,37 +95,40 @@ void add_fibres(const TissueInputs& inputs, const TissueOptions& options, const 
   }
 }
 
-void add_pressures(const TissueInputs& inputs, const Columns& c, rig::TissueLevel& level) {
-  const Vec3 mouth = 0.5 * (landmark(inputs, "cheilion_left") + landmark(inputs, "cheilion_right"));
-  const double half = 0.5 * (landmark(inputs, "cheilion_left") - landmark(inputs, "cheilion_right")).norm();
-  const auto add = [&](const std::string& name, auto&& share_at) {
-    const int channel = channel_index(inputs.channels, name);
-    if (channel < 0) return;
+void add_pressures(const TissueInputs& inputs, const TissueOptions& options, const Columns& c, rig::TissueLevel& level) {
+  const Vec3 corner_left = landmark(inputs, "cheilion_left"), corner_right = landmark(inputs, "cheilion_right");
+  const Vec3 mouth = 0.5 * (corner_left + corner_right);
+  const double half = 0.5 * (corner_left - corner_right).norm();
+  const double top = landmark(inputs, "subnasale").y() - mouth.y(), bottom = 0.75 * (landmark(inputs, "gnathion").y() - mouth.y());
+  const auto falling = [](double from, double to, double x) {
+    const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
+    return 1.0 - t * t * (3.0 - 2.0 * t);
+  };
+  // The vestibule: one space behind lips and cheeks, from fold to fold, back to the masseter's front edge.
+  const auto vestibule = [&](const Vec3& p) {
+    const double out = std::abs(p.x() - mouth.x()) / half, up = p.y() - mouth.y();
+    const double height = up > 0.0 ? up / top : up / bottom;
+    return falling(1.5, 2.6, out) * falling(0.55, 1.15, height) * falling(0.0, 0.5, (mouth.z() - p.z()) / half - 1.1);
+  };
+  for (const double side : {1.0, -1.0}) {
+    const int channel = channel_index(inputs.channels, side > 0 ? "buccal_pressure_left" : "buccal_pressure_right");
+    if (channel < 0) continue;
     for (size_t t = 0; t < c.mesh.triangles.size(); ++t) {
       Vec3 centre = Vec3::Zero();
-      bool soft = true;
+      bool outer = true;
       for (const int v : c.mesh.triangles[t]) {
         centre += c.mesh.vertices[static_cast<size_t>(v)] / 3.0;
-        soft = soft && c.outer[static_cast<size_t>(v)] && !c.bone[static_cast<size_t>(v)];
+        outer = outer && c.outer[static_cast<size_t>(v)];
       }
-      const double share = soft ? share_at(centre) : 0.0;
+      // The two sides share the middle of the lips.
+      const double own = falling(-0.2, 0.2, -side * (centre.x() - mouth.x()) / half);
+      const double share = outer ? own * vestibule(centre) : 0.0;
       if (share < 0.02) continue;
       level.pressure_channel.push_back(static_cast<uint32_t>(channel));
       level.pressure_prism.push_back(static_cast<uint32_t>(t));
-      level.pressure.push_back(static_cast<float>(400.0 * share));
+      level.pressure.push_back(static_cast<float>(options.material.mouth_pressure * share));
     }
-  };
-  const auto near = [](double x) { return std::exp(-x * x); };
-  for (const double side : {1.0, -1.0})
-    add(side > 0 ? "buccal_pressure_left" : "buccal_pressure_right", [&](const Vec3& p) {
-      const Vec3 cheek = mouth + half * Vec3(side * 1.3, 0.05, -0.5);
-      return near((p - cheek).norm() / (1.1 * half));
-    });
-  for (const double up : {1.0, -1.0})
-    add(up > 0 ? "lip_pressure_upper" : "lip_pressure_lower", [&](const Vec3& p) {
-      if ((p.y() - mouth.y()) * up < 0.0) return 0.0;
-      return near((p - mouth - half * Vec3(0, 0.3 * up, 0.1)).norm() / (0.8 * half));
-    });
+  }
 }
 
 }  // namespace fascia::tissue

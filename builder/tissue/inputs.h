@@ -42,14 +42,15 @@ struct TissueMaterial {
   double fat_modulus = 8e3;          ///< across the layer between skin and SMAS, retinacula included
   double fat_shear = 2.5e3;          ///< of that layer where the SMAS is firmly attached to the skin
   double glide_shear = 350.0;        ///< of the plane between SMAS and bone at mean attachment
-  double glide_normal = 900.0;       ///< across it
+  double glide_normal = 12e3;        ///< across it: bone lets nothing sink, what lies on air may give
   double glide_depth = 0.005;        ///< that the two refer to
   double volume_modulus = 4e4;       ///< between skin and SMAS
   double inner_volume_modulus = 1e3; ///< between SMAS and what lies behind: fat that may flow aside
   double density = 1000.0;           ///< kilogram a cubic metre
   double fibre_shortest_factor = 1.6;///< the pull ends at this multiple of the muscle's peak shortening
   double insertion_spread = 0.006;   ///< over which a fibre's pull comes in at its free end
-  double gum_hold = 1.0e6;           ///< pascal per metre: stiffness an area with which the gums hold the lips' lining at its fold
+  double mouth_pressure = 600.0;     ///< behind the cheeks at channel value 1
+  double gum_hold = 3.0e5;           ///< pascal per metre: stiffness an area with which the gums hold the lips' lining at its fold
   double lid_hold = 1.0e6;           ///< pascal per metre: stiffness an area with which the tarsal plates keep their place on the globe
 };
 

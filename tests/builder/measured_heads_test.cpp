@@ -1,6 +1,10 @@
 // Heads of real people and of another maker, when the measured data are there.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
 #include "tests/builder/face_checks.h"
 
 namespace fascia::testing {
@@ -11,11 +15,45 @@ namespace fs = std::filesystem;
 const fs::path data = fs::path(FASCIA_MEASURED_DATA) / "data";
 const fs::path fixtures = FASCIA_TEST_DATA;
 
+/// Lengths of the fibres of a published finite-element face (ArtiSynth), and our part each stands for. Its depressor labii
+/// inferioris and lower peripheral orbicularis are two thirds as long as ours and are not held to it.
+void expect_published_lengths(const rigging::BuildReport& report, const fs::path& published) {
+  struct Pair {
+    const char* muscle;
+    int fibre;
+    const char* ours;
+  };
+  const Pair pairs[] = {{"DAO", 1, "depressor_anguli_oris"}, {"BUC", 1, "buccinator_upper"}, {"BUC", 2, "buccinator_lower"},
+                        {"MENT", 1, "mentalis"}, {"OOM", 1, "orbicularis_oris_marginal_upper"},
+                        {"OOM", 2, "orbicularis_oris_marginal_lower"}, {"OOP", 1, "orbicularis_oris_peripheral_upper"},
+                        {"LLSAN", 1, "levator_labii_superioris_alaeque_nasi_labial"},
+                        {"LLSAN", 2, "levator_labii_superioris_alaeque_nasi_alar"}, {"LAO", 1, "levator_anguli_oris"},
+                        {"RIS", 1, "risorius"}, {"ZYG", 1, "zygomaticus_major_superior"},
+                        {"LLS", 1, "levator_labii_superioris_medial"}};
+  std::ifstream file(published);
+  const nlohmann::json fibres = nlohmann::json::parse(file);
+  std::vector<double> ratios;
+  for (const Pair& pair : pairs) {
+    double wanted = 0.0, length = 0.0;
+    for (const auto& fibre : fibres)
+      if (fibre["muscle"] == pair.muscle && fibre["fibre"] == pair.fibre) wanted = fibre["length_mm"];
+    for (const auto& muscle : report.muscles)
+      if (muscle.name == std::string(pair.ours) + "_left") length = muscle.length_mm;
+    ASSERT_GT(wanted, 0.0) << pair.muscle;
+    ratios.push_back(length / wanted);
+  }
+  std::vector<double> sorted = ratios;
+  std::sort(sorted.begin(), sorted.end());
+  const double size = sorted[sorted.size() / 2];  // of one face to the other
+  for (size_t k = 0; k < ratios.size(); ++k) EXPECT_NEAR(ratios[k] / size, 1.0, 0.25) << pairs[k].ours;
+}
+
 TEST(MeasuredHeads, IctMeanHeadMovesAsAnatomySays) {
   const fs::path head = data / "ict/neutral.glb";
   if (!fs::exists(head)) GTEST_SKIP() << "the measured heads are not at " << data;
   PosedFace face(head, fixtures / "ict_neutral_landmarks.json", "test_ict");
   expect_face_moves_as_anatomy_says(face);
+  expect_published_lengths(face.report(), data / "artisynth/face_fibres_left_mm.json");
 }
 
 TEST(MeasuredHeads, MakeHumanBodyBuilds) {

@@ -122,7 +122,8 @@ TEST_F(Built, LipsArePartedAndTheJawTakesTheLowerOne) {
   std::vector<sim::Vec3f> x(level.rest.size());
   EXPECT_EQ(face.static_pose({}, {}, x).iterations, 0);
   for (size_t i = 0; i < x.size(); ++i) EXPECT_EQ(x[i], level.rest[i]);
-  EXPECT_TRUE(face.static_pose({{}, {1.0F, 0, 0}, sim::Vec3::Zero()}, {}, x).converged);
+  const sim::MinimiseResult open = face.static_pose({{}, {1.0F, 0, 0}, sim::Vec3::Zero()}, {}, x);
+  EXPECT_LT(open.move, 1e-4) << "metres still wanted after " << open.iterations << " iterations";
   const rig::Binding& binding = skin_binding(low());
   const auto& part = measured_head().parts[0];
   const auto motion = [&](const Vec3& where) {
