@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "builder/landmarks/lid_opening.h"
+
 namespace fascia::landmarks {
 
 namespace {
@@ -41,50 +43,102 @@ double confidence_at(const GenericFace& face, const Registration& fit, const Vec
   return total > 0.0 ? std::clamp(0.97 * sum / total, 0.01, 0.97) : 0.01;
 }
 
+constexpr double confidence_of_openings = 0.9;
+
+/// An eye of a head by its corners' places; `up` and `forward` are the head's.
+EyeRegion eye_region(const Vec3& outer, const Vec3& inner, const Ball& ball, const Placement& placement) {
+  return {outer, inner, placement.rotation * Vec3::UnitZ(), placement.rotation * Vec3::UnitY(), ball};
+}
+
+/// Corners and margins of the lids of one side, put where this head's lids open: the generic head's own opening, looked at
+/// the same way, tells how the landmarks lie beside what is seen.
+std::vector<std::pair<std::string, Vec3>> lid_landmarks(const GenericFace& face, const anatomy::GenericAnatomy& anatomy,
+                                                        const spatial::SurfaceQuery& skin, const Registration& fit,
+                                                        const std::string& side, const std::optional<Ball>& known) {
+  const auto generic = [&](const char* name) { return *anatomy.landmark(name + side)->skin; };
+  const Vec3 outer = generic("exocanthion_"), inner = generic("endocanthion_");
+  const Ball& ball = side == "left" ? face.eye_left : face.eye_right;
+  const double scale = fit.placement.scale;
+  const Ball carried = known ? *known : Ball{fit(ball.centre), ball.radius * scale};
+  const auto here = lid_opening(skin, eye_region(fit(outer), fit(inner), carried, fit.placement));
+  const auto there = lid_opening(spatial::SurfaceQuery(face.skin), eye_region(outer, inner, ball, Placement{}));
+  if (!here || !there) return {};
+  const auto moved = [&](const Vec3& at, const Vec3& seen_here, const Vec3& seen_there) {
+    return Vec3(seen_here + scale * (fit.placement.rotation * (at - seen_there)));
+  };
+  // A corner far from where the fit has it is a hole in the mesh or a fold, not the corner.
+  const double most = 0.2 * scale * (outer - inner).norm();
+  std::vector<std::pair<std::string, Vec3>> found;
+  const auto add = [&](const std::string& name, const Vec3& seen_here, const Vec3& seen_there) {
+    const Vec3& at = *anatomy.landmark(name + side)->skin;
+    const Vec3 place = moved(at, seen_here, seen_there);
+    if ((place - fit(at)).norm() < most) found.push_back({name + side, place});
+  };
+  add("exocanthion_", here->outer, there->outer);
+  add("endocanthion_", here->inner, there->inner);
+  add("palpebrale_superius_", here->upper, there->upper);
+  add("palpebrale_inferius_", here->lower, there->lower);
+  return found;
+}
+
+std::vector<Anchor> anchors_of(const std::map<std::string, Vec3>& points, const anatomy::GenericAnatomy& anatomy, double weight) {
+  std::vector<Anchor> anchors;
+  for (const auto& [name, p] : points) {
+    const Vec3& generic = *anatomy.landmark(name)->skin;
+    const bool repeats = std::any_of(anchors.begin(), anchors.end(), [&](const Anchor& a) { return (a.generic - generic).norm() < 1e-3; });
+    if (!repeats) anchors.push_back({generic, p, weight});
+  }
+  return anchors;
+}
+
 }  // namespace
 
-std::map<std::string, Vec3> rough_landmarks(const GenericFace& face, const anatomy::GenericAnatomy& anatomy,
-                                            const TriangleMesh& mesh, const FoundHead& found) {
-  const spatial::SurfaceQuery surface(found.is_inside_out ? turned_over(mesh) : mesh);
-  const Placement& placement = found.placement;
-  RegistrationOptions coarse;
-  coarse.stride = 2;
-  coarse.lambdas = {10, 3, 1};
-  const Registration fit = register_face(face, head_samples(face, surface, placement, 6000, 4000), placement, {}, coarse);
+std::map<std::string, Vec3> rough_landmarks(const anatomy::GenericAnatomy& anatomy, const FoundHead& found) {
   std::map<std::string, Vec3> rough;
-  for (const anatomy::Landmark& landmark : anatomy.landmarks) {
-    if (!landmark.skin || !landmark.required) continue;
-    const auto place = facing_point(surface, fit(*landmark.skin), carried_normal(fit, *landmark.skin, landmark.normal));
-    if (place) rough[landmark.name] = place->position;
-  }
+  for (const anatomy::Landmark& landmark : anatomy.landmarks)
+    if (landmark.skin && landmark.required) rough[landmark.name] = found.fit(*landmark.skin);
   return rough;
 }
 
-std::map<std::string, SkinLandmark> find(const GenericFace& face, const anatomy::GenericAnatomy& anatomy,
-                                         const spatial::SurfaceQuery& skin, const Placement& placement,
-                                         const std::map<std::string, Vec3>& given, std::vector<std::string>* unknown) {
-  std::map<std::string, SkinLandmark> all;
-  std::vector<Anchor> anchors;
+FoundFace find(const GenericFace& face, const anatomy::GenericAnatomy& anatomy, const spatial::SurfaceQuery& skin,
+               const Placement& placement, const std::map<std::string, Vec3>& given, const KnownEyes& eyes) {
+  FoundFace found;
+  std::map<std::string, Vec3> known;
   for (const auto& [name, p] : given) {
-    const anatomy::Landmark* known = anatomy.landmark(name);
-    if (!known || !known->skin) {
-      if (unknown) unknown->push_back(name);
+    const anatomy::Landmark* landmark = anatomy.landmark(name);
+    if (landmark && landmark->skin) known[name] = p;
+    else found.unknown.push_back(name);
+  }
+  std::vector<Anchor> anchors = anchors_of(known, anatomy, 100.0);
+  const Samples samples = head_samples(face, skin, placement, 12000, 5000);
+  RegistrationOptions first;
+  first.stages = {{10, 4, 1}, {3, 4, 1}, {1, 3, 2}, {0.3, 3, 2}, {0.1, 2, 2}};
+  first.last_reach = 0.012;
+  found.fit = register_face(face, samples, placement, anchors, first);
+  std::map<std::string, Vec3> seen;
+  for (const auto& [side, ball] : {std::pair("left", eyes.left), std::pair("right", eyes.right)})
+    for (const auto& [name, p] : lid_landmarks(face, anatomy, skin, found.fit, side, ball))
+      if (!known.count(name)) seen[name] = p;
+  for (const Anchor& anchor : anchors_of(seen, anatomy, 20.0)) anchors.push_back(anchor);
+  RegistrationOptions second;
+  second.stages = {{0.03, 2, 1}, {0.01, 1, 1}, {0.004, 1, 1}};
+  second.reach = 0.01;
+  found.fit = register_face(face, samples, placement, anchors, second, found.fit.warp);
+  for (const anatomy::Landmark& landmark : anatomy.landmarks) {
+    if (!landmark.skin) continue;
+    if (const auto at = known.find(landmark.name); at != known.end()) {
+      found.landmarks[landmark.name] = {at->second, 1.0, true};
       continue;
     }
-    all[name] = {p, 1.0, true};
-    const bool repeats = std::any_of(anchors.begin(), anchors.end(), [&](const Anchor& a) { return (a.generic - *known->skin).norm() < 1e-3; });
-    if (!repeats) anchors.push_back({*known->skin, p, 100.0});
-  }
-  const Samples samples = head_samples(face, skin, placement, 14000, 5000);
-  const Registration fit = register_face(face, samples, placement, anchors);
-  for (const anatomy::Landmark& landmark : anatomy.landmarks) {
-    if (!landmark.skin || all.count(landmark.name)) continue;
-    const auto place = facing_point(skin, fit(*landmark.skin), carried_normal(fit, *landmark.skin, landmark.normal));
+    const auto eye = seen.find(landmark.name);
+    const Vec3 carried = eye != seen.end() ? eye->second : found.fit(*landmark.skin);
+    const auto place = facing_point(skin, carried, carried_normal(found.fit, *landmark.skin, landmark.normal));
     if (!place) continue;
-    const double off = place->distance / placement.scale;
-    all[landmark.name] = {place->position, confidence_at(face, fit, *landmark.skin) * std::exp(-off / 0.015), false};
+    const double off = std::exp(-place->distance / placement.scale / 0.015);
+    const double confidence = std::max(eye != seen.end() ? confidence_of_openings : 0.0, confidence_at(face, found.fit, *landmark.skin));
+    found.landmarks[landmark.name] = {place->position, off * confidence, false};
   }
-  return all;
+  return found;
 }
 
 }  // namespace fascia::landmarks

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,19 +14,28 @@
 
 namespace fascia::landmarks {
 
-/// Skin landmarks of the generic head as they lie on `mesh` by a coarse fit from where it was found; on the mesh, its own
-/// axes and units, a few millimetres off. Enough to tell units, axes and parts by.
-std::map<std::string, Vec3> rough_landmarks(const GenericFace& face, const anatomy::GenericAnatomy& anatomy,
-                                            const TriangleMesh& mesh, const FoundHead& found);
+/// The required landmarks where the coarse fit carries them: beside the mesh by a few millimetres, in its own axes
+/// and units. Enough to tell units, axes and parts by.
+std::map<std::string, Vec3> rough_landmarks(const anatomy::GenericAnatomy& anatomy, const FoundHead& found);
+
+/// Eyeballs where known, in the frame of the skin.
+struct KnownEyes {
+  std::optional<Ball> left, right;
+};
+
+/// Landmarks, and the generic head bent onto the skin, by which anything else of it can be carried over.
+struct FoundFace {
+  std::map<std::string, SkinLandmark> landmarks;
+  Registration fit;
+  std::vector<std::string> unknown;  ///< given names that the anatomy does not know; left out
+};
 
 /// All skin landmarks of `anatomy` on `skin`, the welded skin in metres, rig frame.
 ///
-/// The generic head is bent onto the skin from `placement` (same frame); `given` landmarks (same frame) are kept as
-/// they are and steer the fit. A found one's confidence falls with the distance that the fit leaves about it. Given names that
-/// the anatomy does not know are kept out and listed in `unknown` when not null.
-std::map<std::string, SkinLandmark> find(const GenericFace& face, const anatomy::GenericAnatomy& anatomy,
-                                         const spatial::SurfaceQuery& skin, const Placement& placement,
-                                         const std::map<std::string, Vec3>& given = {},
-                                         std::vector<std::string>* unknown = nullptr);
+/// The generic head is bent onto the skin from `placement` (same frame); the corners and margins of open lids are
+/// looked for where the fit says the eyes are and steer it on; `given` landmarks (same frame) are kept as they
+/// are and steer it too. A found one's confidence falls with the distance that the fit leaves about it.
+FoundFace find(const GenericFace& face, const anatomy::GenericAnatomy& anatomy, const spatial::SurfaceQuery& skin,
+               const Placement& placement, const std::map<std::string, Vec3>& given = {}, const KnownEyes& eyes = {});
 
 }  // namespace fascia::landmarks

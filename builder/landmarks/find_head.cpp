@@ -5,7 +5,6 @@
 #include <map>
 #include <optional>
 
-#include "builder/landmarks/registration.h"
 #include "builder/landmarks/spheres.h"
 #include "geometry/error.h"
 
@@ -22,6 +21,7 @@ struct Candidate {
   size_t lump = 0;
   double residual = 1.0;  ///< metres of the generic head
   double likeness = 0.0;
+  Registration fit;
 };
 
 bool are_alike(const GenericFace& face, const Placement& a, const Placement& b) {
@@ -63,19 +63,12 @@ class LumpSamples {
   std::map<size_t, std::optional<Neighbours>> samples_;
 };
 
-double likeness_of(const GenericFace& face, const Samples& samples, const Placement& placement) {
-  RegistrationOptions coarse;
-  coarse.stride = 3;
-  coarse.lambdas = {10, 3, 1};
-  return fitted_share(face, register_face(face, samples, placement, {}, coarse));
-}
-
-}  // namespace
-
 TriangleMesh turned_over(TriangleMesh mesh) {
   for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
   return mesh;
 }
+
+}  // namespace
 
 FoundHead find_head(const GenericFace& face, const TriangleMesh& input, const std::string& path, const std::optional<Placement>& hint) {
   const int sample_count = 8000;
@@ -93,11 +86,16 @@ FoundHead find_head(const GenericFace& face, const TriangleMesh& input, const st
   std::vector<Candidate> candidates;
   if (hint) {
     lumps = {{(*hint)(face.vault.centre), face.vault.radius * hint->scale}};
-    candidates = {{*hint}};
+    candidates.resize(1);
+    candidates.front().placement = *hint;
   } else {
     lumps = round_lumps(open_samples(even, surface), 7);
     for (size_t l = 0; l < lumps.size(); ++l)
-      for (const Guess& guess : guess_placements(face, surface, lumps[l], 16)) candidates.push_back({guess.placement, l});
+      for (const Guess& guess : guess_placements(face, surface, lumps[l], 16)) {
+        candidates.emplace_back();
+        candidates.back().placement = guess.placement;
+        candidates.back().lump = l;
+      }
   }
   LumpSamples near(mesh, surface, lumps);
   for (Candidate& candidate : candidates)
@@ -108,7 +106,8 @@ FoundHead find_head(const GenericFace& face, const TriangleMesh& input, const st
   for (Candidate& candidate : candidates) {
     if (candidate.residual >= 1.0) continue;
     candidate.placement = refine_placement(face, near(candidate.lump), candidate.placement, 12, 2, &candidate.residual);
-    candidate.likeness = likeness_of(face, near(candidate.lump).samples(), candidate.placement);
+    candidate.fit = register_face(face, near(candidate.lump).samples(), candidate.placement, {}, coarse_fit());
+    candidate.likeness = fitted_share(face, candidate.fit);
     if (!best || candidate.likeness > best->likeness) best = &candidate;
     if (best->likeness > sure_likeness) break;
   }
@@ -116,7 +115,7 @@ FoundHead find_head(const GenericFace& face, const TriangleMesh& input, const st
     throw Error("'" + path + "': no face was found in it. If there is one, give --landmarks FILE with at least four points on the "
                 "skin that are not in one plane, such as pronasale, menton, exocanthion_left and exocanthion_right; "
                 "if it is one mesh among many, name it with --skin");
-  found.placement = best->placement;
+  found.fit = best->fit;
   found.likeness = best->likeness;
   return found;
 }

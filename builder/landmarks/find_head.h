@@ -3,19 +3,17 @@
 #include <optional>
 #include <string>
 
-#include "builder/landmarks/placement.h"
+#include "builder/landmarks/registration.h"
 
 namespace fascia::landmarks {
 
 /// A face found in a mesh.
 struct FoundHead {
-  Placement placement;         ///< of the generic head, in the mesh's own axes and units
+  Registration fit;            ///< coarse, a few millimetres off; in the mesh's own axes and units
+  const Placement& placement() const { return fit.placement; }
   double likeness = 0.0;       ///< share of the generic face that the mesh follows, see fitted_share
   bool is_inside_out = false;  ///< the mesh's triangles face inward
 };
-
-/// `mesh` with its triangles facing the other way.
-TriangleMesh turned_over(TriangleMesh mesh);
 
 /// Finds the head in `mesh`: any pose, size and place; a bust, a whole body, or a face alone.
 ///

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "builder/landmarks/spheres.h"
 #include "geometry/error.h"
@@ -56,6 +59,41 @@ Samples outer_left(const anatomy::GenericAnatomy& anatomy, const TriangleMesh& s
   return outer;
 }
 
+Ball eyeball(const anatomy::GenericAnatomy& anatomy, const char* name) {
+  const anatomy::MeshObject* eye = anatomy.head_object(name);
+  return eye ? fit_ball(eye->mesh.vertices) : Ball{};
+}
+
+/// First triangle of each polygon of the object `skin` in head.obj, as fans, and one past the last.
+std::vector<size_t> first_triangles() {
+  std::istringstream lines{std::string(anatomy::embedded_file("head.obj"))};
+  std::vector<size_t> first = {0};
+  bool is_skin = false;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.rfind("o ", 0) == 0) is_skin = line.rfind("o skin", 0) == 0;
+    if (!is_skin || line.rfind("f ", 0) != 0) continue;
+    std::istringstream corners(line.substr(2));
+    const auto count = std::distance(std::istream_iterator<std::string>(corners), std::istream_iterator<std::string>());
+    first.push_back(first.back() + static_cast<size_t>(count) - 2);
+  }
+  return first;
+}
+
+/// Reads which polygons of the skin make up which region.
+void read_regions(GenericFace& face) {
+  const std::string_view text = anatomy::embedded_file("head_regions.json");
+  const nlohmann::json faces = nlohmann::json::parse(text.begin(), text.end()).at("objects").at("skin").at("faces");
+  const std::vector<size_t> first = first_triangles();
+  face.region_of_triangle.assign(face.skin.triangles.size(), -1);
+  for (const auto& [name, range] : faces.items()) {
+    const size_t begin = range.at("first").get<size_t>(), end = begin + range.at("count").get<size_t>();
+    if (end >= first.size() || first.back() != face.skin.triangles.size())
+      throw Error("head_regions.json does not belong to the skin of head.obj: make both with tools/anatomy/make_head");
+    for (size_t t = first[begin]; t < first[end]; ++t) face.region_of_triangle[t] = static_cast<int>(face.region_names.size());
+    face.region_names.push_back(name);
+  }
+}
+
 }  // namespace
 
 GenericFace generic_face(const anatomy::GenericAnatomy& anatomy) {
@@ -63,6 +101,9 @@ GenericFace generic_face(const anatomy::GenericAnatomy& anatomy) {
   if (!object) throw Error("the anatomy's head has no object 'skin'");
   GenericFace face;
   face.skin = object->mesh;
+  face.eye_left = eyeball(anatomy, "eye_left");
+  face.eye_right = eyeball(anatomy, "eye_right");
+  read_regions(face);
   const std::vector<Vec3> features = feature_points(anatomy);
   size_t landmark_count = 0;
   const Samples outer = outer_left(anatomy, face.skin, landmark_count);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "anatomy/anatomy.h"
@@ -14,6 +15,9 @@ struct GenericFace {
   std::vector<double> weights;   ///< what a point says about the head's place: 1 face .. 0 neck
   std::vector<bool> is_face;     ///< in front of the ears, between hairline and chin
   TriangleMesh skin;             ///< the whole skin
+  std::vector<std::string> region_names;  ///< lip_upper, mouth_lining, nostril_left, ...
+  std::vector<int> region_of_triangle;    ///< of `skin`, index into `region_names`
+  Ball eye_left, eye_right;      ///< eyeballs
   Ball vault;                    ///< sphere through the outer skin above the neck
 };
 

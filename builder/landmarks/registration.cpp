@@ -1,6 +1,6 @@
 #include "builder/landmarks/registration.h"
 
-#include <Eigen/LU>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -46,58 +46,89 @@ Foot foot_of(const Neighbours& target, const Vec3& p, const Vec3& n, double reac
   return foot;
 }
 
-}  // namespace
+/// The points of one stage, where they are now, and which way the surface faces there.
+struct Front {
+  std::vector<int> used;
+  std::vector<Vec3> base, at, normals;  ///< anchors first; these have no normals
+};
 
-Registration register_face(const GenericFace& face, const Samples& target_samples, const Placement& placement,
-                           const std::vector<Anchor>& anchors, const RegistrationOptions& options) {
-  const Neighbours target(in_generic_frame(target_samples, placement));
-  Registration fit;
-  fit.placement = placement;
-  std::vector<Vec3> base, normals;
-  for (const Anchor& anchor : anchors) base.push_back(anchor.generic);
-  for (size_t i = 0; i < face.points.size(); i += static_cast<size_t>(options.stride)) {
+Front front_of(const GenericFace& face, const std::vector<Anchor>& anchors, int stride, const splines::Warp& warp) {
+  Front front;
+  for (const Anchor& anchor : anchors) front.base.push_back(anchor.generic);
+  for (size_t i = 0; i < face.points.size(); i += static_cast<size_t>(stride)) {
     const Vec3& p = face.points.points[i];
     const bool is_anchored = std::any_of(anchors.begin(), anchors.end(), [&](const Anchor& a) { return (a.generic - p).norm() < 5e-4; });
     if (is_anchored) continue;
-    fit.used.push_back(static_cast<int>(i));
-    base.push_back(p);
+    front.used.push_back(static_cast<int>(i));
+    front.base.push_back(p);
   }
-  const size_t free = anchors.size();
-  const size_t stages = options.lambdas.size();
-  std::vector<Vec3> at = base, goal = base;
-  for (size_t i : fit.used) normals.push_back(face.points.normals[i]);
-  splines::WarpOptions plate;
-  plate.weights.assign(base.size(), 1.0);
-  for (size_t a = 0; a < free; ++a) {
-    goal[a] = placement.inverse(anchors[a].target);
-    plate.weights[a] = anchors[a].weight;
+  front.at = warp(std::span<const Vec3>(front.base));
+  // Two points beside each, carried along, give the turn of the tangent plane: cheaper than Jacobians.
+  std::vector<Vec3> beside;
+  for (int i : front.used) {
+    const Vec3& n = face.points.normals[static_cast<size_t>(i)];
+    const Vec3 u = n.unitOrthogonal();
+    beside.push_back(face.points.points[static_cast<size_t>(i)] + 0.001 * u);
+    beside.push_back(face.points.points[static_cast<size_t>(i)] + 0.001 * n.cross(u));
   }
+  beside = warp(std::span<const Vec3>(beside));
+  for (size_t k = 0; k < front.used.size(); ++k) {
+    const Vec3& here = front.at[anchors.size() + k];
+    const Vec3 n = (beside[2 * k] - here).cross(beside[2 * k + 1] - here);
+    front.normals.push_back(n.norm() > 0.0 ? Vec3(n.normalized()) : face.points.normals[static_cast<size_t>(front.used[k])]);
+  }
+  return front;
+}
+
+}  // namespace
+
+RegistrationOptions coarse_fit() {
+  RegistrationOptions options;
+  options.stages = {{10, 3, 2}, {3, 3, 2}, {1, 3, 2}};
+  options.last_reach = 0.008;
+  return options;
+}
+
+Registration register_face(const GenericFace& face, const Samples& target_samples, const Placement& placement,
+                           const std::vector<Anchor>& anchors, const RegistrationOptions& options,
+                           const splines::Warp& start) {
+  const Neighbours target(in_generic_frame(target_samples, placement));
+  Registration fit;
+  fit.placement = placement;
+  fit.warp = start;
+  const size_t pinned = anchors.size(), stages = options.stages.size();
+  Front front;
   for (size_t stage = 0; stage < stages; ++stage) {
     const double share = stages > 1 ? static_cast<double>(stage) / static_cast<double>(stages - 1) : 1.0;
     const double reach = options.reach * std::pow(options.last_reach / options.reach, share);
-    plate.lambda = options.lambdas[stage];
-    for (int round = 0; round < options.rounds; ++round) {
-      for (size_t i = free; i < base.size(); ++i) {
-        const Foot foot = foot_of(target, at[i], normals[i - free], reach);
-        const double off = foot.normal.dot(foot.point - at[i]);
-        const Vec3 aside = foot.point - at[i] - off * foot.normal;
-        goal[i] = foot.weight > 0.0 ? Vec3(at[i] + off * foot.normal + 0.15 * aside) : at[i];
-        plate.weights[i] = std::max(1e-3, foot.weight * (0.1 + face.weights[static_cast<size_t>(fit.used[i - free])]));
-      }
-      fit.warp = splines::fit_warp(base, goal, plate);
-      at = fit.warp(std::span<const Vec3>(base));
+    front = front_of(face, anchors, options.stages[stage].stride, fit.warp);
+    splines::WarpOptions plate;
+    plate.lambda = options.stages[stage].lambda;
+    plate.weights.assign(front.base.size(), 1.0);
+    std::vector<Vec3> goal = front.base;
+    for (size_t a = 0; a < pinned; ++a) {
+      goal[a] = placement.inverse(anchors[a].target);
+      plate.weights[a] = anchors[a].weight;
     }
-    for (size_t i = free; i < base.size(); ++i) {
-      const Mat3 turn = fit.warp.jacobian(base[i]);
-      const Vec3& n = face.points.normals[static_cast<size_t>(fit.used[i - free])];
-      if (std::abs(turn.determinant()) > 1e-3) normals[i - free] = (turn.inverse().transpose() * n).normalized();
+    for (int round = 0; round < options.stages[stage].rounds; ++round) {
+      for (size_t i = pinned; i < front.base.size(); ++i) {
+        const Foot foot = foot_of(target, front.at[i], front.normals[i - pinned], reach);
+        const double off = foot.normal.dot(foot.point - front.at[i]);
+        const Vec3 aside = foot.point - front.at[i] - off * foot.normal;
+        goal[i] = foot.weight > 0.0 ? Vec3(front.at[i] + off * foot.normal + 0.15 * aside) : front.at[i];
+        plate.weights[i] = std::max(1e-3, foot.weight * (0.1 + face.weights[static_cast<size_t>(front.used[i - pinned])]));
+      }
+      fit.warp = splines::fit_warp(front.base, goal, plate);
+      front.at = fit.warp(std::span<const Vec3>(front.base));
     }
   }
-  for (size_t i = free; i < base.size(); ++i) {
-    const Foot foot = foot_of(target, at[i], normals[i - free], 0.02);
-    fit.residuals.push_back(foot.weight > 0.0 ? std::abs(foot.normal.dot(foot.point - at[i])) + 0.3 * (foot.point - at[i]).norm()
+  front = front_of(face, anchors, options.stages.back().stride, fit.warp);
+  fit.used = front.used;
+  for (size_t i = pinned; i < front.base.size(); ++i) {
+    const Foot foot = foot_of(target, front.at[i], front.normals[i - pinned], 0.02);
+    fit.residuals.push_back(foot.weight > 0.0 ? std::abs(foot.normal.dot(foot.point - front.at[i])) + 0.3 * (foot.point - front.at[i]).norm()
                                               : std::numeric_limits<double>::infinity());
-    fit.agreements.push_back(foot.weight > 0.0 ? foot.normal.dot(normals[i - free]) : -1.0);
+    fit.agreements.push_back(foot.weight > 0.0 ? foot.normal.dot(front.normals[i - pinned]) : -1.0);
   }
   return fit;
 }

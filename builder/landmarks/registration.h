@@ -13,13 +13,20 @@ struct Anchor {
   double weight = 1.0;   ///< of a correspondence found is at most 1
 };
 
-struct RegistrationOptions {
-  int stride = 1;  ///< takes every so many points of the generic face
-  /// Smoothing of the thin plate (metres), from stage to stage; about (smoothing length)^3 / (point spacing)^2.
-  std::vector<double> lambdas = {10, 3, 1, 0.3, 0.1, 0.03, 0.01};
-  int rounds = 2;  ///< closest points and spline anew, so often a stage
-  double reach = 0.03, last_reach = 0.008;  ///< correspondences farther than this count for nothing: first, last stage
+/// One stage of the fit.
+struct RegistrationStage {
+  double lambda;  ///< smoothing of the thin plate, metres; about (smoothing length)^3 / (point spacing)^2
+  int stride;     ///< takes every so many points of the generic face; points of the last stage are judged
+  int rounds;     ///< closest points and spline anew, so often
 };
+
+struct RegistrationOptions {
+  std::vector<RegistrationStage> stages;
+  double reach = 0.03, last_reach = 0.006;  ///< correspondences farther than this count for nothing: first, last stage
+};
+
+/// A few stiff stages on few points: to tell a face by, and where its parts are to a few millimetres.
+RegistrationOptions coarse_fit();
 
 /// The generic head bent onto a mesh.
 struct Registration {
@@ -33,9 +40,10 @@ struct Registration {
 
 /// Bends the generic head by thin-plate splines onto `target` (its frame: the mesh's): correspondences run from a
 /// generic point to the nearest target samples that face the same way, averaged over their tangent plane, so that
-/// points are free to slide; the plate softens from stage to stage.
+/// points are free to slide; the plate softens from stage to stage. `start` is a warp to go on from.
 Registration register_face(const GenericFace& face, const Samples& target, const Placement& placement,
-                           const std::vector<Anchor>& anchors = {}, const RegistrationOptions& options = {});
+                           const std::vector<Anchor>& anchors = {}, const RegistrationOptions& options = coarse_fit(),
+                           const splines::Warp& start = {});
 
 /// How face-like the fit is: the share of the face's points whose surface is near and faces as it should.
 double fitted_share(const GenericFace& face, const Registration& fit);

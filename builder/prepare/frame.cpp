@@ -160,7 +160,7 @@ TriangleMesh joined_meshes(const formats::Scene& scene, const std::string& only)
 }
 
 formats::LandmarkFile in_file_units(const formats::Scene& scene, const formats::LandmarkFile& given) {
-  if (given.points.empty()) return given;
+  if (given.points.empty() || given.units == head_units) return given;
   const spatial::SurfaceQuery surface(joined_meshes(scene));
   double best = 1e300, ratio = 1.0;
   for (double candidate : {1.0, 1e-3, 1e3, 1e-2, 1e2, 1e-1, 1e1}) {

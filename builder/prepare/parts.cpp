@@ -112,6 +112,18 @@ std::optional<Eyeball> as_eyeball(const Component& component, const std::optiona
   return eye;
 }
 
+/// Rows of teeth run around an empty middle; a tongue does not.
+bool is_arch(const Component& component) {
+  const Vec3 centre = component.box.centre(), size = component.box.size();
+  double front = -1e300, back = 1e300;
+  for (const Vec3& p : component.points)
+    if (std::abs(p[0] - centre[0]) < 0.12 * size[0]) {
+      front = std::max(front, p[2]);
+      back = std::min(back, p[2]);
+    }
+  return front > back && front - back < 0.6 * size[2];
+}
+
 /// Parts of the mouth and lids by where they lie, when names do not tell.
 Part part_by_place(const Component& component, const std::map<std::string, Vec3>& landmarks) {
   const auto left = landmark(landmarks, "cheilion_left"), right = landmark(landmarks, "cheilion_right");
@@ -123,19 +135,61 @@ Part part_by_place(const Component& component, const std::map<std::string, Vec3>
                            component.box.upper[2] < mouth[2] + 0.02;
     if (is_inside) {
       const Vec3 size = component.box.size();
+      const bool is_tongue = std::abs(from[0]) < 0.004 && size[0] > 0.02 && size[0] < 0.06 && size[1] < 0.048 && size[2] > 0.03 &&
+                             from[1] < 0.003 && from[2] < -0.02 && !is_arch(component);
+      if (is_tongue) return Part::tongue;
       if (size[1] > 0.035 || size.maxCoeff() > 0.07) return Part::mouth_interior;
-      const bool is_tongue = std::abs(from[0]) < 0.004 && size[0] > 0.02 && size[2] > 0.03 && from[2] < -0.02 && size[1] < 0.03;
-      if (is_tongue && from[1] < 0.0) return Part::tongue;
       return from[1] > -0.003 ? Part::teeth_upper : Part::teeth_lower;
     }
   }
   for (const char* side : {"left", "right"}) {
     const auto outer = landmark(landmarks, ("exocanthion_" + std::string(side)).c_str());
     const auto inner = landmark(landmarks, ("endocanthion_" + std::string(side)).c_str());
-    if (outer && inner && (centre - 0.5 * (*outer + *inner)).norm() < 0.022 && component.box.size().maxCoeff() < 0.05)
-      return Part::eye_surround;
+    if (!outer || !inner) continue;
+    const Vec3 from = centre - 0.5 * (*outer + *inner), size = component.box.size();
+    const double width = (*outer - *inner).norm();
+    // A brow lies above the lids and is longer than high; lashes stand out in front of the lids.
+    const bool is_brow = from[1] > 0.35 * width && from[1] < 1.3 * width && std::abs(from[0]) < 0.6 * width && size[0] > 0.8 * width &&
+                         size[0] < 2.2 * width && size[1] < 0.8 * width && size[2] < 1.5 * width;
+    if (is_brow) return Part::brows;
+    if (from.norm() < 0.022 && size.maxCoeff() < 0.05) return from[2] > 0.2 * width ? Part::lashes : Part::eye_surround;
+  }
+  // Hair goes over the crown and is about as wide as the head.
+  const auto glabella = landmark(landmarks, "glabella"), menton = landmark(landmarks, "menton");
+  const auto ear_left = landmark(landmarks, "tragion_left"), ear_right = landmark(landmarks, "tragion_right");
+  if (glabella && menton && ear_left && ear_right) {
+    const double height = (*glabella - *menton).norm(), width = (*ear_left - *ear_right).norm();
+    const bool is_over_crown = component.box.upper[1] > (*glabella)[1] + 0.45 * height && component.box.upper[1] < (*glabella)[1] + 1.6 * height;
+    if (is_over_crown && component.box.size()[0] > 0.7 * width && component.box.size()[0] < 3.0 * width) return Part::hair;
   }
   return Part::other;
+}
+
+/// x of the plane between the two sides.
+double middle_of_face(const std::map<std::string, Vec3>& landmarks) {
+  double sum = 0.0, count = 0.0;
+  for (const char* pair : {"exocanthion_", "endocanthion_", "cheilion_"})
+    if (const auto left = landmark(landmarks, (pair + std::string("left")).c_str()), right = landmark(landmarks, (pair + std::string("right")).c_str());
+        left && right) {
+      sum += (*left)[0] + (*right)[0];
+      count += 2.0;
+    }
+  return count > 0.0 ? sum / count : 0.0;
+}
+
+/// Two rows of teeth that place alone took for upper ones: the lower of them is the lower row.
+void tell_rows_apart(const std::vector<Component>& components, const std::vector<bool>& is_by_place, std::vector<Part>& parts) {
+  double lowest = 1e300, highest = -1e300;
+  bool has_both = false;
+  for (size_t c = 0; c < parts.size(); ++c) {
+    if (parts[c] != Part::teeth_upper && parts[c] != Part::teeth_lower) continue;
+    has_both |= parts[c] == Part::teeth_lower;
+    lowest = std::min(lowest, components[c].box.centre()[1]);
+    highest = std::max(highest, components[c].box.centre()[1]);
+  }
+  if (has_both || highest - lowest < 0.004) return;
+  for (size_t c = 0; c < parts.size(); ++c)
+    if (is_by_place[c] && parts[c] == Part::teeth_upper && components[c].box.centre()[1] < 0.5 * (lowest + highest)) parts[c] = Part::teeth_lower;
 }
 
 }  // namespace
@@ -175,6 +229,7 @@ Parts recognise_parts(const formats::Scene& scene, const WeldedScene& welded,
   parts.component_parts.assign(components.size(), Part::other);
   const int skin = skin_component(scene, welded, components, landmarks, options);
   const auto mouth = landmark(landmarks, "stomion");
+  std::vector<bool> is_by_place(components.size(), false);
   for (size_t c = 0; c < components.size(); ++c) {
     if (static_cast<int>(c) == skin) {
       parts.component_parts[c] = Part::skin;
@@ -183,10 +238,11 @@ Parts recognise_parts(const formats::Scene& scene, const WeldedScene& welded,
     const std::string names = names_of(scene, components[c]);
     const std::optional<Part> named = part_by_name(names);
     bool is_eye = false;
+    const double midline = middle_of_face(landmarks);
     for (const bool is_left : {true, false}) {
       const auto outer = landmark(landmarks, is_left ? "exocanthion_left" : "exocanthion_right");
       const auto inner = landmark(landmarks, is_left ? "endocanthion_left" : "endocanthion_right");
-      if (named || (components[c].box.centre()[0] > 0) != is_left) continue;
+      if (named || (components[c].box.centre()[0] > midline) != is_left) continue;
       if (const auto eye = as_eyeball(components[c], outer, inner, names)) {
         std::optional<Eyeball>& best = is_left ? parts.eye_left : parts.eye_right;
         if (!best || eye->radius > best->radius) best = eye;
@@ -196,6 +252,7 @@ Parts recognise_parts(const formats::Scene& scene, const WeldedScene& welded,
     }
     if (is_eye) continue;
     parts.component_parts[c] = named ? *named : part_by_place(components[c], landmarks);
+    is_by_place[c] = !named;
     if (named == Part::teeth_upper) {
       const bool says_lower = contains_any(names, {"lower", "bottom", "mandib"});
       const bool says_upper = contains_any(names, {"upper", "top", "maxill"});
@@ -203,6 +260,7 @@ Parts recognise_parts(const formats::Scene& scene, const WeldedScene& welded,
       if (says_lower || (!says_upper && is_below)) parts.component_parts[c] = Part::teeth_lower;
     }
   }
+  tell_rows_apart(components, is_by_place, parts.component_parts);
   return parts;
 }
 

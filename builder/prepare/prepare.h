@@ -63,6 +63,9 @@ struct PrepareOptions {
   std::string skin;            ///< name of the mesh that is the skin; empty: found
 };
 
+/// Units of a landmark file that are known to be the head file's own.
+inline constexpr const char* head_units = "head";
+
 /// The landmarks' coordinates in the head file's units: of the decimal ratios the one that puts them on the surface, for a
 /// landmark file may be in millimetres beside a head in metres.
 formats::LandmarkFile in_file_units(const formats::Scene& scene, const formats::LandmarkFile& given);

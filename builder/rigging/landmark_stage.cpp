@@ -66,29 +66,36 @@ LocatedHead locate_head(const formats::Scene& scene, const formats::LandmarkFile
   located.landmarks = given;
   if (has_all_required(given, anatomy)) return located;
   located.landmarks = prepare::in_file_units(scene, given);
+  located.landmarks.units = prepare::head_units;
   located.generic = landmarks::generic_face(anatomy);
   const TriangleMesh mesh = prepare::joined_meshes(scene, options.skin);
   located.found = landmarks::find_head(*located.generic, mesh, scene.path.string(), placement_of(located.landmarks, anatomy));
-  for (const auto& [name, p] : landmarks::rough_landmarks(*located.generic, anatomy, mesh, *located.found))
+  for (const auto& [name, p] : landmarks::rough_landmarks(anatomy, *located.found))
     located.landmarks.points.emplace(name, p);
   return located;
 }
 
-SkinLandmarks place_landmarks(const LocatedHead& located, const prepare::PreparedHead& head, const formats::LandmarkFile& given,
-                              const anatomy::GenericAnatomy& anatomy, std::vector<std::string>& warnings) {
-  std::map<std::string, Vec3> by_hand;
+void place_landmarks(FoundLandmarks& result, const LocatedHead& located, const formats::LandmarkFile& given,
+                     const anatomy::GenericAnatomy& anatomy, bool with_regions) {
+  const prepare::PreparedHead& head = result.head;
+  Points by_hand;
   for (const auto& [name, p] : head.landmarks)
     if (given.points.count(name)) by_hand[name] = p;
   std::vector<std::string> unknown;
   const spatial::SurfaceQuery skin(head.skin);
-  SkinLandmarks all;
   if (located.found) {
-    all = landmarks::find(*located.generic, anatomy, skin, mapped(located.found->placement, head.input_to_metres), by_hand, &unknown);
+    landmarks::KnownEyes eyes;
+    if (head.eye_left) eyes.left = {head.eye_left->centre, head.eye_left->radius};
+    if (head.eye_right) eyes.right = {head.eye_right->centre, head.eye_right->radius};
+    const landmarks::Placement placement = mapped(located.found->placement(), head.input_to_metres);
+    landmarks::FoundFace face = landmarks::find(*located.generic, anatomy, skin, placement, by_hand, eyes);
+    result.landmarks = std::move(face.landmarks);
+    unknown = std::move(face.unknown);
+    if (with_regions) result.regions = landmarks::face_regions(*located.generic, face.fit, head.skin);
   } else {
-    all = landmarks::complete(by_hand, anatomy, skin, &unknown);
+    result.landmarks = landmarks::complete(by_hand, anatomy, skin, &unknown);
   }
-  for (const std::string& name : unknown) warnings.push_back("landmark '" + name + "' is not known and was left out");
-  return all;
+  for (const std::string& name : unknown) result.warnings.push_back("landmark '" + name + "' is not known and was left out");
 }
 
 /// The same meshes with their triangles facing the other way.
@@ -110,7 +117,7 @@ double now() { return std::chrono::duration<double>(std::chrono::steady_clock::n
 }  // namespace
 
 FoundLandmarks find_landmarks(const formats::Scene& scene, const formats::LandmarkFile& given,
-                              const anatomy::GenericAnatomy& anatomy, const prepare::PrepareOptions& options) {
+                              const anatomy::GenericAnatomy& anatomy, const prepare::PrepareOptions& options, bool with_regions) {
   FoundLandmarks result;
   const double started = now();
   const LocatedHead located = locate_head(scene, given, anatomy, options);
@@ -123,7 +130,7 @@ FoundLandmarks find_landmarks(const formats::Scene& scene, const formats::Landma
   result.head = result.is_inside_out ? prepare::prepare(turned_over(scene), located.landmarks, reference, options)
                                      : prepare::prepare(scene, located.landmarks, reference, options);
   const double prepared_at = now();
-  result.landmarks = place_landmarks(located, result.head, given, anatomy, result.warnings);
+  place_landmarks(result, located, given, anatomy, with_regions);
   result.seconds = {located_at - started, prepared_at - located_at, now() - prepared_at};
   return result;
 }

@@ -67,6 +67,12 @@ std::map<std::string, int> ict_landmark_vertices() {
   return vertices;
 }
 
+Vec3 offset_of_definition(const std::string& landmark, const Vec3& generic) {
+  static const formats::Scene scene = formats::read(measured_data() / "ict/neutral.glb");
+  const auto vertex = static_cast<size_t>(ict_landmark_vertices().at(landmark));
+  return scene.meshes[head_mesh(scene)].positions[vertex] - generic;
+}
+
 MeasuredHead ict_head(const std::string& name) {
   MeasuredHead head;
   head.name = name;

@@ -23,6 +23,10 @@ std::filesystem::path measured_data();
 /// Vertices of the mean ICT head's `head` mesh that bear the shape-defined ones of its 68 landmarks. The same in every person.
 std::map<std::string, int> ict_landmark_vertices();
 
+/// Where the same points are on the generic head beside its own landmarks of the name: the chin and the tip of the nose
+/// are 2 mm off by definition. Metres, rig frame.
+Vec3 offset_of_definition(const std::string& landmark, const Vec3& generic);
+
 /// "neutral" or "person_0" .. "person_5".
 MeasuredHead ict_head(const std::string& name);
 
