@@ -1,54 +1,11 @@
 #include <Eigen/Geometry>
 
 #include "builder/rigging/stages.h"
-#include "geometry/error.h"
+#include "builder/skull/from_anatomy.h"
 
 namespace fascia::rigging {
 
 namespace {
-
-TriangleMesh object(const anatomy::GenericAnatomy& anatomy, const char* name) {
-  const anatomy::MeshObject* found = anatomy.skull_object(name);
-  return found ? found->mesh : TriangleMesh{};
-}
-
-/// Middle between the lateral and medial poles of a condyle.
-Vec3 condyle_centre(const anatomy::GenericAnatomy& anatomy, const std::string& side) {
-  Vec3 sum = Vec3::Zero();
-  for (const char* pole : {"condylion_laterale_", "condylion_mediale_"}) {
-    const anatomy::Landmark* landmark = anatomy.landmark(pole + side);
-    if (!landmark || !landmark->bone) throw Error("the anatomy has no bone point '" + (pole + side) + "', on which the jaw turns");
-    sum += *landmark->bone;
-  }
-  return 0.5 * sum;
-}
-
-skull::Generic generic_skull(const anatomy::GenericAnatomy& anatomy) {
-  skull::Generic generic;
-  generic.cranium = object(anatomy, "cranium");
-  generic.mandible = object(anatomy, "mandible");
-  generic.teeth_upper = object(anatomy, "teeth_upper");
-  generic.teeth_lower = object(anatomy, "teeth_lower");
-  if (const anatomy::MeshObject* skin = anatomy.head_object("skin")) generic.skin = skin->mesh;
-  const anatomy::TissueDepthTable& depths = anatomy.depth_tables.front();
-  for (const anatomy::Landmark& landmark : anatomy.landmarks) {
-    if (!landmark.skin) continue;
-    skull::GenericLandmark entry;
-    entry.name = landmark.name;
-    entry.skin = *landmark.skin;
-    const anatomy::TissueDepth* depth = landmark.depth.empty() ? nullptr : depths.find(landmark.depth);
-    entry.has_bone = landmark.bone.has_value() && depth;
-    if (entry.has_bone) {
-      entry.bone = *landmark.bone;
-      entry.depth = depth->mean;
-      entry.depth_sd = depth->deviation > 0 ? depth->deviation : 0.003;
-    }
-    generic.landmarks.push_back(entry);
-  }
-  generic.condyle_left = condyle_centre(anatomy, "left");
-  generic.condyle_right = condyle_centre(anatomy, "right");
-  return generic;
-}
 
 /// The head's own meshes of one part, joined.
 TriangleMesh part_mesh(const prepare::PreparedHead& head, prepare::Part part) {
@@ -107,7 +64,7 @@ skull::FitResult fit_skull(const anatomy::GenericAnatomy& anatomy, const prepare
   const TriangleMesh upper = part_mesh(head, prepare::Part::teeth_upper), lower = part_mesh(head, prepare::Part::teeth_lower);
   if (!upper.empty()) options.teeth_upper = &upper;
   if (!lower.empty()) options.teeth_lower = &lower;
-  return skull::fit(generic_skull(anatomy), head.skin, targets, options);
+  return skull::fit(skull::from_anatomy(anatomy), head.skin, targets, options);
 }
 
 rig::Skull rig_skull(const skull::FitResult& skull, const prepare::PreparedHead& head, const SkinLandmarks& landmarks) {

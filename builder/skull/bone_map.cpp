@@ -6,18 +6,14 @@
 #include "builder/skull/skull.h"
 
 namespace fascia::skull {
-namespace {
 
-// 1 within `inner` of the nearest anchor, 0 beyond `outer`, smooth between.
-double strength(const BoneMap::Patch& patch, const Vec3& point) {
+double BoneMap::Patch::strength(const Vec3& generic) const {
   double squared = std::numeric_limits<double>::infinity();
-  for (const Vec3& anchor : patch.anchors)
-    squared = std::min(squared, (point - anchor).squaredNorm());
-  const double s = std::clamp((patch.outer - std::sqrt(squared)) / (patch.outer - patch.inner), 0.0, 1.0);
+  for (const Vec3& anchor : anchors)
+    squared = std::min(squared, (generic - anchor).squaredNorm());
+  const double s = std::clamp((outer - std::sqrt(squared)) / (outer - inner), 0.0, 1.0);
   return s * s * (3 - 2 * s);
 }
-
-}  // namespace
 
 BoneMap::BoneMap(splines::Warp warp, std::vector<Patch> patches)
     : warp_(std::move(warp)), patches_(std::move(patches)) {}
@@ -26,7 +22,7 @@ Vec3 BoneMap::blend(const Vec3& generic, const Vec3& warped) const {
   double total = 0;
   Vec3 sum = Vec3::Zero();
   for (const Patch& patch : patches_) {
-    const double w = strength(patch, generic);
+    const double w = patch.strength(generic);
     if (w <= 0) continue;
     sum += w * transform(patch.similarity, generic);
     total += w;

@@ -38,9 +38,19 @@ Mat3 frame_about(const Vec3& normal) {
   return frame;
 }
 
+// `skin` with vertices closer than `tolerance` at one position; triangles and indices stay.
+TriangleMesh snapped(const TriangleMesh& skin, double tolerance) {
+  std::vector<int> map;
+  const TriangleMesh welded = weld(skin, tolerance, &map);
+  TriangleMesh out = skin;
+  for (size_t v = 0; v < map.size(); ++v)
+    if (map[v] >= 0) out.vertices[v] = welded.vertices[map[v]];
+  return out;
+}
+
 // The skin with a lid on every opening: light must not come in through the neck.
-TriangleMesh lidded(const TriangleMesh& skin, double tolerance) {
-  TriangleMesh out = weld(skin, tolerance, nullptr);
+TriangleMesh lidded(const TriangleMesh& skin) {
+  TriangleMesh out = weld(skin, 0, nullptr);
   for (const std::vector<int>& loop : boundary_loops(out, connectivity(out))) {
     Vec3 centre = Vec3::Zero();
     for (int v : loop)
@@ -50,6 +60,26 @@ TriangleMesh lidded(const TriangleMesh& skin, double tolerance) {
     for (size_t i = 0; i < loop.size(); ++i)
       out.triangles.push_back({loop[(i + 1) % loop.size()], loop[i], middle});
   }
+  return out;
+}
+
+// Vertices of the long loops along which the skin ends; the slits of lips and lids are shorter.
+std::vector<bool> border(const TriangleMesh& skin) {
+  constexpr double shortest = 0.2;  // m
+  std::vector<int> map;
+  const TriangleMesh welded = weld(skin, 0, &map);
+  std::vector<bool> on_border(welded.vertices.size(), false);
+  for (const std::vector<int>& loop : boundary_loops(welded, connectivity(welded))) {
+    double length = 0;
+    for (size_t i = 0; i < loop.size(); ++i)
+      length += (welded.vertices[loop[i]] - welded.vertices[loop[(i + 1) % loop.size()]]).norm();
+    if (length < shortest) continue;
+    for (int v : loop)
+      on_border[v] = true;
+  }
+  std::vector<bool> out(skin.vertices.size(), false);
+  for (size_t v = 0; v < out.size(); ++v)
+    out[v] = map[v] >= 0 && on_border[map[v]];
   return out;
 }
 
@@ -85,22 +115,35 @@ void mark_rims(const TriangleMesh& mesh, Exterior& out) {
 
 }  // namespace
 
+bool Exterior::on_rim(const spatial::ClosestPoint& closest) const {
+  const Vec3& weights = closest.surface.barycentric;
+  const int triangle = closest.surface.triangle;
+  const Triangle& corners = surface.mesh().triangles[triangle];
+  for (int k = 0; k < 3; ++k) {
+    if (weights[k] >= 1 && open_vertices[corners[k]]) return true;
+    if (weights[(k + 2) % 3] <= 0 && open_sides[triangle][k]) return true;
+  }
+  return false;
+}
+
+bool Exterior::on_border(const spatial::ClosestPoint& closest) const {
+  for (int k = 0; k < 3; ++k)
+    if (closest.surface.barycentric[k] > 0 &&
+        !border_vertices[surface.mesh().triangles[closest.surface.triangle][k]])
+      return false;
+  return true;
+}
+
 spatial::ClosestPoint Exterior::closest(const Vec3& point, double range) const {
   spatial::ClosestPoint out = surface.closest(point, range);
-  if (!out.found()) return out;
-  const Vec3& weights = out.surface.barycentric;
-  const Triangle& corners = surface.mesh().triangles[out.surface.triangle];
-  bool on_rim = false;
-  for (int k = 0; k < 3; ++k) {
-    if (weights[k] >= 1) on_rim = on_rim || open_vertices[corners[k]];
-    if (weights[(k + 2) % 3] <= 0) on_rim = on_rim || open_sides[out.surface.triangle][k];
-  }
-  if (on_rim) out.signed_distance = -out.distance;
+  if (out.found() && on_rim(out)) out.signed_distance = -out.distance;
   return out;
 }
 
-Exterior exterior(const TriangleMesh& skin) {
-  const spatial::SurfaceQuery occluder(lidded(skin, 1e-6 * bounds(skin.vertices).size().norm()));
+Exterior exterior(const TriangleMesh& unwelded) {
+  // Corners that a file wrote apart, as along texture seams or in a bag of triangles, count as one.
+  const TriangleMesh skin = snapped(unwelded, 1e-5 * bounds(unwelded.vertices).size().norm());
+  const spatial::SurfaceQuery occluder(lidded(skin));
   const std::array<Vec3, ray_count> directions = hemisphere();
   const Bounds box = bounds(skin.vertices);
   const double lift = 1e-5 * box.size().norm();
@@ -132,7 +175,7 @@ Exterior exterior(const TriangleMesh& skin) {
     triangle_of.resize(skin.triangles.size());
     std::iota(triangle_of.begin(), triangle_of.end(), 0);
   }
-  Exterior out{spatial::SurfaceQuery(std::move(part)), std::move(triangle_of), {}, {}};
+  Exterior out{spatial::SurfaceQuery(std::move(part)), std::move(triangle_of), {}, {}, border(skin)};
   mark_rims(out.surface.mesh(), out);
   return out;
 }

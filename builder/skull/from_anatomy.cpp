@@ -50,6 +50,8 @@ Generic from_anatomy(const anatomy::GenericAnatomy& anatomy, const std::string& 
     }
     out.landmarks.push_back(std::move(entry));
   }
+  for (const anatomy::Curve& curve : anatomy.curves)
+    if (curve.on == "cranium" || curve.on == "mandible") out.curves.push_back({curve.name, curve.closed, curve.points});
   out.condyle_left = condyle(anatomy, "left");
   out.condyle_right = condyle(anatomy, "right");
   return out;
