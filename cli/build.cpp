@@ -4,6 +4,7 @@
 #include "builder/rigging/build_rig.h"
 #include "builder/rigging/gltf_source.h"
 #include "cli/common.h"
+#include "cli/report.h"
 #include "cli/rig_build.h"
 #include "formats/scene.h"
 #include "geometry/error.h"
@@ -62,7 +63,8 @@ Json report_json(const rigging::BuildReport& report) {
   json["landmarks"] = {{"found", report.landmarks_found}, {"given", report.landmarks_given}, {"low_confidence", report.low_confidence}};
   json["skull"] = {{"landmark_rms_mm", report.landmark_rms_mm},
                    {"landmark_max_mm", report.landmark_max_mm},
-                   {"bone_outside_skin", report.bone_outside_skin}};
+                   {"bone_outside_skin", report.bone_outside_skin},
+                   {"uncovered_share", report.skull_uncovered_share}};
   json["smas"] = {{"vertices", report.smas_vertices},
                   {"triangles", report.smas_triangles},
                   {"min_angle_deg", report.smas_min_angle_deg},
@@ -95,6 +97,7 @@ void say_report(const Common& common, const rigging::BuildReport& report, const 
 
 rigging::BuildReport build_file(const Common& common, const BuildRequest& request) {
   check_output(request.output);
+  if (!request.report.empty()) check_output(request.report / report_name);
   if (request.output.extension() != ".glb")
     throw Error("'" + request.output.string() + "': a rig is a .glb file; give -o NAME.glb");
   const anatomy::GenericAnatomy anatomy = anatomy::load_generic();
@@ -107,6 +110,10 @@ rigging::BuildReport build_file(const Common& common, const BuildRequest& reques
   const std::vector<uint8_t> bytes =
       rig::write(rigging::gltf_source(scene, result.report.input_to_metres), result.rig);
   formats::write_bytes(request.output, bytes.data(), bytes.size());
+  if (!request.report.empty()) {
+    common.progress("report");
+    write_report(request.report, request.head, request.output, result.report);
+  }
   return result.report;
 }
 
@@ -121,10 +128,12 @@ void add_build(CLI::App& app, Common& common) {
   command->add_option("--skin", request->options.prepare.skin, "Name of the mesh that is the skin");
   command->add_option("--tissue-scale", request->options.tissue_scale, "Scales every tissue depth")->check(CLI::Range(0.2, 3.0));
   command->add_option("--detail", request->options.detail, "Finest lattice")->check(CLI::IsMember({"low", "medium", "high"}));
+  command->add_option("--report", request->report, "Folder for report.html: one page with pictures of every stage and figures");
   command->callback([request, &common] {
     const rigging::BuildReport report = build_file(common, *request);
     if (common.json) common.report(report_json(report));
     else say_report(common, report, request->output);
+    if (!request->report.empty()) common.say("wrote " + (request->report / report_name).string());
   });
 }
 

@@ -9,6 +9,7 @@ namespace fascia::cli {
 
 struct BuildRequest {
   std::filesystem::path head, output, landmarks;
+  std::filesystem::path report;  ///< folder of the page that shows the build; empty: none
   rigging::BuildOptions options;
 };
 

@@ -37,6 +37,19 @@ void write_png(const std::filesystem::path& path, const Image& image) {
   if (status) throw Error("'" + path.string() + "' cannot be written: " + status.message());
 }
 
+std::vector<uint8_t> encode_png(const Image& image) {
+  std::vector<uint8_t> bytes;
+  const auto add = [](void* target, void* data, int size) {
+    const auto* first = static_cast<const uint8_t*>(data);
+    auto* out = static_cast<std::vector<uint8_t>*>(target);
+    out->insert(out->end(), first, first + size);
+  };
+  if (!stbi_write_png_to_func(add, &bytes, image.width, image.height, 3, image.pixels.data(), image.width * 3))
+    throw Error("a picture of " + std::to_string(image.width) + " by " + std::to_string(image.height) +
+                " pixels cannot be written as PNG");
+  return bytes;
+}
+
 void paste(Image& target, const Image& source, int x, int y) {
   const int first = std::max(0, -x), last = std::min(source.width, target.width - x);
   if (first >= last) return;

@@ -23,6 +23,9 @@ struct Image {
 /// Writes a PNG beside `path` and renames it into place. Throws fascia::Error when it cannot.
 void write_png(const std::filesystem::path& path, const Image& image);
 
+/// The bytes of a PNG file. Throws fascia::Error when the picture is empty.
+std::vector<uint8_t> encode_png(const Image& image);
+
 /// Copies `source` into `target` with its top left corner at (x, y); what falls outside is cut off.
 void paste(Image& target, const Image& source, int x, int y);
 

@@ -1,6 +1,6 @@
 // How true a fitted skull is, and how quickly it follows.
 //
-//   bench_skull [truth] [curves] [leave-one-out] [noise] [ict] [update]      (all of them without arguments)
+//   bench_skull [picture=FILE.png] [truth] [curves] [leave-one-out] [noise] [ict] [update]      (all of them without arguments)
 //
 // truth: depth of bone under the skin of a real person (CT), fitted against scanned, by region and by what was
 // given. A table of mean depths has a standard error of 3.7 mm on one person (Stephan), a bound for any single
@@ -20,9 +20,10 @@
 #include "anatomy/anatomy.h"
 #include "builder/skull/fitter.h"
 #include "builder/skull/from_anatomy.h"
-#include "geometry/error.h"
+#include "builder/spatial/surface_query.h"
 #include "tests/skull/ct_head.h"
 #include "tests/skull/ict_heads.h"
+#include "view/renderer.h"
 
 namespace fascia::bench {
 
@@ -211,6 +212,34 @@ void update(const Bench& bench) {
   update_on("ICT mean", bench.generic, skull::exterior(head.head.skin), head.targets);
 }
 
+/// The fitted skull of the CT head, coloured by its distance to the scanned bone: red in front of it, blue behind.
+void picture(const Bench& bench, const fs::path& path) {
+  const skull::FitResult fit = skull::fit(bench.generic, bench.skin, bench.head.targets);
+  const spatial::SurfaceQuery bone(bench.head.bone);
+  view::DrawList list;
+  std::vector<Vec3> all;
+  for (const TriangleMesh* mesh : {&fit.cranium, &fit.mandible}) {
+    view::DrawSurface surface;
+    surface.positions = mesh->vertices;
+    surface.triangles = mesh->triangles;
+    const std::vector<Vec3> normals = vertex_normals(*mesh);
+    for (int v = 0; v < mesh->vertex_count(); ++v) {
+      const spatial::ClosestPoint closest = bone.closest(mesh->vertices[v]);
+      const double side = (mesh->vertices[v] - closest.position).dot(normals[v]);
+      const double off = std::clamp(side / 0.006, -1.0, 1.0);
+      surface.vertex_colours.push_back(off > 0 ? Vec3(0.92, 0.88 - 0.65 * off, 0.78 - 0.65 * off)
+                                               : Vec3(0.92 + 0.70 * off, 0.88 + 0.45 * off, 0.78 + 0.1 * std::abs(off)));
+    }
+    all.insert(all.end(), mesh->vertices.begin(), mesh->vertices.end());
+    list.surfaces.push_back(std::move(surface));
+  }
+  const view::Renderer renderer(520, 520);
+  std::vector<view::Tile> tiles;
+  for (const char* name : {"front", "three-quarter", "side"})
+    tiles.push_back({renderer.draw(list, view::named_camera(name, bounds(all))), name});
+  view::write_png(path, view::contact_sheet(tiles, 3));
+}
+
 int run(const std::set<std::string>& asked) {
   if (!testing::has_ct_head(measured)) {
     std::fprintf(stderr, "the CT head is not at %s\n", (measured / "data/ct").c_str());
@@ -222,6 +251,8 @@ int run(const std::set<std::string>& asked) {
   const Bench bench;
   for (const auto& [name, part] : parts)
     if (asked.empty() || asked.count(name)) part(bench);
+  for (const std::string& name : asked)
+    if (name.rfind("picture=", 0) == 0) picture(bench, name.substr(8));
   return 0;
 }
 

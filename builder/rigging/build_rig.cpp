@@ -45,10 +45,38 @@ void report_landmarks(const std::map<std::string, landmarks::SkinLandmark>& all,
   for (const auto& [name, landmark] : all) {
     ++(landmark.is_given ? report.landmarks_given : report.landmarks_found);
     const anatomy::Landmark* known = anatomy.landmark(name);
+    BuildReport::LandmarkFigures figures;
+    figures.name = name;
+    figures.given = landmark.is_given;
+    figures.required = known && known->required;
+    figures.confidence = landmark.confidence;
+    report.landmarks.push_back(figures);
     if (known && known->required && landmark.confidence < 0.5) report.low_confidence.push_back(name);
   }
   for (const std::string& name : report.low_confidence)
     report.warnings.push_back("landmark '" + name + "' was placed with low confidence; look at it with 'fascia export --part landmarks' and give it in --landmarks");
+}
+
+void report_skull(const skull::FitResult& skull, BuildReport& report) {
+  report.landmark_rms_mm = 1e3 * skull.landmark_rms;
+  report.landmark_max_mm = 1e3 * skull.landmark_max;
+  report.bone_outside_skin = skull.bone_outside_skin;
+  report.bone_corrected = skull.corrected_vertices;
+  report.bone_corrected_max_mm = 1e3 * skull.corrected_max;
+  report.curve_points = skull.curve_points;
+  report.curve_points_used = skull.curve_points_used;
+  report.skull_uncovered_share = skull.uncovered_share;
+  std::map<std::string, const skull::FittedLandmark*> fitted;
+  for (const skull::FittedLandmark& landmark : skull.landmarks) fitted[landmark.name] = &landmark;
+  for (BuildReport::LandmarkFigures& figures : report.landmarks) {
+    const auto at = fitted.find(figures.name);
+    figures.has_bone = at != fitted.end();
+    if (!figures.has_bone) continue;
+    figures.depth_mm = 1e3 * at->second->depth;
+    figures.table_mm = 1e3 * at->second->table_depth;
+    figures.deviation_mm = 1e3 * at->second->table_deviation;
+    figures.residual_mm = 1e3 * at->second->residual;
+  }
 }
 
 }  // namespace
@@ -71,9 +99,7 @@ BuildResult build_rig(const formats::Scene& scene, const formats::LandmarkFile& 
   const std::map<std::string, Vec3> points = places(all_landmarks);
 
   const skull::FitResult skull = stages.run("skull", [&] { return fit_skull(anatomy, head, all_landmarks, options.tissue_scale); });
-  report.landmark_rms_mm = 1e3 * skull.landmark_rms;
-  report.landmark_max_mm = 1e3 * skull.landmark_max;
-  report.bone_outside_skin = skull.bone_outside_skin;
+  report_skull(skull, report);
   report.warnings.insert(report.warnings.end(), skull.warnings.begin(), skull.warnings.end());
 
   const smas::Result smas = stages.run("smas", [&] {

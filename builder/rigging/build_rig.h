@@ -33,8 +33,20 @@ struct BuildReport {
   std::vector<StageTime> stages;
   int landmarks_given = 0, landmarks_found = 0;
   std::vector<std::string> low_confidence;
+  struct LandmarkFigures {
+    std::string name;
+    bool given = false, required = false;
+    double confidence = 0.0;
+    bool has_bone = false;  ///< else the figures below are 0
+    double depth_mm = 0.0, table_mm = 0.0, deviation_mm = 0.0;  ///< fitted; by the table, scaled; between people
+    double residual_mm = 0.0;  ///< from the fitted bone to where the table puts it
+  };
+  std::vector<LandmarkFigures> landmarks;  ///< by name
   double landmark_rms_mm = 0.0, landmark_max_mm = 0.0;
-  int bone_outside_skin = 0;
+  int bone_outside_skin = 0, bone_corrected = 0;
+  double bone_corrected_max_mm = 0.0;
+  int curve_points = 0, curve_points_used = 0;
+  double skull_uncovered_share = 0.0;  ///< of the skull, left out because the head does not have the skin over it
   int smas_vertices = 0, smas_triangles = 0, smas_outside_layers = 0;
   double smas_min_angle_deg = 0.0;
   struct MuscleFigures {

@@ -74,7 +74,8 @@ std::vector<SkinOver> skin_over(const Generic& generic, std::span<const Vec3> po
   for (size_t i = 0; i < points.size(); ++i) {
     const spatial::ClosestPoint closest = skin.closest(points[i]);
     out[i].depth = std::min(out[i].depth, closest.distance);
-    out[i].outward = closest.pseudonormal;
+    // Smooth, so that a tie between the sides of the midplane does not matter.
+    out[i].outward = skin.smooth_normal(closest.surface);
     out[i].skin = closest.position;
   }
   return out;

@@ -53,16 +53,17 @@ std::vector<CurvePoint> curve_points(const Generic& generic, double spacing) {
   std::vector<Vec3> bones;
   for (const BoneCurve& curve : generic.curves)
     for (const Vec3& p : resampled(curve.points, curve.closed, spacing))
-      // Neighbours that say the same twice, where curves meet.
-      if (std::none_of(bones.begin(), bones.end(),
-                       [&](const Vec3& other) { return (other - p).norm() < 0.4 * spacing; }))
+      // Where curves meet one point is enough; the two sides of the midline stay apart.
+      if (std::none_of(bones.begin(), bones.end(), [&](const Vec3& other) { return (other - p).norm() < 0.0005; }))
         bones.push_back(p);
   const std::vector<SkinOver> over = skin_over(generic, bones);
   for (size_t i = 0; i < bones.size(); ++i) {
     CurvePoint point;
     point.bone = bones[i];
     point.outward = over[i].outward;
-    point.depth = over[i].depth;
+    // On the midplane the nearest skin is a tie between left and right.
+    if (std::abs(point.bone.x()) < 1e-4) point.outward = Vec3(0, point.outward.y(), point.outward.z()).normalized();
+    point.depth = (over[i].skin - bones[i]).norm();
     point.deviation = deviation_at(generic, bones[i]);
     const bool near_landmark = std::any_of(generic.landmarks.begin(), generic.landmarks.end(), [&](const auto& l) {
       return l.has_bone && (l.bone - bones[i]).norm() < 0.003;

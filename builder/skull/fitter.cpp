@@ -80,7 +80,7 @@ void Fitter::State::register_teeth() {
   const auto match = [&](const TriangleMesh& from, const TriangleMesh* to) -> std::optional<Mat4> {
     if (!to || to->empty() || from.empty()) return std::nullopt;
     const Mat4 found = match_teeth(from, *to, result.similarity).similarity;
-    for (const Vec3& point : spread_points(from, 10)) {
+    for (const Vec3& point : symmetric_points(from, 6)) {
       Observation observation;
       observation.from = point;
       observation.to = transform(found, point);
@@ -204,6 +204,7 @@ void Fitter::State::report_landmarks() {
     landmark.direction = pair.direction;
     landmark.depth = (landmark.skin - landmark.bone).norm();
     landmark.table_depth = pair.depth;
+    landmark.table_deviation = pair.generic->depth_sd;
     landmark.residual = (landmark.bone - landmark.target).norm();
     landmark.confidence = pair.target.confidence;
     sum += landmark.confidence * landmark.residual * landmark.residual;
@@ -240,7 +241,7 @@ const FitResult& Fitter::State::update() {
   moving = true;
   result.similarity = start_pose(pairs);
   follow_skin();
-  solve(1);
+  solve(2);
   finish();
   return result;
 }

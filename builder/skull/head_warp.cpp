@@ -17,17 +17,6 @@ double skin_deviation(double confidence) {
   return std::hypot(bone_sd, confidence > 0.05 ? 0.004 * (1 - confidence) : placement_deviation(confidence));
 }
 
-// Points spread over `mesh` and their mirror images: the generic is symmetric in x, the choice must be too.
-std::vector<Vec3> symmetric_points(const TriangleMesh& mesh, int count) {
-  std::vector<Vec3> out;
-  for (const Vec3& p : spread_points(mesh, count)) {
-    if (std::abs(p.x()) < 0.002) continue;  // of two so near the midplane one would be dropped
-    out.push_back(p);
-    out.push_back(Vec3(-p.x(), p.y(), p.z()));
-  }
-  return out;
-}
-
 }  // namespace
 
 HeadWarp::HeadWarp(const Generic& generic, const std::vector<LandmarkPair>& pairs) {
@@ -46,7 +35,7 @@ HeadWarp::HeadWarp(const Generic& generic, const std::vector<LandmarkPair>& pair
     add(pairs[i].generic->skin, skin_deviation(pairs[i].target.confidence), static_cast<int>(i));
   for (const TriangleMesh* mesh : {&generic.cranium, &generic.mandible})
     for (const Vec3& point : symmetric_points(*mesh, mesh == &generic.cranium ? 50 : 25))
-      add(point, bone_sd, -1);
+      if (std::abs(point.x()) >= 0.002) add(point, bone_sd, -1);  // of two so near the midplane one would be dropped
   system_ = BoneSystem(observations_, {}, smoothing, 1);
 }
 

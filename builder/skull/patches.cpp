@@ -33,8 +33,8 @@ std::vector<BoneMap::Patch> make_patches(const Generic& generic, const std::opti
     if (fixed) patch.similarity = *fixed;
     out.push_back(std::move(patch));
   };
-  std::vector<Vec3> upper = spread_points(generic.teeth_upper, 40),
-                    lower = spread_points(generic.teeth_lower, 40);
+  std::vector<Vec3> upper = symmetric_points(generic.teeth_upper, 24),
+                    lower = symmetric_points(generic.teeth_lower, 24);
   if (upper_match || lower_match) {
     add_teeth(upper, upper_match ? upper_match : lower_match);
     add_teeth(lower, lower_match ? lower_match : upper_match);

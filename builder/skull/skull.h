@@ -54,7 +54,7 @@ struct FitOptions {
   double tissue_scale = 1;                    ///< sigma: scales every depth; children and stylised heads
   std::map<std::string, double> depth_scale;  ///< k: scales the depth of single landmarks
   double smoothing = 1000;         ///< 1/m: inverse variance of bone displacement per metre; 0 interpolates
-  int normal_passes = 3;           ///< times the depth directions are re-estimated on the fitted bone
+  int normal_passes = 8;           ///< times the depth directions are re-estimated on the fitted bone
   double normal_tolerance = 5e-5;  ///< no more passes once no bone target moves farther than this, m
   double skin_normal_share = 0.5;  ///< depth direction: 0 that of the generic, 1 the skin's normal
   double exponent = 1;               ///< of the spline's kernel: 1 the thin plate; 3 is smoother, and what normals need
@@ -76,6 +76,7 @@ struct FittedLandmark {
   Vec3 direction = Vec3::Zero();  ///< unit, bone to skin
   double depth = 0;               ///< from fitted bone to skin landmark, m
   double table_depth = 0;         ///< scaled depth of the table, m
+  double table_deviation = 0;     ///< its standard deviation between people, m
   double residual = 0;            ///< |bone - target|, m
   double confidence = 1;
 };

@@ -74,4 +74,13 @@ std::vector<Vec3> spread_points(const TriangleMesh& mesh, int count) {
   return out;
 }
 
+std::vector<Vec3> symmetric_points(const TriangleMesh& mesh, int count) {
+  std::vector<Vec3> out;
+  for (const Vec3& p : spread_points(mesh, count)) {
+    out.push_back(p);
+    out.push_back(Vec3(-p.x(), p.y(), p.z()));
+  }
+  return out;
+}
+
 }  // namespace fascia::skull

@@ -87,6 +87,26 @@ TEST_F(Tool, BuildReportsOneJsonObject) {
     EXPECT_TRUE(names.count(name) || names.count(std::string(name).substr(0, std::string(name).rfind('_')))) << name;
 }
 
+TEST_F(Tool, BuildWritesOnePageThatNeedsNothingElse) {
+  const Outcome outcome = run("build " + at("head.obj") + " --detail low -o " + at("shown.glb") + " --report " + at("shown"));
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::string page = text_of(at("shown/report.html"));
+  ASSERT_GT(page.size(), 10000u);
+  EXPECT_EQ(page.find("http"), std::string::npos) << "no network";
+  EXPECT_EQ(page.find("src=\"") != std::string::npos, page.find("data:image/png;base64,iVBORw0KGgo") != std::string::npos);
+  for (const char* part : {"Warnings", "Landmarks", "zygion_left", "SMAS", "Muscles", "+1 SD", "skull", "</html>"})
+    EXPECT_NE(page.find(part), std::string::npos) << part;
+  size_t pictures = 0;
+  for (size_t p = page.find("<img "); p != std::string::npos; p = page.find("<img ", p + 1)) ++pictures;
+  EXPECT_TRUE(pictures == 15 || page.find("No pictures: ") != std::string::npos) << pictures;
+  size_t files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(at("shown"))) files += entry.is_regular_file();
+  EXPECT_EQ(files, 1u) << "nothing half written is left";
+  // What fails before the page leaves no page.
+  EXPECT_EQ(run("build " + at("nobody.obj") + " -o " + at("none.glb") + " --report " + at("none")).code, 1);
+  EXPECT_FALSE(std::filesystem::exists(at("none/report.html")));
+}
+
 TEST_F(Tool, WrongUsageIsTwo) {
   EXPECT_EQ(run("").code, 2);
   EXPECT_EQ(run("sculpt").code, 2);

@@ -1,5 +1,3 @@
-// A head in closed form: an ellipsoid of skin over an ellipsoid of bone, landmarks where rays from the centre
-// pass both.
 #include "builder/skull/skull.h"
 
 #include <gtest/gtest.h>
@@ -7,81 +5,23 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <cmath>
-#include <functional>
-#include <numbers>
 
 #include "builder/skull/procrustes.h"
 #include "builder/skull/teeth.h"
 #include "geometry/error.h"
+#include "tests/skull/round_head.h"
 
 namespace fascia::skull {
 namespace {
 
-const Vec3 skin_radii(0.075, 0.115, 0.095);
-constexpr double bone_share = 0.92;
-
-TriangleMesh globe(const Vec3& radii, int rows = 24, int columns = 48) {
-  TriangleMesh mesh;
-  mesh.vertices.push_back(Vec3(0, radii.y(), 0));
-  for (int i = 1; i < rows; ++i)
-    for (int j = 0; j < columns; ++j) {
-      const double polar = std::numbers::pi * i / rows, around = 2 * std::numbers::pi * j / columns;
-      mesh.vertices.push_back(radii.cwiseProduct(
-          Vec3(std::sin(polar) * std::sin(around), std::cos(polar), std::sin(polar) * std::cos(around))));
-    }
-  mesh.vertices.push_back(Vec3(0, -radii.y(), 0));
-  const auto at = [&](int i, int j) { return 1 + (i - 1) * columns + j % columns; };
-  const int last = mesh.vertex_count() - 1;
-  for (int j = 0; j < columns; ++j) {
-    mesh.triangles.push_back({0, at(1, j), at(1, j + 1)});
-    mesh.triangles.push_back({last, at(rows - 1, j + 1), at(rows - 1, j)});
-    for (int i = 1; i + 1 < rows; ++i) {
-      const bool turned = j >= columns / 2;  // diagonals mirror each other
-      const int p = at(i, j), q = at(i + 1, j), r = at(i + 1, j + 1), s = at(i, j + 1);
-      mesh.triangles.push_back(turned ? Triangle{p, q, s} : Triangle{p, q, r});
-      mesh.triangles.push_back(turned ? Triangle{q, r, s} : Triangle{p, r, s});
-    }
-  }
-  return mesh;
-}
-
-Generic round_head() {
-  Generic generic;
-  generic.cranium = globe(bone_share * skin_radii);
-  int number = 0;
-  for (const Vec3& d : {Vec3(0, 0, 1), Vec3(0, 0.4, 1), Vec3(0, -0.4, 1), Vec3(0, 1, 0.1), Vec3(0, 0.2, -1),
-                        Vec3(0, -1, 0.4), Vec3(1, 0, 0.1), Vec3(1, 0.4, 0.8), Vec3(1, -0.5, 0.7),
-                        Vec3(0.5, -0.1, 1), Vec3(1, 0.6, -0.6), Vec3(0.8, -0.8, -0.2)}) {
-    const bool paired = d.x() != 0;
-    for (int side = 0; side < (paired ? 2 : 1); ++side) {
-      const Vec3 direction = Vec3(side == 0 ? d.x() : -d.x(), d.y(), d.z()).normalized();
-      GenericLandmark landmark;
-      landmark.name = "point" + std::to_string(number) + (paired ? (side == 0 ? "_left" : "_right") : "");
-      landmark.skin = skin_radii.cwiseProduct(direction);
-      landmark.bone = bone_share * landmark.skin;
-      landmark.depth = (landmark.skin - landmark.bone).norm();
-      landmark.depth_sd = 0.002;
-      generic.landmarks.push_back(landmark);
-    }
-    ++number;
-  }
-  return generic;
-}
-
-using Map = std::function<Vec3(const Vec3&)>;
-
-std::map<std::string, TargetLandmark> carried(const Generic& generic, const Map& map) {
-  std::map<std::string, TargetLandmark> out;
-  for (const GenericLandmark& landmark : generic.landmarks)
-    out[landmark.name] = {map(landmark.skin), 1};
-  return out;
-}
-
-TriangleMesh mapped(TriangleMesh mesh, const Map& map) {
-  for (Vec3& v : mesh.vertices)
-    v = map(v);
-  return mesh;
-}
+using testing::bone_share;
+using testing::carried;
+using testing::globe;
+using testing::lean;
+using testing::Map;
+using testing::mapped;
+using testing::round_head;
+using testing::skin_radii;
 
 FitOptions exact() {
   FitOptions options;
@@ -92,10 +32,6 @@ FitOptions exact() {
   options.normal_passes = 200;
   options.normal_tolerance = 1e-14;
   return options;
-}
-
-Vec3 lean(const Vec3& p) {  // symmetric in x, not affine
-  return Vec3(p.x() * (1 - 2 * p.y()), p.y() + 0.4 * p.z() * p.z(), 1.1 * p.z() - 3 * p.x() * p.x());
 }
 
 TEST(SkullFit, AffineHeadIsRecovered) {
@@ -258,6 +194,25 @@ TEST(Exterior, LiningsAreLeftOutAndPointsBehindTheRimAreInside) {
   EXPECT_LT(outer.closest(Vec3(0, 0, 0.05)).signed_distance, 0)
       << "in the pocket: between the rims' two sides";
   EXPECT_GT(outer.closest(Vec3(0.05, 0, 0.12)).signed_distance, 0);
+}
+
+TEST(Exterior, ABagOfTrianglesIsJudgedAsTheWeldedMesh) {
+  const TriangleMesh ball = globe(Vec3::Constant(0.1));
+  TriangleMesh bag;
+  for (const Triangle& t : ball.triangles) {
+    const int base = bag.vertex_count();
+    // Written apart, and rounded apart by a micrometre.
+    for (int k = 0; k < 3; ++k)
+      bag.vertices.push_back(ball.vertices[t[k]] + 1e-6 * Vec3((base + k) % 2, (base / 3) % 2, k % 2));
+    bag.triangles.push_back({base, base + 1, base + 2});
+  }
+  const Exterior whole = exterior(ball), apart = exterior(bag);
+  EXPECT_EQ(whole.triangle_of, apart.triangle_of);
+  for (size_t t = 0; t < apart.open_sides.size(); ++t)
+    for (bool open : apart.open_sides[t])
+      EXPECT_FALSE(open) << "a closed ball has no rim";
+  for (const Vec3& p : {Vec3(0.02, 0.03, 0.04), Vec3(0.08, 0.08, 0), Vec3(0, -0.099, 0)})
+    EXPECT_NEAR(whole.closest(p).signed_distance, apart.closest(p).signed_distance, 5e-6);
 }
 
 TEST(Procrustes, FindsScaleRotationAndShift) {
