@@ -63,7 +63,7 @@ std::vector<CurvePoint> curve_points(const Generic& generic, double spacing) {
     point.outward = over[i].outward;
     // On the midplane the nearest skin is a tie between left and right.
     if (std::abs(point.bone.x()) < 1e-4) point.outward = Vec3(0, point.outward.y(), point.outward.z()).normalized();
-    point.depth = (over[i].skin - bones[i]).norm();
+    point.depth = over[i].depth;
     point.deviation = deviation_at(generic, bones[i]);
     const bool near_landmark = std::any_of(generic.landmarks.begin(), generic.landmarks.end(), [&](const auto& l) {
       return l.has_bone && (l.bone - bones[i]).norm() < 0.003;

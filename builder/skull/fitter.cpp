@@ -65,7 +65,7 @@ struct Fitter::State {
   void register_teeth();
   std::vector<Mat3> jacobians(bool first) const;
   std::vector<TangentObservation> tangents(bool first) const;
-  void gather_observations(bool first);
+  void gather_observations(bool first, const std::vector<Mat3>& turns);
   void factor(const std::vector<TangentObservation>& rows);
   void solve(int passes);
   void hold_inside();
@@ -112,8 +112,7 @@ std::vector<TangentObservation> Fitter::State::tangents(bool first) const {
 }
 
 // Depth directions and targets as the map stands: landmarks, seen teeth, curve points, clearance, in this order.
-void Fitter::State::gather_observations(bool first) {
-  const std::vector<Mat3> turns = jacobians(first);
+void Fitter::State::gather_observations(bool first, const std::vector<Mat3>& turns) {
   aim(pairs, turns, options.skin_normal_share);
   observations = landmark_observations(pairs);
   observations.insert(observations.end(), teeth.begin(), teeth.end());
@@ -137,10 +136,13 @@ void Fitter::State::factor(const std::vector<TangentObservation>& rows) {
 
 // Directions and warp in turn: each needs the other.
 void Fitter::State::solve(int passes) {
+  std::vector<Mat3> turns;
   for (int pass = 0; pass < passes; ++pass) {
     const bool first = warp.identity();
+    // A moved landmark turns little within its two passes.
+    if (!moving || pass == 0) turns = jacobians(first);
     const std::vector<Observation> before = observations;
-    gather_observations(first);
+    gather_observations(first, turns);
     double change = before.size() == observations.size() ? 0 : 1;
     for (size_t i = 0; i < before.size() && change < 1; ++i)
       if (observations[i].used) change = std::max(change, (before[i].to - observations[i].to).norm());
@@ -166,7 +168,7 @@ void Fitter::State::hold_inside() {
   }
 }
 
-// After a move, held points go on being held: under the skin that is now nearest, free along it.
+// After a move, held points go on being held, under the skin that is now nearest.
 void Fitter::State::follow_skin() {
   const auto& allowed = check->clearance();
   std::vector<Vec3> points;
@@ -180,8 +182,7 @@ void Fitter::State::follow_skin() {
     const spatial::ClosestPoint closest = skin.closest(now);
     if (!closest.found() || at == bones.generic.end()) continue;
     const double least = allowed[static_cast<size_t>(at - bones.generic.begin())];
-    held.normal = closest.pseudonormal;
-    held.slide_sd = 0.010;
+    // Where it is, but no nearer to the skin than it may be: it moves on with the map.
     held.to = closest.signed_distance > -least ? Vec3(closest.position - 1.05 * least * closest.pseudonormal) : now;
   }
 }
