@@ -8,7 +8,11 @@
 namespace fascia::sim {
 namespace {
 
-constexpr double tiny_area = 1e-16;  // square metres: an edge of 10 nanometres
+constexpr double tiny_area = 1e-16;      // square metres: an edge of 10 nanometres
+constexpr double crush_begin = 0.5;      // share of its area below which a membrane resists ever more
+constexpr double turn_begin = 0.4;       // share of its volume below which a prism resists being turned inside out
+constexpr double turn_modulus = 4e4;     // pascal, with which it does
+constexpr double fold_softness = 0.01;   // where a hinge's mean normal fades out: folds closer than 6 degrees
 
 /// The closed surface of a prism as triangles with their weights: both ends, and each bilinear side
 /// as the mean of its two diagonal splits. Corners 0..2 outer, 3..5 inner; outward.
@@ -92,37 +96,70 @@ double membrane_energy(const Membrane& m, const Vec3* x, Vec3* gradient) {
   rotation.col(0) = (f0 + f1.cross(normal)) / trace;
   rotation.col(1) = (f1 + normal.cross(f0)) / trace;
   const double spread = trace - 2.0;
-  const Mat32 stress = 2.0 * m.mu * (deformation - rotation) + m.lambda * spread * rotation;
+  Mat32 stress = 2.0 * m.mu * (deformation - rotation) + m.lambda * spread * rotation;
+  double crush = 0.0;
+  if (area_ratio < crush_begin) {
+    const double ratio = std::max(area_ratio, 1e-6), excess = crush_begin / ratio - 1.0;
+    crush = m.mu * excess * excess;
+    const double slope = -2.0 * m.mu * excess * crush_begin / (ratio * ratio);
+    stress.col(0) += slope * f1.cross(normal);
+    stress.col(1) += slope * normal.cross(f0);
+  }
   const Mat32 forces = m.area * stress * m.inverse_rest.transpose();
   gradient[m.nodes[0]] -= forces.col(0) + forces.col(1);
   gradient[m.nodes[1]] += forces.col(0);
   gradient[m.nodes[2]] += forces.col(1);
-  return m.area * (m.mu * (squares - 2.0 * trace + 2.0) + 0.5 * m.lambda * spread * spread);
+  return m.area * (m.mu * (squares - 2.0 * trace + 2.0) + 0.5 * m.lambda * spread * spread + crush);
 }
 
 double hinge_angle(const std::array<uint32_t, 4>& nodes, const Vec3* x) { return angle_of(hinge_frame(nodes, x)); }
 
 Hinge make_hinge(std::array<uint32_t, 4> nodes, double rigidity, const Vec3* rest) {
   const HingeFrame f = hinge_frame(nodes, rest);
-  const double areas = 0.5 * (std::sqrt(f.area_a) + std::sqrt(f.area_b));
-  return {nodes, angle_of(f), rigidity * f.length * f.length / std::max(areas, tiny_area)};
+  const double twice_a = std::sqrt(f.area_a), twice_b = std::sqrt(f.area_b), areas = 0.5 * (twice_a + twice_b);
+  Hinge hinge;
+  hinge.nodes = nodes;
+  hinge.stiffness = rigidity * f.length * f.length / std::max(areas, tiny_area);
+  // Unit vectors from the edge to the corners, as weights of the four places.
+  const Vec3 unit = f.edge / f.length;
+  const double over_a = f.length / twice_a, over_b = f.length / twice_b;
+  const double along_a = (rest[nodes[2]] - rest[nodes[0]]).dot(unit) / f.length;
+  const double along_b = (rest[nodes[3]] - rest[nodes[0]]).dot(unit) / f.length;
+  hinge.weights = {-(1.0 - along_a) * over_a - (1.0 - along_b) * over_b, -along_a * over_a - along_b * over_b, over_a, over_b};
+  hinge.scale_a = 1.0 / twice_a;
+  hinge.scale_b = 1.0 / twice_b;
+  Vec3 away = Vec3::Zero();
+  for (size_t i = 0; i < 4; ++i) away += hinge.weights[i] * rest[nodes[i]];
+  const Vec3 normal = hinge.scale_a * f.normal_a + hinge.scale_b * f.normal_b;
+  const double length = std::sqrt(normal.squaredNorm() + fold_softness);
+  hinge.bend = away.dot(normal) * length / std::max(normal.squaredNorm(), fold_softness);
+  if (std::abs(hinge.bend) < 1e-9) hinge.bend = 0.0;
+  return hinge;
 }
 
-double hinge_energy(const Hinge& hinge, const Vec3* x, Vec3* gradient) {
-  const auto& n = hinge.nodes;
-  const HingeFrame f = hinge_frame(n, x);
-  constexpr double pi = 3.14159265358979323846;
-  double bend = angle_of(f) - hinge.angle;
-  if (bend > pi) bend -= 2.0 * pi;
-  if (bend < -pi) bend += 2.0 * pi;
-  const double moment = hinge.stiffness * bend;
-  const Vec3 a = f.normal_a / f.area_a, b = f.normal_b / f.area_b, unit = f.edge / f.length;
-  // Opposite corners turn about the edge; the edge's ends balance force and moment (Bridson et al. 2003).
-  gradient[n[2]] -= moment * f.length * a;
-  gradient[n[3]] -= moment * f.length * b;
-  gradient[n[0]] += moment * ((x[n[1]] - x[n[2]]).dot(unit) * a + (x[n[1]] - x[n[3]]).dot(unit) * b);
-  gradient[n[1]] += moment * ((x[n[2]] - x[n[0]]).dot(unit) * a + (x[n[3]] - x[n[0]]).dot(unit) * b);
-  return 0.5 * moment * bend;
+double hinge_energy(const Hinge& h, const Vec3* x, Vec3* gradient) {
+  const auto& n = h.nodes;
+  Vec3 away = Vec3::Zero();
+  for (size_t i = 0; i < 4; ++i) away += h.weights[i] * x[n[i]];
+  if (h.bend == 0.0) {
+    for (size_t i = 0; i < 4; ++i) gradient[n[i]] += (h.stiffness * h.weights[i]) * away;
+    return 0.5 * h.stiffness * away.squaredNorm();
+  }
+  const Vec3 edge = x[n[1]] - x[n[0]], arm_a = x[n[2]] - x[n[0]], arm_b = x[n[3]] - x[n[0]];
+  Vec3 normal = h.scale_a * edge.cross(arm_a) + h.scale_b * arm_b.cross(edge);
+  const double length = std::sqrt(normal.squaredNorm() + fold_softness);
+  normal /= length;
+  const Vec3 miss = away - h.bend * normal;
+  for (size_t i = 0; i < 4; ++i) gradient[n[i]] += (h.stiffness * h.weights[i]) * miss;
+  // The normal turns with the triangles: d(normal) = (I - normal normal^T) d(sum of normals) / length.
+  const Vec3 turn = (-h.stiffness * h.bend / length) * (miss - normal.dot(miss) * normal);
+  const Vec3 a = h.scale_a * turn, b = h.scale_b * turn;
+  const Vec3 by_edge = arm_a.cross(a) - arm_b.cross(b), by_a = a.cross(edge), by_b = edge.cross(b);
+  gradient[n[1]] += by_edge;
+  gradient[n[2]] += by_a;
+  gradient[n[3]] += by_b;
+  gradient[n[0]] -= by_edge + by_a + by_b;
+  return 0.5 * h.stiffness * miss.squaredNorm();
 }
 
 double prism_volume(const std::array<uint32_t, 6>& n, const Vec3* x) {
@@ -152,12 +189,13 @@ Prism make_prism(std::array<uint32_t, 6> nodes, double stiffness, const Vec3* re
 }
 
 double prism_energy(const Prism& p, const Vec3* x, Vec3* gradient) {
-  if (p.stiffness == 0.0) return 0.0;
-  const double excess = prism_volume(p.nodes, x) - p.volume;
-  const double pressure = p.stiffness * excess / std::max(std::abs(p.volume), 1e-12);
+  const double rest = std::max(std::abs(p.volume), 1e-12), excess = prism_volume(p.nodes, x) - p.volume;
+  const double lack = p.volume > 0.0 ? std::max(0.0, turn_begin - 1.0 - excess / rest) : 0.0;
+  if (p.stiffness == 0.0 && lack == 0.0) return 0.0;
+  const double pressure = p.stiffness * excess / rest - turn_modulus * lack;
   const auto parts = prism_volume_gradient(p.nodes, x);
   for (size_t i = 0; i < 6; ++i) gradient[p.nodes[i]] += pressure * parts[i];
-  return 0.5 * pressure * excess;
+  return 0.5 * p.stiffness * excess * excess / rest + 0.5 * turn_modulus * rest * lack * lack;
 }
 
 double tether_energy(const Tether& t, const Vec3& place, const Vec3& normal, const Vec3* x, Vec3* gradient) {

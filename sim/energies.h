@@ -18,21 +18,27 @@ struct Spring {
 };
 
 /// A constant-strain triangle of corotated linear elasticity in plane stress.
-/// W = area (mu |F - R|^2 + lambda/2 (tr S - 2)^2), F = R S (Sifakis & Barbic 2012, section 3.3).
+/// W = area (mu |F - R|^2 + lambda/2 (tr S - 2)^2), F = R S (Sifakis & Barbic 2012, section 3.3). Below half of
+/// its area a term mu (1 / (2 J) - 1)^2 grows without bound, so that no triangle collapses under a muscle's pull.
 struct Membrane {
   std::array<uint32_t, 3> nodes;
   Eigen::Matrix2d inverse_rest;  ///< of the rest edges in the triangle's own plane
   double area, mu, lambda;       ///< mu and lambda in newton per metre
 };
 
-/// An edge with two triangles: W = stiffness/2 (angle - rest angle)^2 (Grinspun et al. 2003).
-/// `nodes` are the edge's two ends and the opposite corners of its first and second triangle.
+/// An edge with two triangles. L = sum of weights times places is the sum of the two unit vectors that point from
+/// the edge to its opposite corners, 2 sin(angle / 2) long and along the mean normal n: W = stiffness/2 |L - bend n|^2, which
+/// for a flat rest is quadratic (Bergou et al. 2006) and for a bent one (Garg et al. 2007) stays smooth however its
+/// triangles shrink or fold. `nodes` are the edge's two ends and the opposite corners of its first and second triangle.
 struct Hinge {
   std::array<uint32_t, 4> nodes;
-  double angle, stiffness;
+  std::array<double, 4> weights;  ///< per metre
+  double bend, stiffness;         ///< bend: signed length of L at rest
+  double scale_a, scale_b;        ///< of the triangles' normals to unit ones at rest
 };
 
-/// The prism between two layers: W = stiffness/(2 V0) (V - V0)^2, sides bilinear.
+/// The prism between two layers: W = stiffness/(2 V0) (V - V0)^2, sides bilinear. Below 0.4 V0 a further 40 kPa
+/// resist its being turned inside out, also where the stiffness is 0.
 struct Prism {
   std::array<uint32_t, 6> nodes;  ///< outer triangle, then inner, same column order
   double volume, stiffness;       ///< cubic metres, pascal

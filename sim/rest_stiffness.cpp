@@ -27,21 +27,6 @@ void add_membrane(const Membrane& m, const std::vector<int32_t>& unknown, Triple
   }
 }
 
-/// The change of angle by motion along the edge's normal (Bergou et al. 2006, quadratic bending).
-void add_hinge(const Hinge& h, const Positions& x, const std::vector<int32_t>& unknown, Triplets& out) {
-  const Vec3 edge = x[h.nodes[1]] - x[h.nodes[0]];
-  const double length = std::max(edge.norm(), 1e-9);
-  const Vec3 unit = edge / length;
-  const auto height = [&](uint32_t corner) {
-    return std::max((x[corner] - x[h.nodes[0]]).cross(unit).norm(), 1e-9);
-  };
-  const double a = 1.0 / height(h.nodes[2]), b = 1.0 / height(h.nodes[3]);
-  const double along_a = (x[h.nodes[2]] - x[h.nodes[0]]).dot(unit) / length;
-  const double along_b = (x[h.nodes[3]] - x[h.nodes[0]]).dot(unit) / length;
-  const double row[4] = {-(1.0 - along_a) * a - (1.0 - along_b) * b, -along_a * a - along_b * b, a, b};
-  add_square(h.nodes.data(), row, 4, h.stiffness, unknown, out);
-}
-
 void add_prism(const Prism& p, const Positions& x, const std::vector<int32_t>& unknown, Triplets& out) {
   if (p.stiffness == 0.0) return;
   const auto gradient = prism_volume_gradient(p.nodes, x.data());
@@ -60,7 +45,7 @@ Eigen::SparseMatrix<double> assemble_rest_stiffness(const RestTerms& t) {
   const double ends[2] = {1.0, -1.0}, one = 1.0;
   for (const Spring& s : t.springs) add_square(s.nodes.data(), ends, 2, s.stiffness, t.unknown_of_node, triplets);
   for (const Membrane& m : t.membranes) add_membrane(m, t.unknown_of_node, triplets);
-  for (const Hinge& h : t.hinges) add_hinge(h, t.rest, t.unknown_of_node, triplets);
+  for (const Hinge& h : t.hinges) add_square(h.nodes.data(), h.weights.data(), 4, h.stiffness, t.unknown_of_node, triplets);
   for (const Prism& p : t.prisms) add_prism(p, t.rest, t.unknown_of_node, triplets);
   for (const Tether& h : t.tethers)
     add_square(&h.node, &one, 1, (h.normal_stiffness + 2.0 * h.tangential_stiffness) / 3.0, t.unknown_of_node, triplets);

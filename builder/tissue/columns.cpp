@@ -8,6 +8,7 @@
 #include "builder/tissue/distance.h"
 #include "geometry/connectivity.h"
 #include "geometry/error.h"
+#include "sim/energies.h"
 
 namespace fascia::tissue {
 namespace {
@@ -77,11 +78,6 @@ void find_depths(const TissueInputs& inputs, const Bones& bones, Columns& c) {
   }
 }
 
-double prism_volume(const Vec3* a, const Vec3* b) {  // outer and inner triangle, mean of its three lines times the mean area
-  const Vec3 n = (a[1] - a[0]).cross(a[2] - a[0]) + (b[1] - b[0]).cross(b[2] - b[0]);
-  return 0.25 * n.dot((a[0] - b[0] + a[1] - b[1] + a[2] - b[2]) / 3.0);
-}
-
 void place_layers(Columns& c) {
   const auto place = [&] {
     for (size_t v = 0; v < c.smas.size(); ++v) {
@@ -91,31 +87,35 @@ void place_layers(Columns& c) {
   };
   place();
   // Where a fold is too tight for its depth the layer beneath would turn over: bring it nearer there.
-  for (int pass = 0; pass < 24; ++pass) {
+  for (int pass = 0; pass < 32; ++pass) {
     std::vector<bool> shrink(c.smas.size(), false);
     bool any = false;
     for (int t = 0; t < c.mesh.triangle_count(); ++t) {
       const fascia::Triangle& k = c.mesh.triangles[static_cast<size_t>(t)];
-      Vec3 layer[3][3];
-      double depth = 0.0;
+      Vec3 corners[9];
+      double depth = 0.0, inner_depth = 0.0;
       for (size_t i = 0; i < 3; ++i) {
         const auto v = static_cast<size_t>(k[i]);
-        layer[0][i] = c.mesh.vertices[v];
-        layer[1][i] = c.smas[v];
-        layer[2][i] = c.inner[v];
+        corners[i] = c.mesh.vertices[v];
+        corners[3 + i] = c.smas[v];
+        corners[6 + i] = c.inner[v];
         depth += c.smas_depth[v] / 3.0;
+        inner_depth += (c.inner_depth[v] - c.smas_depth[v]) / 3.0;
       }
-      const double outer = prism_volume(layer[0], layer[1]), inner = prism_volume(layer[1], layer[2]);
+      const double outer = sim::prism_volume({0, 1, 2, 3, 4, 5}, corners), inner = sim::prism_volume({3, 4, 5, 6, 7, 8}, corners);
       const double area = triangle_area(c.mesh, t);
-      if (outer > 0.25 * area * depth && inner > 0.02 * area * depth) continue;
+      if (outer > 0.25 * area * depth && inner > 0.05 * area * inner_depth) continue;
       any = true;
-      for (const int v : k) shrink[static_cast<size_t>(v)] = true;
+      for (const int v : k) {
+        shrink[static_cast<size_t>(v)] = true;
+        if (pass > 6) c.normals[static_cast<size_t>(v)] = (c.normals[static_cast<size_t>(v)] + 0.15 * triangle_normal(c.mesh, t)).normalized();
+      }
     }
     if (!any) break;
     for (size_t v = 0; v < shrink.size(); ++v) {
       if (!shrink[v]) continue;
-      c.smas_depth[v] = std::max(0.8 * c.smas_depth[v], 2e-4);
-      c.inner_depth[v] = std::max(0.85 * c.inner_depth[v], 1.3 * c.smas_depth[v] + 1e-4);
+      c.smas_depth[v] = std::max(0.8 * c.smas_depth[v], 1e-4);
+      c.inner_depth[v] = std::max(0.85 * c.inner_depth[v], 1.3 * c.smas_depth[v] + 5e-5);
     }
     place();
   }

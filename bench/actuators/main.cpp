@@ -1,0 +1,208 @@
+// What every actuator does alone, on several heads: a contact sheet, and a table of how far the landmark it is there for
+// moves and which way, beside what anatomy expects.
+//
+//   bench_actuators [embedded|neutral|person_0|...]... [--sheet PREFIX] [--level NAME] [--only SUBSTRING] [--layers LIST]
+//                   [--keep FOLDER]
+//
+// Pairs are shown on the left; a row is marked when a travel lies outside the expected range.
+
+#include <cmath>
+#include <cstdio>
+#include <chrono>
+#include <map>
+
+#include "anatomy/anatomy.h"
+#include "bench/actuators/expected.h"
+#include "builder/rigging/build_rig.h"
+#include "builder/rigging/gltf_source.h"
+#include "builder/spatial/surface_query.h"
+#include "cli/demo_curves.h"
+#include "cli/picture.h"
+#include "formats/landmark_file.h"
+#include "formats/scene.h"
+#include "geometry/error.h"
+#include "rig/read/read.h"
+#include "rig/write/write.h"
+#include "view/image.h"
+
+namespace fascia::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path measured = fs::path(FASCIA_MEASURED_DATA) / "data/ict";
+
+struct Request {
+  std::vector<std::string> people;
+  std::string sheet, level, only, layers = "skin,eyes";
+  fs::path keep;  ///< folder that the rigs stay in; empty: they are removed
+};
+
+/// A rig written to a file of its own, gone with this.
+struct BuiltRig {
+  fs::path path;
+  rig::Rig rig;
+  bool is_kept = false;
+  ~BuiltRig() {
+    std::error_code ignored;
+    if (!is_kept) fs::remove(path, ignored);
+  }
+};
+
+formats::SceneMesh& head_mesh(formats::Scene& scene) {
+  for (formats::SceneMesh& mesh : scene.meshes)
+    if (mesh.name == "head") return mesh;
+  throw Error("the scene has no mesh 'head'");
+}
+
+/// The landmarks placed on the mean head, at the same places of another person's mesh.
+formats::LandmarkFile landmarks_on(formats::Scene& person) {
+  formats::LandmarkFile file = formats::read_landmarks(fs::path(FASCIA_TEST_DATA) / "ict_neutral_landmarks.json");
+  formats::Scene neutral = formats::read(measured / "neutral.glb");
+  const formats::SceneMesh& from = head_mesh(neutral);
+  const spatial::SurfaceQuery surface({from.positions, from.triangles});
+  const TriangleMesh to{head_mesh(person).positions, head_mesh(person).triangles};
+  for (auto& [name, p] : file.points) p = position(to, surface.closest(p).surface);
+  return file;
+}
+
+std::unique_ptr<BuiltRig> build(const std::string& person, const fs::path& keep) {
+  formats::Scene scene;
+  formats::LandmarkFile landmarks;
+  if (person == "embedded") {
+    const fs::path head = fs::temp_directory_path() / "fascia_actuators_head.obj";
+    const fs::path points = fs::temp_directory_path() / "fascia_actuators_landmarks.json";
+    cli::write_embedded_head(head, points);
+    scene = formats::read(head);
+    landmarks = formats::read_landmarks(points);
+    fs::remove(head);
+    fs::remove(points);
+  } else {
+    scene = formats::read(measured / (person + ".glb"));
+    landmarks = landmarks_on(scene);
+  }
+  const rigging::BuildResult built = rigging::build_rig(scene, landmarks, anatomy::load_generic(), {});
+  for (const std::string& warning : built.report.warnings) std::printf("%s: %s\n", person.c_str(), warning.c_str());
+  const std::vector<uint8_t> bytes = rig::write(rigging::gltf_source(scene, built.report.input_to_metres), built.rig);
+  auto out = std::make_unique<BuiltRig>();
+  out->is_kept = !keep.empty();
+  out->path = (out->is_kept ? keep : fs::temp_directory_path()) / ("fascia_actuators_" + person + ".glb");
+  formats::write_bytes(out->path, bytes.data(), bytes.size());
+  out->rig = built.rig;
+  return out;
+}
+
+/// Where the rig's skin landmarks go with the pose: the motion of the skin vertex nearest to each at rest.
+struct Landmarks {
+  std::map<std::string, std::pair<size_t, size_t>> vertex;  // mesh, vertex
+  Landmarks(const cli::Face& face, const rig::Rig& rig) {
+    for (const rig::Landmark& landmark : rig.skull.landmarks) {
+      float best = 1e9F;
+      for (size_t m = 0; m < face.meshes().size(); ++m) {
+        if (face.meshes()[m].part != "skin") continue;
+        const auto rest = face.rest(m);
+        for (size_t v = 0; 3 * v < rest.size(); ++v) {
+          const float d = (rig::Vec3f(rest[3 * v], rest[3 * v + 1], rest[3 * v + 2]) - landmark.skin).norm();
+          if (d >= best) continue;
+          best = d;
+          vertex[landmark.name] = {m, v};
+        }
+      }
+    }
+  }
+  Vec3 motion(const cli::Face& face, const std::string& name) const {
+    const auto found = vertex.find(name);
+    if (found == vertex.end()) return Vec3::Constant(NAN);
+    const auto [m, v] = found->second;
+    const auto now = face.positions(m), rest = face.rest(m);
+    return {static_cast<double>(now[3 * v] - rest[3 * v]), static_cast<double>(now[3 * v + 1] - rest[3 * v + 1]),
+            static_cast<double>(now[3 * v + 2] - rest[3 * v + 2])};
+  }
+};
+
+bool is_channel(const cli::Face& face, const std::string& name) {
+  const auto names = face.channel_names();
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// The picture of the side of the face where an actuator works.
+view::Camera camera_for(const rig::Rig& rig, const std::string& landmark) {
+  Vec3 brow = Vec3::Zero(), chin = Vec3::Zero(), at = Vec3::Zero();
+  for (const rig::Landmark& l : rig.skull.landmarks) {
+    if (l.name == "glabella") brow = l.skin.cast<double>();
+    if (l.name == "gnathion") chin = l.skin.cast<double>();
+    if (l.name == landmark) at = l.skin.cast<double>();
+  }
+  view::Camera camera;
+  camera.target = 0.5 * (0.5 * (brow + chin) + at);
+  camera.target.x() *= 0.6;
+  camera.distance = 3.3 * (brow - chin).norm();
+  camera.yaw = 30;
+  return camera;
+}
+
+int run(const std::string& person, const Request& request) {
+  const std::unique_ptr<BuiltRig> built = build(person, request.keep);
+  cli::Face face(built->path, {FASCIA_SPACE_METRES, "own", request.level});
+  const Landmarks landmarks(face, built->rig);
+  std::printf("%s\n%-46s %5s  %-32s %21s %7s  %s\n", person.c_str(), "actuator", "value", "landmark", "lateral/up/fwd mm", "travel", "expected");
+  std::vector<view::Tile> tiles;
+  std::unique_ptr<view::Renderer> renderer;
+  if (!request.sheet.empty()) renderer = std::make_unique<view::Renderer>(300, 300);
+  int outside = 0;
+  for (const Expectation& e : expectations()) {
+    if (e.actuator.find(request.only) == std::string::npos) continue;
+    const std::string name = is_channel(face, e.actuator) ? e.actuator : e.actuator + "_left";
+    face.clear();
+    face.reset();
+    face.set(name, e.value);
+    const auto begin = std::chrono::steady_clock::now();
+    face.pose();
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    const Vec3 motion = 1e3 * landmarks.motion(face, e.landmark);
+    const double travel = motion.dot(Vec3(e.direction[0], e.direction[1], e.direction[2]).normalized());
+    const bool fits = travel >= e.least && travel <= e.most;
+    outside += !fits;
+    std::printf("%-46s %5.1f  %-32s %6.1f %6.1f %6.1f %7.1f  %4.1f..%-4.1f %s %5.2fs\n", name.c_str(), e.value, e.landmark.c_str(), motion.x(),
+                motion.y(), motion.z(), travel, e.least, e.most, fits ? " " : "*", seconds);
+    if (renderer) {
+      char caption[64];
+      std::snprintf(caption, sizeof caption, "%.27s %+.1f", e.actuator.c_str(), travel);
+      tiles.push_back({renderer->draw(cli::draw_face(face, built->rig, cli::layers_from(request.layers)), camera_for(built->rig, e.landmark)), caption});
+    }
+  }
+  std::printf("%d outside the expected range\n\n", outside);
+  if (renderer) view::write_png(request.sheet + "_" + person + ".png", view::contact_sheet(tiles, 8));
+  return outside;
+}
+
+}  // namespace
+}  // namespace fascia::bench
+
+int main(int argc, char** argv) {
+  fascia::bench::Request request;
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    const bool more = i + 1 < argc;
+    if (word == "--sheet" && more) request.sheet = argv[++i];
+    else if (word == "--level" && more) request.level = argv[++i];
+    else if (word == "--only" && more) request.only = argv[++i];
+    else if (word == "--keep" && more) request.keep = argv[++i];
+    else if (word == "--layers" && more) request.layers = argv[++i];
+    else request.people.push_back(word);
+  }
+  if (request.people.empty()) request.people = {"embedded"};
+  try {
+    for (const std::string& person : request.people) {
+      if (person != "embedded" && !std::filesystem::exists(fascia::bench::measured)) {
+        std::printf("skipped %s: the measured heads are not at %s\n", person.c_str(), fascia::bench::measured.c_str());
+        continue;
+      }
+      fascia::bench::run(person, request);
+    }
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "bench_actuators: %s\n", error.what());
+    return 1;
+  }
+  return 0;
+}
