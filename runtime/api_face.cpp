@@ -152,6 +152,41 @@ fascia_result fascia_face_normals(fascia_face* face, uint32_t mesh, fascia_vecto
   });
 }
 
+fascia_result fascia_face_compression(fascia_face* face, uint32_t mesh, fascia_vectors* compression) {
+  return guarded([&] {
+    mesh_of(face, mesh);
+    hand_out_vectors(checked(face).compression(mesh), compression);
+    return FASCIA_OK;
+  });
+}
+
+fascia_result fascia_face_move_head(fascia_face* face, const float matrix[16], float inertia_scale) {
+  return guarded([&] {
+    require(matrix != nullptr, "the matrix is null");
+    const Eigen::Matrix4f place = Eigen::Map<const Eigen::Matrix4f>(matrix);
+    require(place.allFinite() && std::isfinite(inertia_scale), "the matrix or the scale is not a finite number");
+    checked(face).move_head(place, inertia_scale);
+    return FASCIA_OK;
+  });
+}
+
+fascia_result fascia_face_touch(fascia_face* handle, uint32_t mesh, uint32_t vertex, const float force[3]) {
+  return guarded([&] {
+    require(force != nullptr && std::isfinite(force[0]) && std::isfinite(force[1]) && std::isfinite(force[2]),
+            "the force is null or not a finite number");
+    require(vertex < mesh_of(handle, mesh).positions().size(), "the mesh has no such vertex");
+    require(checked(handle).touch(mesh, vertex, {force[0], force[1], force[2]}), "there are 64 touches already");
+    return FASCIA_OK;
+  });
+}
+
+fascia_result fascia_face_clear_touches(fascia_face* face) {
+  return guarded([&] {
+    checked(face).clear_touches();
+    return FASCIA_OK;
+  });
+}
+
 fascia_result fascia_face_write_positions(fascia_face* face, uint32_t mesh, void* to, size_t stride, size_t capacity) {
   return guarded([&] {
     const auto& positions = mesh_of(face, mesh).positions();

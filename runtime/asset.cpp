@@ -14,6 +14,7 @@ std::string lower_case(std::string_view text) {
 Asset::Asset(std::span<const uint8_t> bytes) : file_(rig::read(bytes)), models_(file_.rig.tissue.levels.size()) {
   index_channels();
   index_sets();
+  find_jaw_muscles();
   for (const rig::TissueLevel& level : rig().tissue.levels) {
     auto& muscles = fibre_muscles.emplace_back();
     for (const uint32_t muscle : level.fibre_muscle)
@@ -58,6 +59,31 @@ void Asset::index_sets() {
       names_.emplace(member, target);
     }
   }
+}
+
+/// Muscles with one end on the mandible and the other on a bone that stands still: of each the mean of its fibres.
+void Asset::find_jaw_muscles() {
+  std::vector<sim::JawMuscle> pulls;
+  const auto& channels = rig().actuation.channels;
+  for (uint32_t c = 0; c < channels.size(); ++c) {
+    if (channels[c].muscle < 0) continue;
+    const rig::Muscle& muscle = rig().muscles[static_cast<std::size_t>(channels[c].muscle)];
+    const bool ends_there = muscle.insertion == rig::FibreEnd::mandible && muscle.origin == rig::FibreEnd::cranium;
+    const bool begins_there = muscle.origin == rig::FibreEnd::mandible && muscle.insertion == rig::FibreEnd::cranium;
+    if ((!ends_there && !begins_there) || muscle.fibre_offsets.size() < 2) continue;
+    sim::JawMuscle pull;
+    pull.channel = c;
+    pull.strength = static_cast<double>(muscle.strength);
+    const double share = 1.0 / static_cast<double>(muscle.fibre_offsets.size() - 1);
+    for (std::size_t f = 0; f + 1 < muscle.fibre_offsets.size(); ++f) {
+      const uint32_t first = muscle.fibre_offsets[f], last = muscle.fibre_offsets[f + 1];
+      if (last <= first) continue;
+      pull.origin += share * muscle.points[ends_there ? first : last - 1].cast<double>();
+      pull.insertion += share * muscle.points[ends_there ? last - 1 : first].cast<double>();
+    }
+    pulls.push_back(pull);
+  }
+  jaw_muscles_ = sim::JawMuscles(sim::jaw_of(rig().skull.jaw), pulls);
 }
 
 const rig::Binding* Asset::binding(std::size_t level, std::size_t primitive) const {

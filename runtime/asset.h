@@ -14,6 +14,7 @@
 #include "rig/read/read.h"
 #include "runtime/message.h"
 #include "sim/face_model.h"
+#include "sim/jaw_muscles.h"
 
 namespace fascia::runtime {
 
@@ -45,6 +46,7 @@ class Asset {
   const rig::Binding* binding(std::size_t level, std::size_t primitive) const;
   const std::vector<Member>& members() const { return members_; }
   const BoneChannels& bones() const { return bones_; }
+  const sim::JawMuscles& jaw_muscles() const { return jaw_muscles_; }
 
   /// What `name` stands for, case-insensitive; nothing when no channel or member bears it. "#7" is channel 7.
   std::optional<Target> find(std::string_view name) const;
@@ -61,11 +63,13 @@ class Asset {
  private:
   void index_channels();
   void index_sets();
+  void find_jaw_muscles();
 
   rig::RigFile file_;
   std::vector<Member> members_;
   std::map<std::string, Target, std::less<>> names_;  ///< in lower case
   BoneChannels bones_;
+  sim::JawMuscles jaw_muscles_;
   mutable std::mutex models_mutex_;
   mutable std::vector<std::unique_ptr<sim::FaceModel>> models_;
 };

@@ -39,6 +39,8 @@ Face::Face(std::shared_ptr<const Asset> asset, const fascia_face_options& option
   const rig::Rig& rig = asset_->rig();
   displacements_.assign(rig.tissue.levels[level_].rest.size(), Vec3f::Zero());
   fibre_points_ = rig.tissue.levels[level_].fibre_rest;
+  touches_.reserve(256);
+  for (const sim::Vec3& place : model_->rest()) face_centre_ += place / static_cast<double>(model_->rest().size());
   bones_.displacements = displacements_;
   bones_.eye_centres = {rig.skull.eye_left.centre, rig.skull.eye_right.centre};
   for (std::size_t i = 0; i < asset_->primitives().size(); ++i)
@@ -85,7 +87,9 @@ sim::Drive Face::drive() const {
   sim::Drive drive;
   drive.activations = effective_;
   drive.jaw = {effective(channels.jaw_open), effective(channels.jaw_forward), effective(channels.jaw_lateral)};
-  drive.acceleration = acceleration_;
+  drive.jaw = asset_->jaw_muscles().moved(drive.jaw, effective_);
+  drive.acceleration = acceleration_ + inertia_;
+  drive.touches = touches_;
   return drive;
 }
 
@@ -98,13 +102,63 @@ void Face::follow() {
     mesh.follow(bones_);
 }
 
+void Face::move_head(const Eigen::Matrix4f& place, float inertia_scale) {
+  head_.place = place.cast<double>();
+  head_.scale = inertia_scale;
+  head_.is_moved = true;
+}
+
+sim::Vec3 Face::inertia(double seconds) {
+  constexpr double teleport = 0.5, largest = 60.0;  // metres in one step; m/s^2, some six times gravity
+  if (!head_.is_moved || seconds <= 0.0) return sim::Vec3::Zero();
+  const Eigen::Matrix3d turn = head_.place.topLeftCorner<3, 3>();
+  const sim::Vec3 centre = turn * face_centre_ + head_.place.topRightCorner<3, 1>();
+  const sim::Vec3 moved = centre - head_.centre;
+  if (head_.known > 0 && moved.norm() > teleport) head_.known = 0;
+  const sim::Vec3 velocity = head_.known > 0 ? sim::Vec3(moved / seconds) : sim::Vec3(sim::Vec3::Zero());
+  sim::Vec3 felt = sim::Vec3::Zero();
+  if (head_.known > 1) felt = -head_.scale * (turn.transpose() * ((velocity - head_.velocity) / seconds));
+  if (felt.norm() > largest) felt *= largest / felt.norm();
+  head_.centre = centre;
+  head_.velocity = velocity;
+  head_.known = std::min(head_.known + 1, 2);
+  return felt;
+}
+
+bool Face::touch(std::size_t mesh, std::size_t vertex, const sim::Vec3& force) {
+  const rig::Binding* binding = asset_->binding(level_, mesh);
+  if (binding == nullptr) return true;  // what stands still cannot be pressed
+  if (touches_.size() + binding->influences > touches_.capacity()) return false;
+  for (std::size_t i = vertex * binding->influences; i < (vertex + 1) * binding->influences; ++i)
+    if (binding->weights[i] != 0.0F) touches_.push_back({binding->nodes[i], static_cast<double>(binding->weights[i]) * force});
+  return true;
+}
+
+const std::vector<Vec3f>& Face::compression(std::size_t mesh) {
+  strain_.resize(model_->lattice().columns);
+  sim::skin_strain(*model_, displacements_, strain_);
+  compression_.assign(asset_->primitives()[mesh].positions.size(), Vec3f::Zero());
+  const rig::Binding* binding = asset_->binding(level_, mesh);
+  if (binding == nullptr) return compression_;
+  for (std::size_t v = 0; v < compression_.size(); ++v) {
+    sim::Strain sum = sim::Strain::Zero();
+    for (std::size_t i = v * binding->influences; i < (v + 1) * binding->influences; ++i)
+      if (binding->nodes[i] < strain_.size()) sum += binding->weights[i] * strain_[binding->nodes[i]];
+    compression_[v] = sim::strongest_compression(sum);
+  }
+  return compression_;
+}
+
 void Face::pose() {
+  head_.known = 0;
+  inertia_.setZero();
   gather();
   solver_->pose(drive(), displacements_);
   follow();
 }
 
 bool Face::step(double seconds) {
+  inertia_ = inertia(seconds);
   gather();
   const bool sound = solver_->step(seconds, drive(), displacements_);
   follow();
@@ -112,6 +166,8 @@ bool Face::step(double seconds) {
 }
 
 void Face::reset() {
+  head_.known = 0;
+  inertia_.setZero();
   gather();
   solver_->reset(drive(), displacements_);
   follow();

@@ -6,6 +6,7 @@
 #include "runtime/asset.h"
 #include "runtime/bound_mesh.h"
 #include "runtime/solver.h"
+#include "sim/strain.h"
 
 namespace fascia::runtime {
 
@@ -27,6 +28,12 @@ class Face {
   void add(const Target& target, float value, float weight);
   void set_acceleration(const sim::Vec3& acceleration) { acceleration_ = acceleration; }
 
+  /// Where the head stands from the next step on; see fascia_face_move_head.
+  void move_head(const Eigen::Matrix4f& place, float inertia_scale);
+  /// Adds a force on a vertex; false when there is no room.
+  bool touch(std::size_t mesh, std::size_t vertex, const sim::Vec3& force);
+  void clear_touches() { touches_.clear(); }
+
   void pose();
   /// False when the solver's watchdog had to put the face back.
   bool step(double seconds);
@@ -35,12 +42,16 @@ class Face {
   BoundMesh& mesh(std::size_t index) { return meshes_[index]; }
   std::size_t mesh_count() const { return meshes_.size(); }
   const std::vector<Vec3f>& fibre_points();
+  /// #vertices of the mesh: see fascia_face_compression.
+  const std::vector<Vec3f>& compression(std::size_t mesh);
   const sim::RigidTransform& jaw() const { return bones_.jaw; }
 
  private:
   /// Adds up own values, members and curves into `effective_` and uses the curves up.
   void gather();
   sim::Drive drive() const;
+  /// What the head's own motion over `seconds` does to loose tissue, m/s^2 in its frame.
+  sim::Vec3 inertia(double seconds);
   /// Takes displacements, jaw and eyes to the meshes.
   void follow();
   float effective(int32_t channel) const {
@@ -52,7 +63,18 @@ class Face {
   const sim::FaceModel* model_ = nullptr;
   std::unique_ptr<Solver> solver_;
   std::vector<float> values_, members_, curve_channels_, curve_members_, effective_;
-  sim::Vec3 acceleration_ = sim::Vec3::Zero();
+  sim::Vec3 acceleration_ = sim::Vec3::Zero(), inertia_ = sim::Vec3::Zero();
+  struct HeadMotion {
+    Eigen::Matrix4d place = Eigen::Matrix4d::Identity();
+    double scale = 0.0;
+    sim::Vec3 centre = sim::Vec3::Zero(), velocity = sim::Vec3::Zero();  ///< of the face's middle, in the world
+    int known = 0;  ///< how many of place and velocity are
+    bool is_moved = false;
+  } head_;
+  sim::Vec3 face_centre_ = sim::Vec3::Zero();
+  std::vector<sim::NodeForce> touches_;
+  std::vector<sim::Strain> strain_;
+  std::vector<Vec3f> compression_;
   std::vector<Vec3f> displacements_, fibre_points_;
   BonePose bones_;
   std::vector<BoundMesh> meshes_;

@@ -205,13 +205,4 @@ double tether_energy(const Tether& t, const Vec3& place, const Vec3& normal, con
   return 0.5 * (t.tangential_stiffness * away.squaredNorm() + extra * along * along);
 }
 
-double globe_energy(uint32_t node, const Vec3& centre, double radius, double stiffness, const Vec3* x,
-                    Vec3* gradient) {
-  const Vec3 away = x[node] - centre;
-  const double distance = away.norm(), depth = radius - distance;
-  if (depth <= 0.0 || distance < 1e-12) return 0.0;
-  gradient[node] -= (stiffness * depth / distance) * away;
-  return 0.5 * stiffness * depth * depth;
-}
-
 }  // namespace fascia::sim

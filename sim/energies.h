@@ -57,9 +57,6 @@ double hinge_energy(const Hinge& hinge, const Vec3* x, Vec3* gradient);
 double prism_energy(const Prism& prism, const Vec3* x, Vec3* gradient);
 double tether_energy(const Tether& tether, const Vec3& place, const Vec3& normal, const Vec3* x, Vec3* gradient);
 
-/// A node outside an eyeball: W = stiffness/2 depth^2 while it is within `radius` of `centre`.
-double globe_energy(uint32_t node, const Vec3& centre, double radius, double stiffness, const Vec3* x, Vec3* gradient);
-
 /// The element at rest in `rest`; `youngs_thickness` in newton per metre.
 Membrane make_membrane(std::array<uint32_t, 3> nodes, double youngs_thickness, double poisson_ratio, const Vec3* rest);
 /// The element at rest; `rigidity` in newton metre. Stiffness = rigidity |edge|^2 / (both areas), which on a

@@ -18,8 +18,15 @@ MinimiseResult Face::static_pose(const Drive& drive, const PoseOptions& options,
     if (options.from_last_pose) pose_[i] += pose_offset_[i];
   }
   const auto energy = [this](const Vec3* x, Vec3* gradient) { return model_->energy(pose_frame_, x, gradient); };
-  const MinimiseResult result =
-      minimise(energy, model_->pose_factor(), model_->unknowns(), options.solver, workspace_, pose_);
+  // What lips and lids face is found, held during a solve, and found again until it no longer matters.
+  MinimiseResult result;
+  model_->face_up(pose_.data(), pose_frame_);
+  for (int round = 0; round < options.contact_rounds; ++round) {
+    const int before = result.iterations;
+    result = minimise(energy, model_->pose_factor(), model_->unknowns(), options.solver, workspace_, pose_);
+    result.iterations += before;
+    if (model_->face_up(pose_.data(), pose_frame_) < options.contact_tolerance) break;
+  }
   for (size_t i = 0; i < pose_.size(); ++i) {
     pose_offset_[i] = pose_[i] - pose_frame_.carried[i];
     if (i < positions.size())
@@ -67,7 +74,13 @@ MinimiseResult Face::substep(double share, const Drive& drive, const StepOptions
                     mix(last_jaw_.lateral, goal.lateral)};
   const Vec3 acceleration = last_acceleration_ + share * (drive.acceleration - last_acceleration_);
   carried_ = frame_.carried;
-  model_->place({activations_, jaw, acceleration}, frame_);
+  const RigidTransform mandible = frame_.mandible;
+  model_->place({activations_, jaw, acceleration, drive.touches}, frame_);
+  model_->face_up(position_.data(), frame_);
+  RigidTransform mandible_step;
+  mandible_step.rotation = frame_.mandible.rotation * mandible.rotation.transpose();
+  mandible_step.translation = frame_.mandible.translation - mandible_step.rotation * mandible.translation;
+  frame_.grip_count = model_->contacts().find_grips(mandible, mandible_step, frame_.facing, previous_.data(), position_.data(), frame_.grips);
 
   // Damping acts on motion relative to the bones, so that the jaw carries its tissue along undamped.
   previous_ = position_;
@@ -99,6 +112,7 @@ MinimiseResult Face::substep(double share, const Drive& drive, const StepOptions
   };
   const MinimiseResult result =
       minimise(potential, model_->step_factor(), unknowns, options.solver, workspace_, position_);
+  frame_.grip_count = 0;
   for (size_t i = 0; i < position_.size(); ++i) velocity_[i] = (position_[i] - previous_[i]) / h;
   return result;
 }

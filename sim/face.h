@@ -11,6 +11,8 @@ namespace fascia::sim {
 /// How a static pose is solved.
 struct PoseOptions {
   MinimiseOptions solver;
+  int contact_rounds = 4;             ///< how often at most lips and lids look again for what they face
+  double contact_tolerance = 1e-4;    ///< metres a gap may still change when they do
   bool from_last_pose = false;  ///< start from the last static pose instead of the bones' motion alone
 };
 
@@ -34,9 +36,21 @@ struct StepResult {
   double move = 0.0;      ///< metres still wanted by the last substep's solver
 };
 
+/// How the derivative of a static pose is solved.
+struct AdjointOptions {
+  int iterations = 400;
+  double tolerance = 1e-6;  ///< of the residual, relative
+};
+
+struct AdjointResult {
+  int iterations = 0;
+  double residual = 0.0;  ///< left of the linear system, relative
+  bool converged = false;
+};
+
 /// One face: its own state on a shared model. Not for two threads at once; different faces are free.
 ///
-/// Positions are #nodes in the head's frame, metres. Nothing here but the constructor allocates, and
+/// Positions are #nodes in the head's frame, metres. Nothing here but the constructor and `static_gradient` allocates, and
 /// nothing throws.
 class Face {
  public:
@@ -45,6 +59,13 @@ class Face {
 
   /// The pose in which all forces of `drive` balance. Does not touch the state that `step` moves.
   MinimiseResult static_pose(const Drive& drive, const PoseOptions& options, std::span<Vec3f> positions);
+
+  /// The derivative of a loss of the last static pose, which `drive` must have made: one linear solve, whatever the number
+  /// of channels. `slope` is d loss / d position (#nodes, per metre); out come d loss / d activation (#channels) and the
+  /// same for the jaw's open, forward and lateral. Exact but for contact between lips, whose normals are held still.
+  /// Allocates at its first call.
+  AdjointResult static_gradient(const Drive& drive, std::span<const Vec3> slope, std::span<double> by_channel,
+                                std::array<double, 3>& by_jaw, const AdjointOptions& options = {});
 
   /// Lets `seconds` pass while the drive goes from the last step's to `drive` along a line; time is cut into
   /// the model's substeps, so the frame rate hardly changes the motion. Implicit Euler on the same energies.
@@ -66,13 +87,25 @@ class Face {
   const Positions& velocities() const { return velocity_; }
   Positions& velocities() { return velocity_; }
   const Positions& state() const { return position_; }
+  const Positions& pose() const { return pose_; }  ///< the last static pose, in double precision
   const Frame& frame() const { return frame_; }
 
  private:
   MinimiseResult substep(double share, const Drive& drive, const StepOptions& options);
   bool sound(const StepOptions& options) const;
 
+  /// What `static_gradient` needs of memory.
+  struct Adjoint {
+    Positions lambda, direction, product, moved, work, residual, packed, scratch;
+    void resize(size_t nodes, size_t unknowns) {
+      for (Positions* list : {&lambda, &direction, &product, &moved}) list->resize(nodes, Vec3::Zero());
+      for (Positions* list : {&residual, &packed, &scratch}) list->resize(unknowns, Vec3::Zero());
+      work.resize(3 * nodes, Vec3::Zero());
+    }
+  };
+
   const FaceModel* model_;
+  Adjoint adjoint_;
   Frame frame_, pose_frame_;
   Positions position_, previous_, velocity_, carried_, pose_, pose_offset_, start_, work_;
   std::vector<float> excitations_, last_excitations_, activations_;

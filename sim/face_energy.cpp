@@ -17,6 +17,7 @@ double value_of(std::span<const float> activations, uint32_t channel) {
 void FaceModel::place(const Drive& drive, Frame& frame) const {
   const JawPose pose = clamped(drive.jaw);
   const RigidTransform mandible = jaw_transform(jaw_, pose);
+  frame.mandible = mandible;
   const auto carry = [&](float weight) {
     if (weight == 0.0F) return RigidTransform{};
     return weight == 1.0F ? mandible : jaw_transform(jaw_, pose, weight);
@@ -31,15 +32,9 @@ void FaceModel::place(const Drive& drive, Frame& frame) const {
     frame.tether_normals[t] = pose.at_rest()
                                   ? tethers_[t].normal
                                   : Vec3(carry(lattice_.jaw_weights[tethers_[t].node]).rotation * tethers_[t].normal);
-  for (size_t c = 0; c < frame.carrier_pulls.size(); ++c) {
-    const double turn = value_of(drive.activations, lattice_.carrier_channel[c]) * lattice_.carrier_angle[c];
-    const Vec3 arm = frame.carried[lattice_.carrier_node[c]] - lattice_.carrier_origin[c].cast<double>();
-    Vec3 axis = lattice_.carrier_axis[c].cast<double>();
-    axis = axis.norm() > 1e-9 ? Vec3(axis.normalized()) : Vec3(Vec3::UnitX());
-    frame.carrier_pulls[c] = turn == 0.0 ? Vec3(Vec3::Zero())
-                                         : Vec3(static_cast<double>(lattice_.carrier_drive[c]) *
-                                                (Eigen::AngleAxisd(turn, axis) * arm - arm));
-  }
+  for (size_t c = 0; c < frame.carrier_pulls.size(); ++c)
+    frame.carrier_pulls[c] =
+        carrier_pull(c, value_of(drive.activations, lattice_.carrier_channel[c]), frame.carried[lattice_.carrier_node[c]]);
   for (size_t p = 0; p < frame.fibre_anchors.size(); ++p) {
     const Vec3 place = lattice_.fibre_rest[p].cast<double>();
     const bool moves = static_cast<FibreAnchor>(lattice_.fibre_anchor[p]) == FibreAnchor::mandible;
@@ -50,6 +45,7 @@ void FaceModel::place(const Drive& drive, Frame& frame) const {
         std::max(0.0, value_of(drive.activations, lattice_.fibre_channel[f])) * lattice_.fibre_strength[f];
   for (size_t p = 0; p < frame.pressures.size(); ++p)
     frame.pressures[p] = value_of(drive.activations, lattice_.pressure_channel[p]) * lattice_.pressure[p];
+  frame.touches = drive.touches;
   frame.acceleration = drive.acceleration.allFinite() ? drive.acceleration : Vec3(Vec3::Zero());
 }
 
@@ -63,38 +59,87 @@ Vec3 FaceModel::fibre_point(const Frame& frame, size_t point, const Vec3* x) con
   return place;
 }
 
-double FaceModel::fibre_energy(const Frame& frame, const Vec3* x, Vec3* gradient) const {
-  double energy = 0.0;
-  for (uint32_t f = 0; f < lattice_.fibre_count(); ++f) {
-    const double pull = frame.fibre_pulls[f], rest_length = fibre_lengths_[f];
-    if (pull == 0.0 || rest_length <= 0.0) continue;
-    const uint32_t first = lattice_.fibre_offsets[f], last = lattice_.fibre_offsets[f + 1];
-    double length = 0.0;
-    for (uint32_t p = first; p + 1 < last; ++p)
-      length += lattice_.fibre_taper[p] * (fibre_point(frame, p + 1, x) - fibre_point(frame, p, x)).norm();
-    // The pull falls with the fibre's length and ends at its shortest: the rising limb of the
-    // force-length curve, as a line. Its integral is convex in length, which keeps the solve stable.
-    const double range = 1.0 - lattice_.fibre_shortest[f];
-    const double left = length / rest_length - lattice_.fibre_shortest[f];
-    if (left <= 0.0) continue;
-    const double tension = pull * left / range;
-    energy += 0.5 * tension * left * rest_length - 0.5 * pull * range * rest_length;
-    for (uint32_t p = first; p + 1 < last; ++p) {
-      const Vec3 along = fibre_point(frame, p + 1, x) - fibre_point(frame, p, x);
-      const double segment = along.norm();
-      if (segment < 1e-9) continue;
-      const Vec3 force = (tension * lattice_.fibre_taper[p] / segment) * along;
-      for (const uint32_t end : {p, p + 1}) {
-        const auto anchor = static_cast<FibreAnchor>(lattice_.fibre_anchor[end]);
-        if (anchor == FibreAnchor::cranium || anchor == FibreAnchor::mandible) continue;
-        const double sign = end == p ? -1.0 : 1.0;
-        for (size_t k = 0; k < 3; ++k)
-          gradient[lattice_.fibre_nodes[end][k]] +=
-              (sign * static_cast<double>(lattice_.fibre_weights[end][static_cast<int>(k)])) * force;
-      }
+/// Energy of one fibre; `add_force(node, force)` gets what is to be added to the gradient.
+template <class Force>
+double FaceModel::pull_fibre(const Frame& frame, uint32_t f, double pull, const Vec3* x, Force&& add_force) const {
+  const double rest_length = fibre_lengths_[f];
+  if (pull == 0.0 || rest_length <= 0.0) return 0.0;
+  const uint32_t first = lattice_.fibre_offsets[f], last = lattice_.fibre_offsets[f + 1];
+  double length = 0.0;
+  for (uint32_t p = first; p + 1 < last; ++p)
+    length += lattice_.fibre_taper[p] * (fibre_point(frame, p + 1, x) - fibre_point(frame, p, x)).norm();
+  // The pull falls with the fibre's length and ends at its shortest: the rising limb of the
+  // force-length curve, as a line. Its integral is convex in length, which keeps the solve stable.
+  const double range = 1.0 - lattice_.fibre_shortest[f];
+  const double left = length / rest_length - lattice_.fibre_shortest[f];
+  if (left <= 0.0) return -0.5 * pull * range * rest_length;
+  const double tension = pull * left / range;
+  for (uint32_t p = first; p + 1 < last; ++p) {
+    const Vec3 along = fibre_point(frame, p + 1, x) - fibre_point(frame, p, x);
+    const double segment = along.norm();
+    if (segment < 1e-9) continue;
+    const Vec3 force = (tension * lattice_.fibre_taper[p] / segment) * along;
+    for (const uint32_t end : {p, p + 1}) {
+      const auto anchor = static_cast<FibreAnchor>(lattice_.fibre_anchor[end]);
+      if (anchor == FibreAnchor::cranium || anchor == FibreAnchor::mandible) continue;
+      const double sign = end == p ? -1.0 : 1.0;
+      for (size_t k = 0; k < 3; ++k)
+        add_force(lattice_.fibre_nodes[end][k], Vec3((sign * static_cast<double>(lattice_.fibre_weights[end][static_cast<int>(k)])) * force));
     }
   }
+  return 0.5 * tension * left * rest_length - 0.5 * pull * range * rest_length;
+}
+
+double FaceModel::fibre_energy(const Frame& frame, const Vec3* x, Vec3* gradient) const {
+  double energy = 0.0;
+  const auto add = [gradient](uint32_t node, const Vec3& force) { gradient[node] += force; };
+  for (uint32_t f = 0; f < lattice_.fibre_count(); ++f) energy += pull_fibre(frame, f, frame.fibre_pulls[f], x, add);
   return energy;
+}
+
+Vec3 FaceModel::carrier_pull(size_t c, double value, const Vec3& carried) const {
+  const double turn = value < 0.0 ? -value * lattice_.carrier_reverse[c] : value * lattice_.carrier_angle[c];
+  if (turn == 0.0) return Vec3::Zero();
+  const Vec3 arm = carried - lattice_.carrier_origin[c].cast<double>();
+  Vec3 axis = lattice_.carrier_axis[c].cast<double>();
+  axis = axis.norm() > 1e-9 ? Vec3(axis.normalized()) : Vec3(Vec3::UnitX());
+  return static_cast<double>(lattice_.carrier_drive[c]) * (Eigen::AngleAxisd(turn, axis) * arm - arm);
+}
+
+void FaceModel::channel_slopes(const Frame& frame, const Drive& drive, const Vec3* x, const Vec3* lambda, std::span<double> by_channel) const {
+  const auto add = [&](uint32_t channel, double slope) {
+    if (channel < by_channel.size()) by_channel[channel] += slope;
+  };
+  for (uint32_t f = 0; f < lattice_.fibre_count(); ++f) {
+    double slope = 0.0;  // the pull is linear in its activation
+    pull_fibre(frame, f, lattice_.fibre_strength[f], x, [&](uint32_t node, const Vec3& force) {
+      if (!prescribed(node)) slope += lambda[node].dot(force);
+    });
+    add(lattice_.fibre_channel[f], slope);
+  }
+  for (size_t c = 0; c < lattice_.carrier_node.size(); ++c) {
+    const uint32_t node = lattice_.carrier_node[c];
+    if (prescribed(node)) continue;
+    const double value = value_of(drive.activations, lattice_.carrier_channel[c]), step = 1e-4;
+    const double low = value > 0.0 ? value - std::min(step, value) : value - step;  // not across the bend at 0
+    const double high = value < 0.0 ? value + std::min(step, -value) : value + step;
+    const Vec3 change = carrier_pull(c, high, frame.carried[node]) - carrier_pull(c, value == 0.0 ? 0.0 : low, frame.carried[node]);
+    add(lattice_.carrier_channel[c], -lambda[node].dot(change) / (high - (value == 0.0 ? 0.0 : low)));
+  }
+  for (size_t p = 0; p < lattice_.pressure_prism.size(); ++p) {
+    std::array<Vec3, 6> swept;
+    std::array<uint32_t, 3> nodes{};
+    for (size_t k = 0; k < 3; ++k) {
+      nodes[k] = lattice_.columns + lattice_.triangles[lattice_.pressure_prism[p]][k];
+      swept[k] = x[nodes[k]];
+      swept[k + 3] = frame.carried[nodes[k]];
+    }
+    const auto push = prism_volume_gradient({0, 1, 2, 3, 4, 5}, swept.data());
+    double slope = 0.0;
+    for (size_t k = 0; k < 3; ++k)
+      if (!prescribed(nodes[k])) slope -= lambda[nodes[k]].dot(push[k]);
+    add(lattice_.pressure_channel[p], lattice_.pressure[p] * slope);
+  }
 }
 
 double FaceModel::actuator_energy(const Frame& frame, const Vec3* x, Vec3* gradient) const {
@@ -122,10 +167,14 @@ double FaceModel::actuator_energy(const Frame& frame, const Vec3* x, Vec3* gradi
     const auto push = prism_volume_gradient(corners, swept.data());
     for (size_t k = 0; k < 3; ++k) gradient[nodes[k]] -= frame.pressures[p] * push[k];
   }
-  for (size_t c = 0; c < contact_radii_.size(); ++c)
-    energy += globe_energy(lattice_.globe_contact_node[c],
-                           lattice_.globe_centre[lattice_.globe_contact_globe[c]].cast<double>(), contact_radii_[c],
-                           options_.globe_contact_stiffness, x, gradient);
+  energy += contacts_.energy(frame.mandible, x, gradient);
+  energy += contacts_.facing_energy(frame.facing, x, gradient);
+  energy += contacts_.grip_energy(std::span(frame.grips).first(frame.grip_count), x, gradient);
+  for (const NodeForce& touch : frame.touches) {
+    if (touch.node >= rest_.size() || !touch.force.allFinite()) continue;
+    gradient[touch.node] -= touch.force;
+    energy -= touch.force.dot(x[touch.node] - rest_[touch.node]);
+  }
   if (frame.acceleration != Vec3::Zero()) {
     for (const uint32_t node : unknowns_) {
       gradient[node] -= masses_[node] * frame.acceleration;

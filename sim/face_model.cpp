@@ -73,11 +73,10 @@ void FaceModel::make_elements() {
     tethers_.push_back({lattice_.tether_nodes[t], normal, lattice_.tether_normal_stiffness[t],
                         lattice_.tether_tangential_stiffness[t]});
   }
-  for (size_t c = 0; c < lattice_.globe_contact_node.size(); ++c) {
-    const uint32_t globe = lattice_.globe_contact_globe[c];
-    const double distance = (rest_[lattice_.globe_contact_node[c]] - lattice_.globe_centre[globe].cast<double>()).norm();
-    contact_radii_.push_back(std::min<double>(lattice_.globe_radius[globe], distance));
-  }
+  column_areas_.assign(columns, 0.0);
+  for (size_t t = 0; t < lattice_.triangles.size(); ++t)
+    for (const uint32_t column : lattice_.triangles[t]) column_areas_[column] += membranes_[t].area;
+  contacts_ = Contacts(lattice_, rest_, options_.contact);
   Frame frame;
   frame.fibre_anchors.resize(lattice_.fibre_nodes.size());
   for (size_t p = 0; p < frame.fibre_anchors.size(); ++p) frame.fibre_anchors[p] = lattice_.fibre_rest[p].cast<double>();
@@ -117,6 +116,8 @@ Frame FaceModel::make_frame() const {
   frame.fibre_anchors.resize(lattice_.fibre_nodes.size());
   frame.fibre_pulls.resize(lattice_.fibre_count());
   frame.pressures.resize(lattice_.pressure_prism.size());
+  frame.facing.resize(contacts_.facing_count());
+  frame.grips.resize(contacts_.grip_capacity());
   place({}, frame);
   return frame;
 }
@@ -128,9 +129,9 @@ bool FaceModel::make_factors() {
     const int32_t unknown = unknown_of_node_[lattice_.carrier_node[c]];
     if (unknown >= 0) matrix.coeffRef(unknown, unknown) += lattice_.carrier_stiffness[c];
   }
-  for (const uint32_t node : lattice_.globe_contact_node) {
+  for (const uint32_t node : contacts_.globe_nodes()) {
     const int32_t unknown = unknown_of_node_[node];
-    if (unknown >= 0) matrix.coeffRef(unknown, unknown) += 0.1 * options_.globe_contact_stiffness;
+    if (unknown >= 0) matrix.coeffRef(unknown, unknown) += 0.1 * options_.contact.globe_stiffness;
   }
   stiffness_ = matrix;
   if (!pose_factor_.compute(matrix)) return false;

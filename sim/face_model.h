@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/contact.h"
 #include "sim/energies.h"
 #include "sim/jaw.h"
 #include "sim/lattice.h"
@@ -15,7 +16,13 @@ struct FaceModelOptions {
   double substep = 1.0 / 120.0;           ///< seconds; frames are cut into these, whatever their length
   double stiffness_damping = 0.004;       ///< seconds: damping force per stiffness force and unit of rate
   double mass_damping = 8.0;              ///< per second
-  double globe_contact_stiffness = 200.0; ///< newton per metre a node
+  ContactOptions contact;
+};
+
+/// A force from outside on one node, newton in the head's frame: a finger, a hand.
+struct NodeForce {
+  uint32_t node = 0;
+  Vec3 force = Vec3::Zero();
 };
 
 /// What drives a face at one moment.
@@ -23,6 +30,7 @@ struct Drive {
   std::span<const float> activations;  ///< one a channel; channels beyond its end are 0
   JawPose jaw;
   Vec3 acceleration = Vec3::Zero();    ///< of free tissue in the head's frame, m/s^2 (gravity change, inertia)
+  std::span<const NodeForce> touches = {};  ///< must outlive the solve
 };
 
 /// Where bones and carriers stand for a drive; made once a solve.
@@ -34,6 +42,11 @@ struct Frame {
   std::vector<double> fibre_pulls;  ///< #fibres, newton at rest length
   std::vector<double> pressures;    ///< #pressures, pascal
   Vec3 acceleration = Vec3::Zero();
+  RigidTransform mandible;
+  std::vector<FacingPair> facing;   ///< lip before lip, lid before lid: see FaceModel::face_up
+  std::vector<Grip> grips;          ///< capacity of them; friction, in steps of time
+  size_t grip_count = 0;
+  std::span<const NodeForce> touches;
 };
 
 /// A face ready to solve: elements at rest, and the factors every instance shares. Immutable, so any
@@ -51,6 +64,9 @@ class FaceModel {
   /// Moves bones and carriers of `frame` to `drive`. Allocates nothing.
   void place(const Drive& drive, Frame& frame) const;
 
+  /// Finds what lips and lids face as the face stands in `x`; returns the largest change against before, metres.
+  double face_up(const Vec3* x, Frame& frame) const { return contacts_.find_facing(x, frame.facing); }
+
   /// Joules of the configuration `x` (#nodes), above those of the rest pose; writes the gradient in
   /// newtons (#nodes, zero where a node is prescribed). One set of energies for pose and step.
   double energy(const Frame& frame, const Vec3* x, Vec3* gradient) const;
@@ -62,6 +78,10 @@ class FaceModel {
   /// (error about 1e-8 of its size). `work` holds 3 x #nodes.
   void hessian_times(const Frame& frame, const Vec3* x, const Vec3* direction, Vec3* result, Positions& work) const;
 
+  /// Adds, for each channel, lambda . d gradient / d activation at `x`: fibres, carriers and pressures (the jaw and eyes move
+  /// bones and are not among them). `frame` must be placed for `drive`; `lambda` is #nodes, zero where prescribed.
+  void channel_slopes(const Frame& frame, const Drive& drive, const Vec3* x, const Vec3* lambda, std::span<double> by_channel) const;
+
   const Lattice& lattice() const { return lattice_; }
   const Jaw& jaw() const { return jaw_; }
   const FaceModelOptions& options() const { return options_; }
@@ -72,6 +92,8 @@ class FaceModel {
   const RestFactor& pose_factor() const { return pose_factor_; }       ///< rest stiffness
   const RestFactor& step_factor() const { return step_factor_; }       ///< mass, damping and stiffness of a substep
   const Eigen::SparseMatrix<double, Eigen::RowMajor>& stiffness() const { return stiffness_; }  ///< over unknowns
+  const Contacts& contacts() const { return contacts_; }
+  const std::vector<double>& column_areas() const { return column_areas_; }  ///< #columns, of the skin's triangles around each
   const std::vector<Spring>& springs() const { return springs_; }
   const std::vector<Prism>& prisms() const { return prisms_; }
   const std::vector<Membrane>& membranes() const { return membranes_; }  ///< skin first, then SMAS
@@ -84,6 +106,9 @@ class FaceModel {
   double energy_beside_springs(const Frame& frame, const Vec3* x, Vec3* gradient) const;
   double balanced(double energy, const Vec3* x, Vec3* gradient) const;
   double fibre_energy(const Frame& frame, const Vec3* x, Vec3* gradient) const;
+  template <class Force>
+  double pull_fibre(const Frame& frame, uint32_t fibre, double pull, const Vec3* x, Force&& add_force) const;
+  Vec3 carrier_pull(size_t carrier, double value, const Vec3& carried) const;
   double actuator_energy(const Frame& frame, const Vec3* x, Vec3* gradient) const;
   Vec3 fibre_point(const Frame& frame, size_t point, const Vec3* x) const;
 
@@ -101,7 +126,8 @@ class FaceModel {
   std::vector<Prism> prisms_;
   std::vector<Tether> tethers_;
   std::vector<double> fibre_lengths_;  // taper-weighted, at rest
-  std::vector<double> contact_radii_;
+  Contacts contacts_;
+  std::vector<double> column_areas_;
   Positions balance_;  // gradient at rest: what is subtracted so that rest is rest to the last bit
   Eigen::SparseMatrix<double, Eigen::RowMajor> stiffness_;
   RestFactor pose_factor_, step_factor_;

@@ -97,7 +97,7 @@ const char* fault_of_fibres(const Lattice& l) {
 const char* fault_of_actuators(const Lattice& l) {
   const size_t carriers = l.carrier_channel.size();
   if (l.carrier_node.size() != carriers || l.carrier_origin.size() != carriers || l.carrier_axis.size() != carriers ||
-      l.carrier_angle.size() != carriers || l.carrier_stiffness.size() != carriers ||
+      l.carrier_angle.size() != carriers || l.carrier_reverse.size() != carriers || l.carrier_stiffness.size() != carriers ||
       l.carrier_drive.size() != carriers)
     return "the carrier lists differ in length";
   if (!all_below(l.carrier_node, l.node_count())) return "a carrier names a node that does not exist";
@@ -115,13 +115,39 @@ const char* fault_of_actuators(const Lattice& l) {
   return nullptr;
 }
 
+const char* fault_of_contact(const Lattice& l) {
+  const size_t fields = l.contact_field_bone.size();
+  if (l.contact_field_origin.size() != fields || l.contact_field_spacing.size() != fields ||
+      l.contact_field_step.size() != fields || l.contact_field_size.size() != fields)
+    return "the contact field lists differ in length";
+  size_t values = 0;
+  for (size_t f = 0; f < fields; ++f) {
+    const auto& size = l.contact_field_size[f];
+    if (!(l.contact_field_spacing[f] > 0.0F) || !(l.contact_field_step[f] > 0.0F) || !std::isfinite(l.contact_field_spacing[f]) ||
+        !std::isfinite(l.contact_field_step[f]) || size[0] < 2 || size[1] < 2 || size[2] < 2 || size[0] > 1024 || size[1] > 1024 ||
+        size[2] > 1024 || l.contact_field_bone[f] > 1)
+      return "a contact field is degenerate";
+    values += static_cast<size_t>(size[0]) * size[1] * size[2];
+  }
+  if (!all_finite(l.contact_field_origin) || l.contact_field_values.size() != values)
+    return "a contact field has not the values its size tells";
+  if (l.contact_node.size() != l.contact_field.size() || !all_below(l.contact_node, l.node_count()) || !all_below(l.contact_field, fields))
+    return "a bone contact names what does not exist";
+  if (l.facing_prism.size() != l.facing_side.size() || !all_below(l.facing_prism, l.triangles.size()))
+    return "a facing side names a prism that does not exist";
+  for (const uint8_t side : l.facing_side)
+    if (side > 5) return "a facing side is of no known kind";
+  return nullptr;
+}
+
 }  // namespace
 
 const char* lattice_fault(const Lattice& lattice) {
   if (const char* fault = fault_of_nodes(lattice)) return fault;
   if (const char* fault = fault_of_layers(lattice)) return fault;
   if (const char* fault = fault_of_fibres(lattice)) return fault;
-  return fault_of_actuators(lattice);
+  if (const char* fault = fault_of_actuators(lattice)) return fault;
+  return fault_of_contact(lattice);
 }
 
 }  // namespace fascia::sim

@@ -65,6 +65,7 @@ struct Lattice {
   std::span<const uint32_t> carrier_channel, carrier_node;
   std::span<const Vec3f> carrier_origin, carrier_axis;
   std::span<const float> carrier_angle;      ///< radians at channel value 1
+  std::span<const float> carrier_reverse;    ///< radians at channel value -1
   std::span<const float> carrier_stiffness;  ///< hold: pulls the node back to its carried place
   std::span<const float> carrier_drive;      ///< force per metre of the carrier's motion
 
@@ -74,6 +75,16 @@ struct Lattice {
   std::span<const Vec3f> globe_centre;         ///< #globes, eyeballs that lids lie on
   std::span<const float> globe_radius;         ///< #globes
   std::span<const uint32_t> globe_contact_node, globe_contact_globe;  ///< pairs that may touch
+
+  std::span<const uint8_t> contact_field_bone;  ///< #fields, 0 cranium, 1 mandible
+  std::span<const Vec3f> contact_field_origin;  ///< #fields
+  std::span<const float> contact_field_spacing, contact_field_step;         ///< #fields
+  std::span<const std::array<uint32_t, 3>> contact_field_size;              ///< #fields, values along x, y, z
+  std::span<const uint8_t> contact_field_values;  ///< one field after the other, x fastest; (value - 128) * step
+  std::span<const uint32_t> contact_node, contact_field;  ///< pairs that may touch
+
+  std::span<const uint32_t> facing_prism;  ///< outer sides that may touch one another
+  std::span<const uint8_t> facing_side;    ///< an even side meets the odd one after it
 
   uint32_t node_count() const { return 3 * columns; }
   uint32_t fibre_count() const { return static_cast<uint32_t>(fibre_channel.size()); }
@@ -126,6 +137,7 @@ Lattice lattice_of(const Level& level) {
   view.carrier_origin = level.carrier_origin;
   view.carrier_axis = level.carrier_axis;
   view.carrier_angle = level.carrier_angle;
+  view.carrier_reverse = level.carrier_reverse;
   view.carrier_stiffness = level.carrier_stiffness;
   view.carrier_drive = level.carrier_drive;
   view.pressure_channel = level.pressure_channel;
@@ -135,6 +147,16 @@ Lattice lattice_of(const Level& level) {
   view.globe_radius = level.globe_radius;
   view.globe_contact_node = level.globe_contact_node;
   view.globe_contact_globe = level.globe_contact_globe;
+  view.contact_field_bone = level.contact_field_bone;
+  view.contact_field_origin = level.contact_field_origin;
+  view.contact_field_spacing = level.contact_field_spacing;
+  view.contact_field_step = level.contact_field_step;
+  view.contact_field_size = level.contact_field_size;
+  view.contact_field_values = level.contact_field_values;
+  view.contact_node = level.contact_node;
+  view.contact_field = level.contact_field;
+  view.facing_prism = level.facing_prism;
+  view.facing_side = level.facing_side;
   return view;
 }
 

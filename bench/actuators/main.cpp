@@ -2,7 +2,7 @@
 // moves and which way, beside what anatomy expects.
 //
 //   bench_actuators [embedded|neutral|person_0|...]... [--sheet PREFIX] [--level NAME] [--only SUBSTRING] [--layers LIST]
-//                   [--keep FOLDER]
+//                   [--keep FOLDER] [--zoom FACTOR]
 //
 // Pairs are shown on the left; a row is marked when a travel lies outside the expected range.
 
@@ -35,6 +35,7 @@ const fs::path measured = fs::path(FASCIA_MEASURED_DATA) / "data/ict";
 struct Request {
   std::vector<std::string> people;
   std::string sheet, level, only, layers = "skin,eyes";
+  double zoom = 1.0;  ///< towards the landmark
   fs::path keep;  ///< folder that the rigs stay in; empty: they are removed
 };
 
@@ -126,7 +127,7 @@ bool is_channel(const cli::Face& face, const std::string& name) {
 }
 
 /// The picture of the side of the face where an actuator works.
-view::Camera camera_for(const rig::Rig& rig, const std::string& landmark) {
+view::Camera camera_for(const rig::Rig& rig, const std::string& landmark, double zoom) {
   Vec3 brow = Vec3::Zero(), chin = Vec3::Zero(), at = Vec3::Zero();
   for (const rig::Landmark& l : rig.skull.landmarks) {
     if (l.name == "glabella") brow = l.skin.cast<double>();
@@ -134,9 +135,8 @@ view::Camera camera_for(const rig::Rig& rig, const std::string& landmark) {
     if (l.name == landmark) at = l.skin.cast<double>();
   }
   view::Camera camera;
-  camera.target = 0.5 * (0.5 * (brow + chin) + at);
-  camera.target.x() *= 0.6;
-  camera.distance = 3.3 * (brow - chin).norm();
+  camera.target = at + 0.5 / zoom * (0.5 * (brow + chin) - at);
+  camera.distance = 3.3 * (brow - chin).norm() / zoom;
   camera.yaw = 30;
   return camera;
 }
@@ -168,7 +168,7 @@ int run(const std::string& person, const Request& request) {
     if (renderer) {
       char caption[64];
       std::snprintf(caption, sizeof caption, "%.27s %+.1f", e.actuator.c_str(), travel);
-      tiles.push_back({renderer->draw(cli::draw_face(face, built->rig, cli::layers_from(request.layers)), camera_for(built->rig, e.landmark)), caption});
+      tiles.push_back({renderer->draw(cli::draw_face(face, built->rig, cli::layers_from(request.layers)), camera_for(built->rig, e.landmark, request.zoom)), caption});
     }
   }
   std::printf("%d outside the expected range\n\n", outside);
@@ -187,6 +187,7 @@ int main(int argc, char** argv) {
     if (word == "--sheet" && more) request.sheet = argv[++i];
     else if (word == "--level" && more) request.level = argv[++i];
     else if (word == "--only" && more) request.only = argv[++i];
+    else if (word == "--zoom" && more) request.zoom = std::stod(argv[++i]);
     else if (word == "--keep" && more) request.keep = argv[++i];
     else if (word == "--layers" && more) request.layers = argv[++i];
     else request.people.push_back(word);

@@ -113,6 +113,7 @@ rig::Tissue build_tissue(const formats::Scene& scene, const prepare::PreparedHea
   inputs.jaw = rig.skull.jaw;
   inputs.eye_left = rig.skull.eye_left;
   inputs.eye_right = rig.skull.eye_right;
+  inputs.ligaments = rig.smas.ligaments;
   inputs.muscles = rig.muscles;
   inputs.channels = rig.actuation.channels;
   const std::vector<MeshPart> parts = take_apart(scene, head);

@@ -18,4 +18,16 @@ void add_lids(const TissueInputs& inputs, const TissueOptions& options, const Co
 /// vestibule, behind cheek and lips.
 void add_pressures(const TissueInputs& inputs, const TissueOptions& options, const Columns& columns, rig::TissueLevel& level);
 
+/// Lips rolled over the teeth (`lip_roll_upper_<side>`, `lip_roll_lower_<side>` above 0) or turned out (below 0).
+void add_lip_rolls(const TissueInputs& inputs, const TissueOptions& options, const Columns& columns, rig::TissueLevel& level);
+
+/// Retaining ligaments from bone through the fascia to the skin: springs that only resist being stretched.
+void add_ligaments(const TissueInputs& inputs, const Columns& columns, rig::TissueLevel& level);
+
+/// Distance fields of the bones with their teeth, and which nodes may touch them.
+void add_contact(const TissueInputs& inputs, const Columns& columns, rig::TissueLevel& level);
+
+/// Lips before lips: which skin may touch which. (Lids meet by how far their carriers take them.)
+void add_facing(const TissueInputs& inputs, const Columns& columns, rig::TissueLevel& level);
+
 }  // namespace fascia::tissue

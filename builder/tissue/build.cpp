@@ -43,7 +43,13 @@ TissueResult build(const TissueInputs& inputs, const TissueOptions& options) {
     rig::TissueLevel level = make_level(inputs, options, wanted, columns);
     add_fibres(inputs, options, columns, level);
     add_lids(inputs, options, columns, level);
+    add_lip_rolls(inputs, options, columns, level);
     add_pressures(inputs, options, columns, level);
+    if (options.contact) {
+      add_ligaments(inputs, columns, level);
+      add_contact(inputs, columns, level);
+      add_facing(inputs, columns, level);
+    }
     if (const char* fault = sim::lattice_fault(sim::lattice_of(level)))
       throw Error("the " + wanted.name + " tissue lattice came out unsound (" + fault + "): check the head's skin around lips and lids");
     const std::vector<Follow> skin = follow_skin(inputs, region, columns);

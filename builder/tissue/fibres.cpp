@@ -54,6 +54,7 @@ void add_fibres(const TissueInputs& inputs, const TissueOptions& options, const 
     const int channel = channel_index(inputs.channels, muscle.name);
     if (channel < 0 || muscle.fibre_offsets.size() < 2) continue;
     const auto bony = [](rig::FibreEnd end) { return end == rig::FibreEnd::cranium || end == rig::FibreEnd::mandible; };
+    if (bony(muscle.origin) && bony(muscle.insertion)) continue;  // moves the jaw, not the fascia it lies under
     const size_t fibres = muscle.fibre_offsets.size() - 1;
     for (size_t f = 0; f < fibres; ++f) {
       const size_t first = muscle.fibre_offsets[f], last = muscle.fibre_offsets[f + 1];

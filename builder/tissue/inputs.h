@@ -27,6 +27,7 @@ struct TissueInputs {
   std::vector<float> smas_skin_attachment; ///< the same, to the skin
   rig::JawJoint jaw;
   rig::Eye eye_left, eye_right;            ///< radius 0: found from the lids' landmarks
+  std::vector<rig::Ligament> ligaments;    ///< used with TissueOptions::contact
   std::vector<rig::Muscle> muscles;
   std::vector<rig::Channel> channels;
   std::vector<PartMesh> parts;
@@ -51,6 +52,7 @@ struct TissueMaterial {
   double insertion_spread = 0.006;   ///< over which a fibre's pull comes in at its free end
   double mouth_pressure = 600.0;     ///< behind the cheeks at channel value 1
   double gum_hold = 3.0e5;           ///< pascal per metre: stiffness an area with which the gums hold the lips' lining at its fold
+  double lip_drive = 1.5e5;          ///< pascal per metre: stiffness an area with which lips follow their roll
   double lid_hold = 1.0e6;           ///< pascal per metre: stiffness an area with which the tarsal plates keep their place on the globe
 };
 
@@ -62,6 +64,9 @@ struct LevelOptions {
 
 struct TissueOptions {
   TissueMaterial material;
+  /// Contact with bones, teeth and the other lip, and one-sided ligaments. Off: the expression tables are fitted without
+  /// them, and poses with lips in contact take two to five times as many iterations.
+  bool contact = false;
   std::vector<LevelOptions> levels = {{"low", 700}, {"medium", 2000}, {"high", 5000}};
   double lining = 0.010;       ///< how far the simulated skin goes on over lips and lids into the openings
   double edge_ratio = 2.7;     ///< edge length far from lips and lids over that at them

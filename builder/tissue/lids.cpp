@@ -64,6 +64,7 @@ void carry(rig::TissueLevel& level, int channel, size_t node, const EyeFrame& f,
   level.carrier_origin.push_back(f.centre.cast<float>());
   level.carrier_axis.push_back(axis.cast<float>());
   level.carrier_angle.push_back(static_cast<float>(angle));
+  level.carrier_reverse.push_back(static_cast<float>(-angle));
   level.carrier_stiffness.push_back(0.0F);
   level.carrier_drive.push_back(static_cast<float>(stiffness));
 }

@@ -178,6 +178,7 @@ void tissue_level_fields(V& v, T& level, const TissueLimits& limits) {
   v.list("carrierOrigins", level.carrier_origin, carriers);
   v.list("carrierAxes", level.carrier_axis, carriers);
   v.list("carrierAngles", level.carrier_angle, carriers);
+  v.list("carrierReverseAngles", level.carrier_reverse, carriers);
   v.list("carrierStiffness", level.carrier_stiffness, carriers);
   v.list("carrierDrive", level.carrier_drive, carriers);
 
@@ -191,6 +192,19 @@ void tissue_level_fields(V& v, T& level, const TissueLimits& limits) {
   v.list("globeRadii", level.globe_radius, globes);
   v.index("globeContactNodes", level.globe_contact_node, any, nodes);
   v.index("globeContactGlobes", level.globe_contact_globe, level.globe_contact_node.size(), globes);
+
+  v.index("contactFieldBones", level.contact_field_bone, any, 2);
+  const std::size_t fields = level.contact_field_bone.size();
+  v.list("contactFieldOrigins", level.contact_field_origin, fields);
+  v.list("contactFieldSpacings", level.contact_field_spacing, fields);
+  v.list("contactFieldSteps", level.contact_field_step, fields);
+  v.index("contactFieldSizes", level.contact_field_size, fields, 1024);
+  v.index("contactFieldValues", level.contact_field_values, any, 256);
+  v.index("contactNodes", level.contact_node, any, nodes);
+  v.index("contactNodeFields", level.contact_field, level.contact_node.size(), fields);
+
+  v.index("facingPrisms", level.facing_prism, any, prisms);
+  v.index("facingSides", level.facing_side, level.facing_prism.size(), 6);
 }
 
 /// `nodes` is the number of nodes of the level the binding belongs to.

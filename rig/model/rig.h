@@ -162,6 +162,7 @@ struct TissueLevel {
   std::vector<uint32_t> carrier_channel, carrier_node;
   std::vector<Vec3f> carrier_origin, carrier_axis;
   std::vector<float> carrier_angle;      ///< radians at channel value 1
+  std::vector<float> carrier_reverse;    ///< radians at channel value -1
   std::vector<float> carrier_stiffness;  ///< pulls the node back to where its bones carry it
   std::vector<float> carrier_drive;      ///< force per metre of the carrier's own motion
 
@@ -173,6 +174,19 @@ struct TissueLevel {
   std::vector<Vec3f> globe_centre;
   std::vector<float> globe_radius;
   std::vector<uint32_t> globe_contact_node, globe_contact_globe;  ///< pairs
+
+  /// Distance fields of the bones with their teeth, each a grid that stands still in its bone's frame; the values of a
+  /// field follow those of the one before, x fastest. Distance in metres = (value - 128) * step, negative inside.
+  std::vector<uint8_t> contact_field_bone;  ///< #fields, 0 cranium, 1 mandible
+  std::vector<Vec3f> contact_field_origin;  ///< #fields, place of the first value
+  std::vector<float> contact_field_spacing, contact_field_step;  ///< #fields, metres
+  std::vector<std::array<uint32_t, 3>> contact_field_size;       ///< #fields, values along x, y, z
+  std::vector<uint8_t> contact_field_values;
+  std::vector<uint32_t> contact_node, contact_field;  ///< pairs that may touch
+
+  /// Skin that may touch skin: lips and lids. A prism's outer side of side 2k meets only such of side 2k + 1.
+  std::vector<uint32_t> facing_prism;
+  std::vector<uint8_t> facing_side;  ///< 0 upper, 1 lower lip; 2, 3 upper, lower lid left; 4, 5 right
 };
 
 /// How the vertices of one primitive of the user's file follow the lattice, the jaw or an eye.

@@ -156,9 +156,12 @@ struct BulletFace::World {
     }
   }
 
+  unsigned substeps = 0;
+
   void substep(const Drive& drive) {
     const double s = options.length_scale;
-    model.place({activations, drive.jaw, drive.acceleration}, frame);
+    model.place({activations, drive.jaw, drive.acceleration, drive.touches}, frame);
+    if (substeps++ % 20 == 0) model.face_up(state.data(), frame);  // lips hardly move in a hundredth of a second
     joint->setFrames(to_bullet(jaw_transform(model.jaw(), clamped(drive.jaw)), s) * condyles, condyles);
     carry_nodes();
     model.energy_beside_links(frame, state.data(), forces.data());

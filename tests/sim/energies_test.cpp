@@ -61,7 +61,6 @@ TEST(Energies, GradientsMatchFiniteDifferences) {
     EXPECT_LT(gradient_error([&](auto p, auto g) { return prism_energy(prism, p, g); }, x), 1e-5);
     EXPECT_LT(gradient_error([&](auto p, auto g) { return spring_energy(spring, p, g); }, x), 1e-5);
     EXPECT_LT(gradient_error([&](auto p, auto g) { return tether_energy(tether, six[2], tether.normal, p, g); }, x), 1e-5);
-    EXPECT_LT(gradient_error([&](auto p, auto g) { return globe_energy(1, Vec3(.001, 0, 0), .006, 200, p, g); }, x), 1e-5);
   }
 }
 
@@ -133,6 +132,7 @@ struct Everything {
       level.carrier_origin.push_back(rig::Vec3f(0, 0, -0.02F));
       level.carrier_axis.push_back(rig::Vec3f(1, 0, 0));
       level.carrier_angle.push_back(0.3F);
+      level.carrier_reverse.push_back(-0.3F);
       level.carrier_stiffness.push_back(2.0F);
       level.carrier_drive.push_back(2.0F);
       level.globe_contact_node.push_back(column);

@@ -227,6 +227,15 @@ FASCIA_API fascia_result fascia_face_reset(fascia_face* face);
  * for none. Kept until it is set again. */
 FASCIA_API fascia_result fascia_face_set_acceleration(fascia_face* face, const float* acceleration);
 
+/* Tells where the head stands in the world: a rigid transform in metres, 4 x 4, column-major, from the head's frame. The
+ * next step makes loose tissue lag behind its acceleration, times `inertia_scale` (1 is physical, 0 none). A jump of more
+ * than half a metre in one step counts as a teleport and moves nothing. Called before each step while the head moves. */
+FASCIA_API fascia_result fascia_face_move_head(fascia_face* face, const float matrix[16], float inertia_scale);
+
+/* Presses on a vertex of a mesh with a force in newtons, in the rig's axes, until all touches are cleared. At most 64. */
+FASCIA_API fascia_result fascia_face_touch(fascia_face* face, uint32_t mesh, uint32_t vertex, const float force[3]);
+FASCIA_API fascia_result fascia_face_clear_touches(fascia_face* face);
+
 /* A list of three-component vectors in the face's memory. */
 typedef struct fascia_vectors {
   uint32_t struct_size;
@@ -242,6 +251,11 @@ FASCIA_API fascia_result fascia_face_positions(fascia_face* face, uint32_t mesh,
 /* Unit vertex normals of a mesh in the face's space: the file's own, turned as the surface turns; smooth ones when
  * the file has none. Computed when asked for. */
 FASCIA_API fascia_result fascia_face_normals(fascia_face* face, uint32_t mesh, fascia_vectors* normals);
+
+/* How the skin is compressed at each vertex of a mesh, for wrinkle shaders: the direction of the strongest compression at
+ * rest, in the rig's axes, times its share (0.2: one fifth shorter). Zero where nothing is compressed and on other parts.
+ * Its sign means nothing; wrinkles run across it. Computed when asked for. */
+FASCIA_API fascia_result fascia_face_compression(fascia_face* face, uint32_t mesh, fascia_vectors* compression);
 
 /* Copies positions to memory of the host's: 3 floats each `stride` bytes (12 or more). FASCIA_ERROR_ARGUMENT when
  * `capacity` vertices are too few. */

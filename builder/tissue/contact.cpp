@@ -1,0 +1,87 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "builder/spatial/surface_query.h"
+#include "builder/tissue/actuators.h"
+
+namespace fascia::tissue {
+namespace {
+
+constexpr double field_step = 1.5e-4;  // metres a unit: values reach 19 mm either way
+
+/// Adds the distance field of `bone` over the box of `near`.
+void add_field(const TriangleMesh& bone, uint8_t which, const Bounds& near, double spacing, rig::TissueLevel& level) {
+  const spatial::SurfaceQuery query(bone);
+  const Vec3 origin = near.lower - Vec3::Constant(spacing);
+  std::array<uint32_t, 3> size{};
+  for (size_t axis = 0; axis < 3; ++axis) {
+    const double length = near.upper[static_cast<int>(axis)] - origin[static_cast<int>(axis)] + spacing;
+    size[axis] = static_cast<uint32_t>(std::clamp(std::ceil(length / spacing), 2.0, 250.0)) + 1;
+  }
+  level.contact_field_bone.push_back(which);
+  level.contact_field_origin.push_back(origin.cast<float>());
+  level.contact_field_spacing.push_back(static_cast<float>(spacing));
+  level.contact_field_step.push_back(static_cast<float>(field_step));
+  level.contact_field_size.push_back(size);
+  for (uint32_t k = 0; k < size[2]; ++k)
+    for (uint32_t j = 0; j < size[1]; ++j)
+      for (uint32_t i = 0; i < size[0]; ++i) {
+        const spatial::ClosestPoint hit = query.closest(origin + spacing * Vec3(i, j, k), 130.0 * field_step);
+        const double distance = hit.found() ? hit.signed_distance : 1.0;
+        level.contact_field_values.push_back(static_cast<uint8_t>(std::clamp(std::round(128.0 + distance / field_step), 0.0, 255.0)));
+      }
+}
+
+}  // namespace
+
+void add_contact(const TissueInputs& inputs, const Columns& c, rig::TissueLevel& level) {
+  const auto n = static_cast<size_t>(c.count());
+  const auto& mouth = c.opening_distance[static_cast<size_t>(Opening::mouth)];
+  // What may meet bone and teeth: lips' and cheeks' inside with both jaws, the fascia with the bone it glides on.
+  std::array<std::vector<uint32_t>, 2> nodes;
+  for (size_t v = 0; v < n; ++v) {
+    if (c.rim[v]) continue;
+    const bool lining = !c.outer[v] && mouth[v] < 0.03;
+    for (uint32_t bone = 0; bone < 2; ++bone) {
+      if (lining) nodes[bone].push_back(static_cast<uint32_t>(v));
+      if (c.outer[v] && !c.bone[v]) nodes[bone].push_back(static_cast<uint32_t>(2 * n + v));
+      if (c.outer[v] && mouth[v] < 0.012) nodes[bone].push_back(static_cast<uint32_t>(v));
+    }
+    if (c.outer[v] && c.bone[v]) nodes[c.jaw_weight[v] > 0.5 ? 1 : 0].push_back(static_cast<uint32_t>(n + v));
+  }
+  const Bones bones = bones_of(inputs);
+  for (uint8_t bone = 0; bone < 2; ++bone) {
+    if (nodes[bone].empty()) continue;
+    Bounds box;
+    for (const uint32_t node : nodes[bone]) {
+      const Vec3 p = level.rest[node].cast<double>();
+      box.lower = box.lower.cwiseMin(p);
+      box.upper = box.upper.cwiseMax(p);
+    }
+    const auto field = static_cast<uint32_t>(level.contact_field_bone.size());
+    add_field(bone == 0 ? bones.cranium : bones.mandible, bone, box, 0.0025, level);
+    for (const uint32_t node : nodes[bone]) {
+      level.contact_node.push_back(node);
+      level.contact_field.push_back(field);
+    }
+  }
+}
+
+void add_facing(const TissueInputs& inputs, const Columns& c, rig::TissueLevel& level) {
+  const double stomion = 0.5 * (landmark(inputs, "cheilion_left").y() + landmark(inputs, "cheilion_right").y());
+  for (size_t t = 0; t < c.mesh.triangles.size(); ++t) {
+    Vec3 centre = Vec3::Zero();
+    double distance = 0.0;
+    for (const int i : c.mesh.triangles[t]) {
+      const auto v = static_cast<size_t>(i);
+      centre += c.mesh.vertices[v] / 3.0;
+      distance = std::max(distance, c.opening_distance[static_cast<size_t>(Opening::mouth)][v]);
+    }
+    if (distance > 0.012) continue;
+    level.facing_prism.push_back(static_cast<uint32_t>(t));
+    level.facing_side.push_back(centre.y() > stomion ? 0 : 1);
+  }
+}
+
+}  // namespace fascia::tissue

@@ -1,0 +1,301 @@
+#include "sim/contact.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace fascia::sim {
+namespace {
+
+constexpr double facing_reach = 0.006;  // metres before a surface within which lips and lids see one another
+constexpr double facing_depth = 0.0025; // metres behind one: what lies deeper has come from somewhere else
+constexpr double facing_slip = 0.0015;  // metres beside it
+
+/// Weights of the point of a triangle that is closest to `p` (Ericson 2005, section 5.1.5).
+Vec3 closest_weights(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 ab = b - a, ac = c - a, ap = p - a;
+  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
+  if (d1 <= 0.0 && d2 <= 0.0) return {1, 0, 0};
+  const Vec3 bp = p - b;
+  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
+  if (d3 >= 0.0 && d4 <= d3) return {0, 1, 0};
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) {
+    const double v = d1 / (d1 - d3);
+    return {1 - v, v, 0};
+  }
+  const Vec3 cp = p - c;
+  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
+  if (d6 >= 0.0 && d5 <= d6) return {0, 0, 1};
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) {
+    const double w = d2 / (d2 - d6);
+    return {1 - w, 0, w};
+  }
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0) {
+    const double w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+    return {0, 1 - w, w};
+  }
+  const double whole = va + vb + vc;
+  if (!(whole > 0.0)) return {1, 0, 0};
+  return {va / whole, vb / whole, vc / whole};
+}
+
+Vec3 area_of(const std::array<uint32_t, 3>& t, const Vec3* x) { return (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]); }
+
+}  // namespace
+
+DistanceField::DistanceField(const Lattice& lattice, size_t index)
+    : size_(lattice.contact_field_size[index]), origin_(lattice.contact_field_origin[index].cast<double>()),
+      spacing_(lattice.contact_field_spacing[index]), step_(lattice.contact_field_step[index]) {
+  const auto count = [&](size_t f) {
+    const auto& size = lattice.contact_field_size[f];
+    return static_cast<size_t>(size[0]) * size[1] * size[2];
+  };
+  size_t first = 0;
+  for (size_t f = 0; f < index; ++f) first += count(f);
+  values_ = lattice.contact_field_values.subspan(first, count(index));
+}
+
+double DistanceField::sample(const Vec3& point, Vec3& gradient) const {
+  const Vec3 at = (point - origin_) / spacing_;
+  gradient.setZero();
+  size_t cell[3];
+  double t[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto most = static_cast<double>(size_[static_cast<size_t>(axis)] - 1);
+    if (!(at[axis] >= 0.0 && at[axis] < most)) return std::numeric_limits<double>::infinity();
+    cell[axis] = static_cast<size_t>(at[axis]);
+    t[axis] = at[axis] - static_cast<double>(cell[axis]);
+  }
+  const size_t row = size_[0], slice = row * size_[1];
+  const uint8_t* corner = values_.data() + cell[0] + row * cell[1] + slice * cell[2];
+  double v[8];
+  for (size_t k = 0; k < 8; ++k)
+    v[k] = corner[(k & 1U) + ((k >> 1U) & 1U) * row + (k >> 2U) * slice];
+  const auto mix = [](double a, double b, double s) { return a + s * (b - a); };
+  const double x00 = mix(v[0], v[1], t[0]), x10 = mix(v[2], v[3], t[0]), x01 = mix(v[4], v[5], t[0]), x11 = mix(v[6], v[7], t[0]);
+  const double y0 = mix(x00, x10, t[1]), y1 = mix(x01, x11, t[1]);
+  const double scale = step_ / spacing_;
+  gradient.z() = scale * (y1 - y0);
+  gradient.y() = scale * mix(x10 - x00, x11 - x01, t[2]);
+  gradient.x() = scale * mix(mix(v[1] - v[0], v[3] - v[2], t[1]), mix(v[5] - v[4], v[7] - v[6], t[1]), t[2]);
+  return step_ * (mix(y0, y1, t[2]) - 128.0);
+}
+
+Contacts::Contacts(const Lattice& lattice, const std::vector<Vec3>& rest, const ContactOptions& options) : options_(options) {
+  for (size_t c = 0; c < lattice.globe_contact_node.size(); ++c) {
+    const uint32_t globe = lattice.globe_contact_globe[c], node = lattice.globe_contact_node[c];
+    globe_nodes_.push_back(node);
+    globe_centres_.push_back(lattice.globe_centre[globe].cast<double>());
+    globe_radii_.push_back(std::min<double>(lattice.globe_radius[globe], (rest[node] - globe_centres_.back()).norm()));
+  }
+  for (size_t f = 0; f < lattice.contact_field_bone.size(); ++f) fields_.emplace_back(lattice, f);
+  field_bones_.assign(lattice.contact_field_bone.begin(), lattice.contact_field_bone.end());
+  for (size_t c = 0; c < lattice.contact_node.size(); ++c) {
+    Vec3 gradient;
+    const double distance = fields_[lattice.contact_field[c]].sample(rest[lattice.contact_node[c]], gradient);
+    bone_nodes_.push_back(lattice.contact_node[c]);
+    bone_fields_.push_back(lattice.contact_field[c]);
+    bone_margins_.push_back(std::min(options.thickness, distance));
+  }
+  std::array<std::map<uint32_t, std::vector<uint32_t>>, 6> fans;
+  for (size_t f = 0; f < lattice.facing_prism.size(); ++f) {
+    Side& side = sides_[lattice.facing_side[f]];
+    for (const uint32_t corner : lattice.triangles[lattice.facing_prism[f]])
+      fans[lattice.facing_side[f]][corner].push_back(static_cast<uint32_t>(side.triangles.size()));
+    side.triangles.push_back(lattice.triangles[lattice.facing_prism[f]]);
+  }
+  for (size_t s = 0; s < 6; ++s)
+    for (const auto& [node, fan] : fans[s]) {
+      if (fans[s ^ 1U].count(node) > 0) continue;  // in the corner, where both sides are one
+      facing_nodes_.push_back(node);
+      facing_sides_.push_back(static_cast<uint8_t>(s));
+      facing_fans_.push_back(fan);
+    }
+  facing_margins_.assign(facing_nodes_.size(), options.thickness);
+  for (size_t i = 0; i < facing_nodes_.size(); ++i) {
+    FacingPair pair;
+    pair_of(i, rest.data(), pair);
+    if (pair.is_found()) facing_margins_[i] = std::min(options.thickness, pair.gap(rest.data()));
+    // Where a mesh's closed lips run into each other at rest there is no telling what is before what.
+    if (facing_margins_[i] < -0.0005) facing_fans_[i].clear();
+  }
+}
+
+Contacts::Touch Contacts::globe_touch(size_t c, const Vec3* x) const {
+  const Vec3 away = x[globe_nodes_[c]] - globe_centres_[c];
+  const double distance = away.norm();
+  if (distance >= globe_radii_[c] || distance < 1e-12) return {};
+  return {globe_radii_[c] - distance, away / distance};
+}
+
+Contacts::Touch Contacts::bone_touch(size_t c, const RigidTransform& mandible, const Vec3* x) const {
+  const bool moves = field_bones_[bone_fields_[c]] == 1;
+  const Vec3& place = x[bone_nodes_[c]];
+  Touch touch;
+  Vec3 gradient;
+  const double distance = fields_[bone_fields_[c]].sample(
+      moves ? Vec3(mandible.rotation.transpose() * (place - mandible.translation)) : place, gradient);
+  if (!(distance < bone_margins_[c])) return touch;
+  touch.depth = bone_margins_[c] - distance;
+  touch.normal = moves ? Vec3(mandible.rotation * gradient) : gradient;  // the field's slope: unit but for its grid
+  return touch;
+}
+
+double Contacts::energy(const RigidTransform& mandible, const Vec3* x, Vec3* gradient) const {
+  double energy = 0.0;
+  const auto push = [&](uint32_t node, const Touch& touch, double stiffness) {
+    if (touch.depth <= 0.0) return;
+    energy += 0.5 * stiffness * touch.depth * touch.depth;
+    gradient[node] -= (stiffness * touch.depth) * touch.normal;
+  };
+  for (size_t c = 0; c < globe_nodes_.size(); ++c) push(globe_nodes_[c], globe_touch(c, x), options_.globe_stiffness);
+  for (size_t c = 0; c < bone_nodes_.size(); ++c) push(bone_nodes_[c], bone_touch(c, mandible, x), options_.bone_stiffness);
+  return energy;
+}
+
+double Contacts::facing_energy(std::span<const FacingPair> pairs, const Vec3* x, Vec3* gradient) const {
+  double energy = 0.0;
+  for (const FacingPair& pair : pairs) {
+    if (!pair.is_found()) continue;
+    const double depth = pair.margin - pair.gap(x);
+    if (depth <= 0.0) continue;
+    const Vec3 push = (options_.facing_stiffness * depth) * pair.normal;
+    energy += 0.5 * options_.facing_stiffness * depth * depth;
+    gradient[pair.node] -= push;
+    for (size_t k = 0; k < 3; ++k) gradient[pair.corners[k]] += pair.weights[static_cast<int>(k)] * push;
+  }
+  return energy;
+}
+
+double Contacts::grip_energy(std::span<const Grip> grips, const Vec3* x, Vec3* gradient) const {
+  double energy = 0.0;
+  for (const Grip& grip : grips) {
+    Vec3 slip = x[grip.node] - grip.anchor;
+    const bool facing = grip.corners[0] != FacingPair::none;
+    if (facing)
+      for (size_t k = 0; k < 3; ++k) slip -= grip.weights[static_cast<int>(k)] * x[grip.corners[k]];
+    const double along = grip.normal.dot(slip);
+    const Vec3 force = grip.stiffness * (slip - along * grip.normal) + (grip.normal_stiffness * along) * grip.normal;
+    energy += 0.5 * force.dot(slip);
+    gradient[grip.node] += force;
+    if (facing)
+      for (size_t k = 0; k < 3; ++k) gradient[grip.corners[k]] -= grip.weights[static_cast<int>(k)] * force;
+  }
+  return energy;
+}
+
+void Contacts::pair_of(size_t contact, const Vec3* x, FacingPair& pair) const {
+  pair.node = facing_nodes_[contact];
+  pair.corners.fill(FacingPair::none);
+  pair.margin = facing_margins_[contact];
+  const Side &own = sides_[facing_sides_[contact]], &other = sides_[facing_sides_[contact] ^ 1U];
+  Vec3 facing = Vec3::Zero();
+  for (const uint32_t t : facing_fans_[contact]) facing += area_of(own.triangles[t], x);
+  if (facing.squaredNorm() < 1e-30) return;
+  facing.normalize();
+  const Vec3& p = x[pair.node];
+  double best = facing_reach * facing_reach;
+  for (const auto& t : other.triangles) {
+    // A corner farther than the reach and the longest edge there is cannot be of the nearest triangle.
+    if ((x[t[0]] - p).squaredNorm() > (facing_reach + 0.012) * (facing_reach + 0.012)) continue;
+    const Vec3 weights = closest_weights(p, x[t[0]], x[t[1]], x[t[2]]);
+    const Vec3 place = weights[0] * x[t[0]] + weights[1] * x[t[1]] + weights[2] * x[t[2]];
+    const double distance = (p - place).squaredNorm();
+    if (distance >= best) continue;
+    const Vec3 area = area_of(t, x);
+    const double size = area.norm();
+    if (size < 1e-15 || area.dot(facing) > 0.2 * size) continue;  // its back, or a surface that runs along
+    const Vec3 normal = area / size, away = p - place;
+    const double along = normal.dot(away);
+    if (along < -facing_depth || (away - along * normal).squaredNorm() > facing_slip * facing_slip) continue;
+    best = distance;
+    pair.corners = t;
+    pair.weights = weights;
+    pair.normal = normal;
+  }
+}
+
+double Contacts::find_facing(const Vec3* x, std::span<FacingPair> pairs) const {
+  double change = 0.0;
+  for (size_t i = 0; i < facing_nodes_.size() && i < pairs.size(); ++i) {
+    const FacingPair before = pairs[i];
+    pair_of(i, x, pairs[i]);
+    const auto lack = [x](const FacingPair& pair) { return pair.is_found() ? std::max(0.0, pair.margin - pair.gap(x)) : 0.0; };
+    change = std::max(change, std::abs(lack(pairs[i]) - lack(before)));
+  }
+  return change;
+}
+
+size_t Contacts::find_grips(const RigidTransform& mandible, const RigidTransform& mandible_step, std::span<const FacingPair> pairs,
+                            const Vec3* before, const Vec3* x, std::span<Grip> grips) const {
+  size_t count = 0;
+  const auto add = [&](Grip grip, double force, const Vec3& slid) {
+    if (count >= grips.size()) return;
+    const Vec3 along = slid - grip.normal.dot(slid) * grip.normal;
+    // Coulomb's force at the speed of the last step, as a spring over the next; it sticks below a hundredth of a millimetre.
+    grip.stiffness = options_.friction * force / std::max(along.norm(), 1e-5);
+    grips[count++] = grip;
+  };
+  for (size_t c = 0; c < globe_nodes_.size(); ++c) {
+    const Touch touch = globe_touch(c, x);
+    const uint32_t node = globe_nodes_[c];
+    Grip grip;
+    grip.node = node;
+    grip.normal = touch.normal;
+    grip.anchor = x[node];
+    if (touch.depth > 0.0) add(grip, options_.globe_stiffness * touch.depth, x[node] - before[node]);
+  }
+  for (size_t c = 0; c < bone_nodes_.size(); ++c) {
+    const Touch touch = bone_touch(c, mandible, x);
+    if (touch.depth <= 0.0) continue;
+    const uint32_t node = bone_nodes_[c];
+    const bool moves = field_bones_[bone_fields_[c]] == 1;
+    Grip grip;
+    grip.node = node;
+    grip.normal = touch.normal.normalized();
+    grip.anchor = moves ? mandible_step * x[node] : x[node];
+    add(grip, options_.bone_stiffness * touch.depth, x[node] - before[node]);
+  }
+  for (size_t i = 0; i < pairs.size(); ++i) {
+    const FacingPair& pair = pairs[i];
+    if (!pair.is_found()) continue;
+    const double depth = pair.margin - pair.gap(x), reach = 0.003 * options_.stickiness;
+    const bool sticks = facing_sides_[i] < 2 && options_.stickiness > 0.0 && -depth < reach;
+    if (depth <= 0.0 && !sticks) continue;
+    Grip grip;
+    grip.node = pair.node;
+    grip.corners = pair.corners;
+    grip.weights = pair.weights;
+    grip.normal = pair.normal;
+    Vec3 now = x[pair.node], then = before[pair.node];
+    for (size_t k = 0; k < 3; ++k) {
+      now -= pair.weights[static_cast<int>(k)] * x[pair.corners[k]];
+      then -= pair.weights[static_cast<int>(k)] * before[pair.corners[k]];
+    }
+    grip.anchor = now;
+    if (sticks) {  // pulled back to touching, until the gap is past its reach
+      grip.anchor -= std::max(0.0, -depth) * grip.normal;
+      grip.normal_stiffness = 20.0 * options_.stickiness;
+    }
+    add(grip, options_.facing_stiffness * std::max(0.0, depth), now - then);
+  }
+  return count;
+}
+
+double Contacts::deepest(const RigidTransform& mandible, const Vec3* x) const {
+  double most = 0.0;
+  for (size_t c = 0; c < globe_nodes_.size(); ++c) most = std::max(most, globe_touch(c, x).depth);
+  for (size_t c = 0; c < bone_nodes_.size(); ++c) most = std::max(most, bone_touch(c, mandible, x).depth);
+  FacingPair pair;
+  for (size_t i = 0; i < facing_nodes_.size(); ++i) {
+    pair_of(i, x, pair);
+    if (pair.is_found()) most = std::max(most, pair.margin - pair.gap(x));
+  }
+  return most;
+}
+
+}  // namespace fascia::sim

@@ -1,0 +1,119 @@
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "sim/jaw.h"
+#include "sim/lattice.h"
+#include "sim/vector.h"
+
+namespace fascia::sim {
+
+/// What touches what, and how hard it resists. Penalties: a node that comes nearer than its margin is pushed back by
+/// stiffness times what lacks. A margin is never more than the distance at rest, so that rest stays rest.
+struct ContactOptions {
+  double globe_stiffness = 200.0;   ///< newton per metre a node
+  double bone_stiffness = 150.0;    ///< newton per metre a node
+  double facing_stiffness = 150.0;  ///< newton per metre a node
+  double thickness = 0.0004;        ///< metres kept between skin and bone, skin and skin
+  double friction = 0.3;            ///< of moist mucosa and skin, Coulomb's coefficient; in steps of time only
+  double stickiness = 0.0;          ///< 0..1: how far lips that have met hold together before they part; in steps of time only
+};
+
+/// A grid of distances to a bone that stands still in the bone's own frame.
+class DistanceField {
+ public:
+  /// Field `index` of the lattice, which must be sound.
+  DistanceField(const Lattice& lattice, size_t index);
+  /// Distance in metres at `point`, negative inside, and its gradient: trilinear. Infinite outside the grid.
+  double sample(const Vec3& point, Vec3& gradient) const;
+
+ private:
+  std::span<const uint8_t> values_;
+  std::array<uint32_t, 3> size_;
+  Vec3 origin_;
+  double spacing_, step_;
+};
+
+/// A node before a triangle of the facing lip or lid, both free to move; the normal stands still during one solve.
+struct FacingPair {
+  static constexpr uint32_t none = std::numeric_limits<uint32_t>::max();
+  uint32_t node = none;
+  std::array<uint32_t, 3> corners{none, none, none};  ///< none: it faces nothing now
+  Vec3 weights = Vec3::Zero();
+  Vec3 normal = Vec3::Zero();  ///< unit, outward of the triangle's side
+  double margin = 0.0;         ///< gap that must remain
+  bool is_found() const { return corners[0] != none; }
+  double gap(const Vec3* x) const {
+    Vec3 place = Vec3::Zero();
+    for (size_t k = 0; k < 3; ++k) place += weights[static_cast<int>(k)] * x[corners[k]];
+    return normal.dot(x[node] - place);
+  }
+};
+
+/// What holds a touching node back along the surface for one step of time: W = stiffness/2 |P (x - place - anchor)|^2, P
+/// taking out the normal. Also what sticks lips together, with a normal part.
+struct Grip {
+  uint32_t node = 0;
+  std::array<uint32_t, 3> corners{FacingPair::none, FacingPair::none, FacingPair::none};  ///< none: it grips a bone
+  Vec3 weights = Vec3::Zero(), normal = Vec3::Zero(), anchor = Vec3::Zero();
+  double stiffness = 0.0, normal_stiffness = 0.0;
+};
+
+/// All contact of a face; made once, shared by every instance.
+class Contacts {
+ public:
+  Contacts() = default;
+  Contacts(const Lattice& lattice, const std::vector<Vec3>& rest, const ContactOptions& options);
+
+  /// Energies of nodes against eyeballs and bones, joules; adds to the gradient.
+  double energy(const RigidTransform& mandible, const Vec3* x, Vec3* gradient) const;
+  /// Energy of found pairs.
+  double facing_energy(std::span<const FacingPair> pairs, const Vec3* x, Vec3* gradient) const;
+  double grip_energy(std::span<const Grip> grips, const Vec3* x, Vec3* gradient) const;
+
+  /// Finds for each facing node the nearest place of the other side as the face stands in `x`. #facing nodes; the
+  /// largest change of a gap against the pairs before, metres, is returned.
+  double find_facing(const Vec3* x, std::span<FacingPair> pairs) const;
+  /// What grips after a step from `before` to `x`, both #nodes, for the step to come; returns how many of `grips`.
+  /// Bones' own motion of the coming step is `mandible_step`.
+  size_t find_grips(const RigidTransform& mandible, const RigidTransform& mandible_step, std::span<const FacingPair> pairs,
+                    const Vec3* before, const Vec3* x, std::span<Grip> grips) const;
+
+  size_t facing_count() const { return facing_nodes_.size(); }
+  size_t grip_capacity() const { return globe_nodes_.size() + bone_nodes_.size() + facing_nodes_.size(); }
+  std::span<const uint32_t> globe_nodes() const { return globe_nodes_; }
+  std::span<const uint32_t> bone_nodes() const { return bone_nodes_; }
+  const ContactOptions& options() const { return options_; }
+
+  /// Depth of the deepest contact beyond its margin, metres: what the penalties have let through.
+  double deepest(const RigidTransform& mandible, const Vec3* x) const;
+
+ private:
+  struct Side {
+    std::vector<std::array<uint32_t, 3>> triangles;
+  };
+  struct Touch {
+    double depth = 0.0;
+    Vec3 normal = Vec3::Zero();
+  };
+  Touch globe_touch(size_t contact, const Vec3* x) const;
+  Touch bone_touch(size_t contact, const RigidTransform& mandible, const Vec3* x) const;
+  void pair_of(size_t contact, const Vec3* x, FacingPair& pair) const;
+
+  ContactOptions options_;
+  std::vector<uint32_t> globe_nodes_;
+  std::vector<Vec3> globe_centres_;      ///< of each contact
+  std::vector<double> globe_radii_;      ///< of each contact
+  std::vector<DistanceField> fields_;
+  std::vector<uint8_t> field_bones_;
+  std::vector<uint32_t> bone_nodes_, bone_fields_;
+  std::vector<double> bone_margins_;
+  std::array<Side, 6> sides_;
+  std::vector<uint32_t> facing_nodes_;
+  std::vector<uint8_t> facing_sides_;
+  std::vector<double> facing_margins_;
+  std::vector<std::vector<uint32_t>> facing_fans_;  ///< of each facing node: its side's triangles around it
+};
+
+}  // namespace fascia::sim
