@@ -12,6 +12,8 @@ double value_of(std::span<const float> activations, uint32_t channel) {
   return channel < activations.size() && std::isfinite(activations[channel]) ? activations[channel] : 0.0;
 }
 
+constexpr std::array<uint32_t, 6> kSweptCorners = {0, 1, 2, 3, 4, 5};
+
 }  // namespace
 
 void FaceModel::place(const Drive& drive, Frame& frame) const {
@@ -127,19 +129,23 @@ void FaceModel::channel_slopes(const Frame& frame, const Drive& drive, const Vec
     add(lattice_.carrier_channel[c], -lambda[node].dot(change) / (high - (value == 0.0 ? 0.0 : low)));
   }
   for (size_t p = 0; p < lattice_.pressure_prism.size(); ++p) {
-    std::array<Vec3, 6> swept;
-    std::array<uint32_t, 3> nodes{};
-    for (size_t k = 0; k < 3; ++k) {
-      nodes[k] = lattice_.columns + lattice_.triangles[lattice_.pressure_prism[p]][k];
-      swept[k] = x[nodes[k]];
-      swept[k + 3] = frame.carried[nodes[k]];
-    }
-    const auto push = prism_volume_gradient({0, 1, 2, 3, 4, 5}, swept.data());
+    const SweptPrism swept = swept_prism(frame, p, x);
+    const auto push = prism_volume_gradient(kSweptCorners, swept.corners.data());
     double slope = 0.0;
     for (size_t k = 0; k < 3; ++k)
-      if (!prescribed(nodes[k])) slope -= lambda[nodes[k]].dot(push[k]);
+      if (!prescribed(swept.nodes[k])) slope -= lambda[swept.nodes[k]].dot(push[k]);
     add(lattice_.pressure_channel[p], lattice_.pressure[p] * slope);
   }
+}
+
+FaceModel::SweptPrism FaceModel::swept_prism(const Frame& frame, size_t pressure, const Vec3* x) const {
+  SweptPrism swept;
+  for (size_t k = 0; k < 3; ++k) {
+    swept.nodes[k] = lattice_.columns + lattice_.triangles[lattice_.pressure_prism[pressure]][k];
+    swept.corners[k] = x[swept.nodes[k]];
+    swept.corners[k + 3] = frame.carried[swept.nodes[k]];
+  }
+  return swept;
 }
 
 double FaceModel::actuator_energy(const Frame& frame, const Vec3* x, Vec3* gradient) const {
@@ -153,19 +159,12 @@ double FaceModel::actuator_energy(const Frame& frame, const Vec3* x, Vec3* gradi
   }
   for (size_t p = 0; p < frame.pressures.size(); ++p) {
     if (frame.pressures[p] == 0.0) continue;
-    // Work of the pressure on the volume that the SMAS has swept from where bones alone would carry it: to first order
-    // a push along the triangle's normal, however far the patch's rim lies from its middle.
-    std::array<Vec3, 6> swept;
-    std::array<uint32_t, 3> nodes{};
-    for (size_t k = 0; k < 3; ++k) {
-      nodes[k] = lattice_.columns + lattice_.triangles[lattice_.pressure_prism[p]][k];
-      swept[k] = x[nodes[k]];
-      swept[k + 3] = frame.carried[nodes[k]];
-    }
-    constexpr std::array<uint32_t, 6> corners = {0, 1, 2, 3, 4, 5};
-    energy -= frame.pressures[p] * prism_volume(corners, swept.data());
-    const auto push = prism_volume_gradient(corners, swept.data());
-    for (size_t k = 0; k < 3; ++k) gradient[nodes[k]] -= frame.pressures[p] * push[k];
+    // Work of the pressure on the swept volume: to first order a push along the triangle's normal, however far the
+    // patch's rim lies from its middle.
+    const SweptPrism swept = swept_prism(frame, p, x);
+    energy -= frame.pressures[p] * prism_volume(kSweptCorners, swept.corners.data());
+    const auto push = prism_volume_gradient(kSweptCorners, swept.corners.data());
+    for (size_t k = 0; k < 3; ++k) gradient[swept.nodes[k]] -= frame.pressures[p] * push[k];
   }
   energy += contacts_.energy(frame.mandible, x, gradient);
   energy += contacts_.facing_energy(frame.facing, x, gradient);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/SparseCore>
+#include <array>
 #include <string>
 #include <vector>
 
@@ -109,6 +110,12 @@ class FaceModel {
   template <class Force>
   double pull_fibre(const Frame& frame, uint32_t fibre, double pull, const Vec3* x, Force&& add_force) const;
   Vec3 carrier_pull(size_t carrier, double value, const Vec3& carried) const;
+  /// What the SMAS over one triangle with pressure behind it has swept from where bones alone would carry it.
+  struct SweptPrism {
+    std::array<Vec3, 6> corners;       ///< where the SMAS is, then where it was carried to
+    std::array<uint32_t, 3> nodes{};   ///< of the SMAS
+  };
+  SweptPrism swept_prism(const Frame& frame, size_t pressure, const Vec3* x) const;
   double actuator_energy(const Frame& frame, const Vec3* x, Vec3* gradient) const;
   Vec3 fibre_point(const Frame& frame, size_t point, const Vec3* x) const;
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "builder/geodesics/ray.h"
+#include "builder/geodesics/cross.h"
 
 namespace fascia::geodesics {
 

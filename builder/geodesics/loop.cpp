@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "builder/geodesics/strip.h"
 #include "geometry/error.h"
 
 namespace fascia::geodesics {
@@ -25,16 +26,8 @@ std::vector<int> polygon_strip(const Surface& surface, const std::vector<Surface
     connect_into(surface, corners[i], corners[(i + 1) % corners.size()], options, workspace, side);
     // The strip was laid from the first of the two in the order of points: see which end it starts at.
     std::vector<int> part = workspace.strip;
-    if (!part.empty() && part[0] / 3 != corners[i].triangle) {
-      std::reverse(part.begin(), part.end());
-      for (int& h : part) h = surface.twin[h];
-    }
-    for (int h : part) {
-      if (!strip.empty() && surface.twin[strip.back()] == h)
-        strip.pop_back();
-      else
-        strip.push_back(h);
-    }
+    if (!part.empty() && part[0] / 3 != corners[i].triangle) turn_strip(surface, part);
+    for (int h : part) push_crossing(surface, strip, h);
   }
   return strip;
 }

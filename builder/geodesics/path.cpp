@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "builder/geodesics/cross.h"
 #include "builder/geodesics/funnel.h"
-#include "builder/geodesics/ray.h"
 #include "builder/geodesics/strip.h"
 #include "geometry/error.h"
 
@@ -62,14 +62,6 @@ void trim_end(const Surface& surface, std::vector<int>& strip, SurfacePoint& to)
       strip.pop_back();
     }
   }
-}
-
-/// Appends a crossing; one that undoes the crossing before it cancels with it.
-void push_crossing(const Surface& surface, std::vector<int>& strip, int half_edge) {
-  if (!strip.empty() && surface.twin[strip.back()] == half_edge)
-    strip.pop_back();
-  else
-    strip.push_back(half_edge);
 }
 
 /// A vertex on the taut path: the crossings it spans, and the angles on both sides of the path.
@@ -210,12 +202,6 @@ void measure_pins(const Surface& surface, Workspace& workspace, PathCounters& co
       counters.unevenness = std::max(counters.unevenness, std::abs(bend.inside - bend.outside) /
                                                               std::max(bend.inside + bend.outside, 1e-12));
   }
-}
-
-/// The strip as it is crossed from its other end.
-void turn_strip(const Surface& surface, std::vector<int>& strip) {
-  std::reverse(strip.begin(), strip.end());
-  for (int& h : strip) h = surface.twin[h];
 }
 
 /// Total order of points, so that a path and its reverse are computed alike.

@@ -43,12 +43,6 @@ Vec3 barycentric_rates(const TriangleMesh& mesh, int triangle, const Vec3& direc
   return Vec3(-b - c, b, c);
 }
 
-Vec3 triangle_normal(const Surface& surface, const SurfacePoint& point) {
-  const Triangle& corners = surface.mesh.triangles[point.triangle];
-  const Vec3& origin = surface.mesh.vertices[corners[0]];
-  return (surface.mesh.vertices[corners[1]] - origin).cross(surface.mesh.vertices[corners[2]] - origin).normalized();
-}
-
 struct Exit {
   int half_edge = -1;
   SurfacePoint point;
@@ -89,6 +83,18 @@ Exit slide_along(const Surface& surface, int entered, const Vec3& direction) {
 
 }  // namespace
 
+void push_crossing(const Surface& surface, std::vector<int>& strip, int half_edge) {
+  if (!strip.empty() && surface.twin[strip.back()] == half_edge)
+    strip.pop_back();
+  else
+    strip.push_back(half_edge);
+}
+
+void turn_strip(const Surface& surface, std::vector<int>& strip) {
+  std::reverse(strip.begin(), strip.end());
+  for (int& h : strip) h = surface.twin[h];
+}
+
 bool trace_strip(const Surface& surface, const SurfacePoint& from, const SurfacePoint& to, Workspace& workspace) {
   next_epoch(surface, workspace);
   workspace.strip.clear();
@@ -115,7 +121,7 @@ bool trace_strip(const Surface& surface, const SurfacePoint& from, const Surface
 bool cut_strip(const Surface& surface, const SurfacePoint& from, const SurfacePoint& to, Workspace& workspace) {
   workspace.strip.clear();
   const Vec3 start = position(surface.mesh, from), goal = position(surface.mesh, to);
-  const Vec3 normal = (goal - start).cross(triangle_normal(surface, from) + triangle_normal(surface, to));
+  const Vec3 normal = (goal - start).cross(triangle_normal(surface.mesh, from.triangle) + triangle_normal(surface.mesh, to.triangle));
   if (!(normal.squaredNorm() > 0.0)) return false;
   const auto above = [&](int vertex) { return normal.dot(surface.mesh.vertices[vertex] - start) >= 0.0; };
   // With the goal ahead and the surface's normal up, what lies above the plane is on the right.
@@ -244,7 +250,7 @@ int turn(const Surface& surface, int vertex, int triangle, const Arrived& arrive
       left.push_back(Surface::previous(ahead));
       ahead = surface.twin[left.back()];
       if (ahead >= 0 && arrived(ahead / 3)) {
-        workspace.strip.insert(workspace.strip.end(), left.begin(), left.end());
+        for (const int h : left) push_crossing(surface, workspace.strip, h);
         return ahead / 3;
       }
       if (ahead >= 0 && ahead / 3 == triangle) return -1;
@@ -254,24 +260,12 @@ int turn(const Surface& surface, int vertex, int triangle, const Arrived& arrive
       const int twin = surface.twin[behind];
       behind = twin >= 0 ? Surface::next(twin) : -1;
       if (behind >= 0 && arrived(behind / 3)) {
-        workspace.strip.insert(workspace.strip.end(), right.begin(), right.end());
+        for (const int h : right) push_crossing(surface, workspace.strip, h);
         return behind / 3;
       }
     }
   }
   return -1;
-}
-
-/// Drops crossings that undo the one before.
-void cancel_returns(const Surface& surface, std::vector<int>& strip) {
-  size_t kept = 0;
-  for (const int h : strip) {
-    if (kept > 0 && surface.twin[strip[kept - 1]] == h)
-      --kept;
-    else
-      strip[kept++] = h;
-  }
-  strip.resize(kept);
 }
 
 }  // namespace
@@ -292,7 +286,6 @@ int search_strip(const Surface& surface, const SurfacePoint& from, const Surface
         surface, way[i], triangle,
         [&](int t) { return last ? t == to.triangle : corner_at(surface, t, way[i + 1]) >= 0; }, workspace);
   }
-  cancel_returns(surface, workspace.strip);
   return search.visited;
 }
 

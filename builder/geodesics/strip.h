@@ -4,6 +4,12 @@
 
 namespace fascia::geodesics {
 
+/// Appends a crossing; one that undoes the crossing before it cancels with it.
+void push_crossing(const Surface& surface, std::vector<int>& strip, int half_edge);
+
+/// Turns a strip around: the same triangles, crossed from its other end.
+void turn_strip(const Surface& surface, std::vector<int>& strip);
+
 /// Fills `workspace.strip` with the edges crossed on the way from `from` to `to` by steps towards `to`
 /// projected into each triangle, sliding along ridges, valleys and rims. Returns false when the walk
 /// stalls: in the corner of a rim, or when it returns to a triangle it has left.

@@ -47,6 +47,7 @@ class Improver {
   double wanted(int a, int b) const { return 0.5 * (sizes_[a] + sizes_[b]); }
   bool project(Vec3* point, Vec3* normal, double reach);
   std::vector<bool> boundary_vertices(const Connectivity& links) const;
+  std::vector<std::array<int, 2>> boundary_neighbours(const Connectivity& links) const;
   bool upright(int a, int b, int c, const Vec3& pa, const Vec3& pb, const Vec3& pc) const;
   bool can_collapse(const Connectivity& links, int from, int to) const;
   bool fits(const Connectivity& links, int v, const Vec3& point) const;
@@ -89,6 +90,18 @@ std::vector<bool> Improver::boundary_vertices(const Connectivity& links) const {
       if (links.neighbours[t][e] < 0)
         boundary[mesh_.triangles[t][e]] = boundary[mesh_.triangles[t][(e + 1) % 3]] = true;
   return boundary;
+}
+
+// The vertices before and after each boundary vertex along the boundary, -1 for those inside.
+std::vector<std::array<int, 2>> Improver::boundary_neighbours(const Connectivity& links) const {
+  std::vector<std::array<int, 2>> along(mesh_.vertices.size(), {-1, -1});
+  for (int t = 0; t < mesh_.triangle_count(); ++t)
+    for (int e = 0; e < 3; ++e)
+      if (links.neighbours[t][e] < 0) {
+        along[mesh_.triangles[t][e]][1] = mesh_.triangles[t][(e + 1) % 3];
+        along[mesh_.triangles[t][(e + 1) % 3]][0] = mesh_.triangles[t][e];
+      }
+  return along;
 }
 
 // Whether triangle (a, b, c) with corners moved to (pa, pb, pc) has area and faces the way of its normals.
@@ -285,13 +298,7 @@ void Improver::follow_curvature(const Connectivity& links, int v, const Vec3& st
 void Improver::smooth(bool exact) {
   const Connectivity links = connectivity(mesh_);
   const std::vector<bool> boundary = boundary_vertices(links);
-  std::vector<std::array<int, 2>> along(mesh_.vertices.size(), {-1, -1});
-  for (int t = 0; t < mesh_.triangle_count(); ++t)
-    for (int e = 0; e < 3; ++e)
-      if (links.neighbours[t][e] < 0) {
-        along[mesh_.triangles[t][e]][1] = mesh_.triangles[t][(e + 1) % 3];
-        along[mesh_.triangles[t][(e + 1) % 3]][0] = mesh_.triangles[t][e];
-      }
+  const auto along = boundary_neighbours(links);
   for (int v = 0; v < mesh_.vertex_count(); ++v) {
     Vec3 target = Vec3::Zero();
     if (boundary[v]) {
@@ -351,13 +358,7 @@ void Improver::relax_worst(double below) {
     }
     return worst;
   };
-  std::vector<std::array<int, 2>> along(mesh_.vertices.size(), {-1, -1});
-  for (int t = 0; t < mesh_.triangle_count(); ++t)
-    for (int e = 0; e < 3; ++e)
-      if (links.neighbours[t][e] < 0) {
-        along[mesh_.triangles[t][e]][1] = mesh_.triangles[t][(e + 1) % 3];
-        along[mesh_.triangles[t][(e + 1) % 3]][0] = mesh_.triangles[t][e];
-      }
+  const auto along = boundary_neighbours(links);
   for (int round = 0; round < 6; ++round) {
     std::vector<bool> poor(mesh_.vertices.size(), false);
     bool any = false;

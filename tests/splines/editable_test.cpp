@@ -2,21 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <random>
-
 #include "geometry/error.h"
+#include "tests/splines/scatter.h"
 
 namespace fascia::splines {
 namespace {
-
-std::vector<Vec3> scattered(int count, unsigned seed) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> uniform(-1, 1);
-  std::vector<Vec3> out;
-  for (int i = 0; i < count; ++i)
-    out.emplace_back(uniform(random), uniform(random), uniform(random));
-  return out;
-}
 
 void expect_same(const EditableFactorisation& edited, const SplineOptions& options, const char* what) {
   const Eigen::MatrixXd data = Eigen::MatrixXd::Random(edited.sites().rows(), 3);

@@ -4,21 +4,12 @@
 
 #include <cmath>
 #include <numbers>
-#include <random>
 
 #include "geometry/error.h"
+#include "tests/splines/scatter.h"
 
 namespace fascia::splines {
 namespace {
-
-std::vector<Vec3> scattered(int count, unsigned seed) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> uniform(-1, 1);
-  std::vector<Vec3> out;
-  for (int i = 0; i < count; ++i)
-    out.emplace_back(uniform(random), uniform(random), uniform(random));
-  return out;
-}
 
 Eigen::MatrixXd as_matrix(const std::vector<Vec3>& points) {
   Eigen::MatrixXd out(static_cast<Eigen::Index>(points.size()), 3);
