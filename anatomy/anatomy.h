@@ -28,7 +28,9 @@ struct Landmark {
   bool required = false;      ///< of the few a person has to place on a head of theirs
   std::optional<Vec3> skin;   ///< on the generic head's skin
   Vec3 normal = Vec3::Zero();  ///< unit outward skin normal; zero without a skin point
+  Vec3 tangent = Vec3::Zero();  ///< unit, horizontal within the skin, away from the midplane (left on it); zero likewise
   std::optional<Vec3> bone;   ///< on the generic skull
+  Vec3 bone_normal = Vec3::Zero();  ///< unit outward normal of the bone; zero without a bone point
   bool bone_from_depth = false;  ///< bone = skin - depth * normal; else measured on a skull
   std::string depth;          ///< its key in the tissue depth tables; empty when none knows it
 };
@@ -153,12 +155,18 @@ struct RetainingLigament {
   std::string source;
 };
 
+/// How deep the SMAS lies in the neighbourhood of one landmark (or of both of a pair).
+struct SmasDepth {
+  std::string landmark;     ///< without side for a pair: "malare" stands for malare_left and malare_right
+  double fraction = 0.0;    ///< of the way from the skin to the bone
+  double free_depth = 0.0;  ///< metres under the skin of an adult where no bone limits it, or bone is far
+};
+
 struct Tissue {
   std::vector<TissueLayer> layers;          ///< from the skin inward
-  double smas_depth_fraction = 0.0;         ///< where no zone says otherwise: 0 skin .. 1 bone
   double skin_attachment = 0.0;             ///< where no zone says otherwise
   double glide = 0.0;                       ///< where no zone says otherwise, metres
-  std::vector<Zone> smas_depth;             ///< value: depth fraction of the SMAS
+  std::vector<SmasDepth> smas_depths;       ///< interpolated between the landmarks
   std::vector<Zone> skin_attachments;       ///< value: SMAS to skin, 0 gliding .. 1 firm
   std::vector<Zone> gliding_planes;         ///< value: free travel of the SMAS over bone, metres
   std::vector<Zone> fat_compartments;       ///< value: thickness, metres

@@ -67,13 +67,32 @@ void check_expressions(const GenericAnatomy& anatomy) {
     }
 }
 
-void check_tissue(const Tissue& tissue) {
+void check_tissue(const GenericAnatomy& anatomy) {
+  const Tissue& tissue = anatomy.tissue;
   if (tissue.layers.empty()) throw Error("tissue.json: has no layers");
   unique_names(tissue.layers, "tissue.json");
   unique_names(tissue.ligaments, "tissue.json");
-  for (const std::vector<Zone>* zones : {&tissue.smas_depth, &tissue.skin_attachments, &tissue.gliding_planes,
+  for (const std::vector<Zone>* zones : {&tissue.skin_attachments, &tissue.gliding_planes,
                                          &tissue.fat_compartments, &tissue.aesthetic_units, &tissue.tarsal_plates})
     unique_names(*zones, "tissue.json");
+  if (tissue.smas_depths.empty()) throw Error("tissue.json: smas_depths has no sites");
+  std::set<std::string> sites;
+  for (const SmasDepth& site : tissue.smas_depths) {
+    const Landmark* landmark = anatomy.landmark(site.landmark);
+    if (!landmark) landmark = anatomy.landmark(site.landmark + "_left");
+    if (!landmark || !landmark->skin)
+      throw Error("tissue.json, smas_depths: no landmark on the skin is called " + site.landmark);
+    if (!sites.insert(site.landmark).second)
+      throw Error("tissue.json, smas_depths: " + site.landmark + " stands twice");
+  }
+}
+
+/// The generic head and skull are part of the anatomy: the builder cannot do without them.
+void check_objects(const GenericAnatomy& anatomy) {
+  for (const char* name : {"skin", "eye_left", "eye_right"})
+    if (!anatomy.head_object(name)) throw Error(std::string("head.obj: lacks the object ") + name);
+  for (const char* name : {"cranium", "mandible", "teeth_upper", "teeth_lower"})
+    if (!anatomy.skull_object(name)) throw Error(std::string("skull.obj: lacks the object ") + name);
 }
 
 }  // namespace
@@ -82,7 +101,8 @@ void check_references(const GenericAnatomy& anatomy) {
   check_landmarks(anatomy);
   check_channels(anatomy);
   check_expressions(anatomy);
-  check_tissue(anatomy.tissue);
+  check_tissue(anatomy);
+  check_objects(anatomy);
   unique_names(anatomy.head, "head.obj");
   unique_names(anatomy.skull, "skull.obj");
 }

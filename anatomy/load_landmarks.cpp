@@ -22,9 +22,11 @@ Landmark landmark_of(const Fields& fields) {
   if (fields.has("skin")) {
     landmark.skin = fields.point_mm("skin");
     landmark.normal = fields.direction("normal");
+    landmark.tangent = fields.direction("tangent");
   }
   if (fields.has("bone")) {
     landmark.bone = fields.point_mm("bone");
+    landmark.bone_normal = fields.direction("bone_normal");
     landmark.bone_from_depth = fields.text("bone_source") == "depth";
   }
   landmark.depth = fields.text_or("depth", "");

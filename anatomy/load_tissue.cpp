@@ -70,10 +70,14 @@ void load_tissue(const DataFiles& files, GenericAnatomy& anatomy) {
   Tissue& tissue = anatomy.tissue;
   for (const Fields& entry : root.list("layers")) tissue.layers.push_back(layer_of(entry));
   const Fields elsewhere = root.object("elsewhere");
-  tissue.smas_depth_fraction = elsewhere.number("smas_depth_fraction");
   tissue.skin_attachment = elsewhere.number("skin_attachment");
   tissue.glide = elsewhere.number("glide_mm") * 1e-3;
-  tissue.smas_depth = zones_of(root, "smas_depth", "depth_fraction", 1.0);
+  for (const Fields& site : root.object("smas_depths").list("sites")) {
+    tissue.smas_depths.push_back({site.text("landmark"), site.number("fraction"), site.number("free_depth_mm") * 1e-3});
+    const SmasDepth& depth = tissue.smas_depths.back();
+    if (!(depth.fraction > 0.0 && depth.fraction < 1.0 && depth.free_depth > 0.0))
+      site.fail("\"fraction\" lies between 0 and 1, \"free_depth_mm\" is positive");
+  }
   tissue.skin_attachments = zones_of(root, "skin_attachments", "strength", 1.0);
   tissue.gliding_planes = zones_of(root, "gliding_planes", "travel_mm", 1e-3);
   tissue.fat_compartments = zones_of(root, "fat_compartments", "thickness_mm", 1e-3);

@@ -29,17 +29,18 @@ Coverage coverage(const Generic& generic, const Bones& bones, const splines::War
   if (!generic.skin.empty())
     for (size_t v = 0; v < carried.size(); ++v)
       on_skin[v] = arrives_on_skin(skin, carried[v]);
-  int all = 0, lost = 0;
+  double all = 0, lost = 0;  // m^2
   for (size_t k = 0; k < 4; ++k)
-    for (const Triangle& t : meshes[k]->triangles) {
+    for (int at = 0; at < meshes[k]->triangle_count(); ++at) {
       int corners = 0;
-      for (int corner : t)
+      for (int corner : meshes[k]->triangles[static_cast<size_t>(at)])
         corners += on_skin[static_cast<size_t>(bones.first[k] + corner)];
       out.covered[k].push_back(corners > 0);
-      ++all;
-      lost += corners == 0;
+      const double area = triangle_area(*meshes[k], at);
+      all += area;
+      if (corners == 0) lost += area;
     }
-  out.uncovered_share = all > 0 ? static_cast<double>(lost) / all : 0;
+  out.uncovered_share = all > 0 ? lost / all : 0;
   if (out.uncovered_share < small_share) {
     for (std::vector<bool>& part : out.covered)
       part.assign(part.size(), true);

@@ -11,7 +11,7 @@ namespace fascia::skull {
 /// Which triangles of cranium, mandible and teeth lie under skin that the head has.
 struct Coverage {
   std::array<std::vector<bool>, 4> covered;  ///< cranium, mandible, upper teeth, lower teeth
-  double uncovered_share = 0;                ///< of all triangles
+  double uncovered_share = 0;                ///< of the area of all
 };
 
 /// A bone point is covered when the generic skin over it, carried by `to_head`, does not arrive beyond the edge of

@@ -257,7 +257,7 @@ Fitter::Fitter(Generic generic, Exterior skin, const std::map<std::string, Targe
   s.result.similarity = start_pose(s.pairs);
   s.register_teeth();
   s.bones = gather(s.generic);
-  s.check.emplace(s.skin, clearances(s.bones, options), outward_directions(s.bones, s.result.similarity));
+  s.check.emplace(s.skin, clearances(s.bones, s.patches, options), outward_directions(s.bones, s.result.similarity));
   s.vertex_map = VertexMap(s.bones, s.patches);
   s.curves = curve_points(s.generic, options.curve_spacing);
   s.solve(std::max(0, options.normal_passes) + 1);
@@ -299,7 +299,7 @@ const FitResult& Fitter::set_tissue_scale(double scale) {
   s.options.tissue_scale = scale;
   for (LandmarkPair& pair : s.pairs)
     pair.depth = scaled_depth(*pair.generic, s.options);
-  s.check->set_clearance(clearances(s.bones, s.options));
+  s.check->set_clearance(clearances(s.bones, s.patches, s.options));
   return s.update();
 }
 

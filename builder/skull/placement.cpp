@@ -57,9 +57,13 @@ std::vector<Vec3> VertexMap::operator()(const Bones& bones, const BoneMap& map, 
   return out;
 }
 
-std::vector<double> clearances(const Bones& bones, const FitOptions& options) {
+std::vector<double> clearances(const Bones& bones, const std::vector<BoneMap::Patch>& patches,
+                               const FitOptions& options) {
   std::vector<double> out = clearances(std::span(bones.over), options);
   const double floor = options.clearance_floor * std::min(1.0, options.tissue_scale);
+  for (size_t v = 0; v < out.size(); ++v)
+    for (const BoneMap::Patch& patch : patches)
+      if (patch.anchors.size() == 1) out[v] -= patch.strength(bones.generic[v]) * (out[v] - floor);
   std::fill(out.begin() + bones.first[2], out.end(), floor);
   return out;
 }

@@ -39,8 +39,10 @@ class VertexMap {
   std::vector<Pull> pulls_;  // in order of vertices
 };
 
-/// Clearance of each vertex, m: `clearances` of bone, the floor alone of teeth.
-std::vector<double> clearances(const Bones& bones, const FitOptions& options);
+/// Clearance of each vertex, m: `clearances` of bone, the floor alone of teeth and, as far as those of `patches` that
+/// are joints hold them, of joints: skin over them dips into an ear whose depth differs from head to head.
+std::vector<double> clearances(const Bones& bones, const std::vector<BoneMap::Patch>& patches,
+                               const FitOptions& options);
 
 /// Directions to the generic skin, turned by the rotation of `pose`.
 std::vector<Vec3> outward_directions(const Bones& bones, const Mat4& pose);

@@ -67,7 +67,7 @@ TEST(AnatomySchemas, MistakesAreCaught) {
   EXPECT_NE(complaints(schema_of("landmarks.json"), landmarks), "");
 
   Json tissue = Json::parse(embedded_file("tissue.json"));
-  tissue["smas_depth"][0]["depth_fraction"] = 1.5;
+  tissue["smas_depths"]["sites"][0]["fraction"] = 1.5;
   EXPECT_NE(complaints(schema_of("tissue.json"), tissue), "");
 }
 

@@ -43,6 +43,15 @@ std::vector<OrientedPoint> read_sections(const std::string& path) {
   return points;
 }
 
+std::vector<NamedCurve> read_curves(const std::string& path) {
+  std::vector<NamedCurve> curves;
+  for (const Row& row : read_rows(path, 8)) {
+    if (curves.empty() || curves.back().name != row[0]) curves.push_back({row[0], row[1], {}});
+    curves.back().points.push_back({vector_at(row, 2), vector_at(row, 5).normalized()});
+  }
+  return curves;
+}
+
 std::vector<Tooth> read_teeth(const std::string& path, const std::string& jaw) {
   std::vector<Tooth> teeth;
   for (const Row& row : read_rows(path, 14)) {
@@ -87,8 +96,16 @@ Figures read_figures(const std::string& folder) {
   figures.mandible = read_sections(folder + "/skull_mandible_sections.csv");
   figures.teeth_upper = read_teeth(folder + "/skull_teeth.csv", "upper");
   figures.teeth_lower = read_teeth(folder + "/skull_teeth.csv", "lower");
+  figures.curves = read_curves(folder + "/skull_curves.csv");
   figures.to_generic = read_frame(folder + "/skull_frame.csv");
   return figures;
+}
+
+const NamedCurve& curve(const std::vector<NamedCurve>& curves, const std::string& name) {
+  for (const NamedCurve& found : curves) {
+    if (found.name == name) return found;
+  }
+  throw Error("skull_curves.csv: no curve named " + name + ": measure the curves again");
 }
 
 std::vector<OrientedPoint> carry(const splines::Warp& warp, const std::vector<OrientedPoint>& points) {

@@ -30,17 +30,28 @@ struct Tooth {
   std::vector<ToothSection> sections;  ///< from the tip to the neck
 };
 
+/// A named curve of the skull's surface, in order.
+struct NamedCurve {
+  std::string name;
+  std::string bone;  ///< cranium or mandible
+  std::vector<OrientedPoint> points;
+};
+
 /// All that the skull is shaped from: left half, in the frame of the measured skull.
 struct Figures {
   std::vector<OrientedPoint> cranium;
   std::vector<OrientedPoint> mandible;
   std::vector<Tooth> teeth_upper;
   std::vector<Tooth> teeth_lower;
+  std::vector<NamedCurve> curves;  ///< rims of either bone, and edges to cut by
   splines::Warp to_generic;  ///< from that frame to the generic head's
 };
 
 /// Reads skull_*.csv of `folder`. Throws Error naming the file and line that cannot be read.
 Figures read_figures(const std::string& folder);
+
+/// The curve of this name. Throws Error when it was not measured.
+const NamedCurve& curve(const std::vector<NamedCurve>& curves, const std::string& name);
 
 /// `points` in the generic frame: positions by the warp, normals by its inverse transposed Jacobian.
 std::vector<OrientedPoint> carry(const splines::Warp& warp, const std::vector<OrientedPoint>& points);

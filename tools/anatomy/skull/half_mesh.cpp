@@ -19,22 +19,6 @@ using Edge = std::pair<int, int>;
 
 Edge edge(int a, int b) { return a < b ? Edge(a, b) : Edge(b, a); }
 
-/// Newton steps to the surface; with `in_midplane`, within x = 0.
-Vec3 on_surface(const smas::ImplicitFunction& field, Vec3 point, bool in_midplane) {
-  for (int step = 0; step < 12; ++step) {
-    if (in_midplane) point.x() = 0;
-    Vec3 gradient;
-    const double value = field(point, &gradient);
-    if (in_midplane) gradient.x() = 0;
-    if (!std::isfinite(value) || !gradient.allFinite() || gradient.squaredNorm() < 1e-4) break;
-    // The field is about a distance; a long step would leave the sheet.
-    point -= std::clamp(value / gradient.norm(), -1.0, 1.0) * gradient.normalized();
-    if (std::abs(value) < 1e-9) break;
-  }
-  if (in_midplane) point.x() = 0;
-  return point;
-}
-
 /// A mesh under repair, with the size asked for at each vertex.
 struct Work {
   TriangleMesh mesh;
@@ -147,23 +131,48 @@ int split_bridges(const smas::ImplicitFunction& field, Work& work) {
   return count;
 }
 
+/// Normals of the field at the vertices; where it says nothing, those of the mesh.
 std::vector<Vec3> field_normals(const smas::ImplicitFunction& field, const TriangleMesh& mesh) {
-  std::vector<Vec3> normals;
-  for (const Vec3& point : mesh.vertices) {
+  std::vector<Vec3> normals = vertex_normals(mesh);
+  for (std::size_t v = 0; v < normals.size(); ++v) {
     Vec3 gradient = Vec3::Zero();
-    field(point, &gradient);
-    normals.push_back(gradient.normalized());
+    const double value = field(mesh.vertices[v], &gradient);
+    const double length = gradient.norm();
+    if (std::isfinite(value) && std::isfinite(length) && length > 1e-6) normals[v] = gradient / length;
   }
   return normals;
 }
 
+/// One Newton step of every vertex, which is next to the surface already; returns the normals met there.
+std::vector<Vec3> step_to_surface(const smas::ImplicitFunction& field, TriangleMesh& mesh) {
+  std::vector<Vec3> normals = vertex_normals(mesh);
+  for (std::size_t v = 0; v < normals.size(); ++v) {
+    Vec3 gradient = Vec3::Zero();
+    Vec3& point = mesh.vertices[v];
+    const double value = field(point, &gradient);
+    if (point.x() == 0) gradient.x() = 0;
+    const double length = gradient.norm();
+    if (!std::isfinite(value) || !std::isfinite(length) || length < 1e-2) continue;
+    point -= std::clamp(value / length, -1.0, 1.0) * gradient / length;
+    normals[v] = gradient / length;
+  }
+  return normals;
+}
+
+/// Distance to the nearest rim's nearest point.
+double rim_distance(const std::vector<Rim>& rims, const Vec3& point) {
+  double squared = 1e12;
+  for (const Rim& rim : rims) {
+    for (const Vec3& at : rim) squared = std::min(squared, (at - point).squaredNorm());
+  }
+  return std::sqrt(squared);
+}
+
 /// Edge length at each vertex from how fast the normal turns around it, smoothed over the neighbours so
 /// that sizes change gradually.
-std::vector<double> sizes_by_curvature(const smas::ImplicitFunction& field, const TriangleMesh& mesh,
+std::vector<double> sizes_by_curvature(const std::vector<Vec3>& normals, const TriangleMesh& mesh,
                                        const SymmetricMeshOptions& options) {
-  const std::vector<Vec3> normals = field_normals(field, mesh);
   std::vector<double> bend(mesh.vertices.size(), 0.0);
-  std::vector<double> weight(mesh.vertices.size(), 0.0);
   const auto each_edge = [&](const auto& visit) {
     for (const Triangle& t : mesh.triangles) {
       for (std::size_t e = 0; e < 3; ++e) visit(static_cast<std::size_t>(t[e]), static_cast<std::size_t>(t[(e + 1) % 3]));
@@ -172,15 +181,27 @@ std::vector<double> sizes_by_curvature(const smas::ImplicitFunction& field, cons
   each_edge([&](std::size_t a, std::size_t b) {
     const double length = std::max((mesh.vertices[a] - mesh.vertices[b]).norm(), 0.3 * options.cell);
     const double turn = (normals[a] - normals[b]).norm();
-    for (const std::size_t v : {a, b}) {
-      bend[v] = std::max(bend[v], turn / length);
-      weight[v] += 1;
-    }
+    for (const std::size_t v : {a, b}) bend[v] = std::max(bend[v], turn / length);
   });
   std::vector<double> sizes(mesh.vertices.size());
+  std::vector<double> coarse(sizes.size(), 1.0);
+  std::vector<double> by_rims(sizes.size());
+  for (std::size_t v = 0; v < sizes.size(); ++v) {
+    if (options.coarseness) coarse[v] = options.coarseness(mesh.vertices[v]);
+    by_rims[v] = options.rim_edge + options.growth * rim_distance(options.rims, mesh.vertices[v]);
+  }
   const auto with_turn = [&](double turn) {
     for (std::size_t v = 0; v < sizes.size(); ++v) {
-      sizes[v] = std::clamp(turn / std::max(bend[v], 1e-9), options.smallest_edge, options.largest_edge);
+      const double size = coarse[v] * turn / std::max(bend[v], 1e-9);
+      sizes[v] = std::min(std::clamp(size, coarse[v] * options.smallest_edge, options.largest_edge), by_rims[v]);
+    }
+    // Sizes grow gradually, so that no triangle has a long side beside a short one.
+    for (int sweep = 0; sweep < 12; ++sweep) {
+      each_edge([&](std::size_t a, std::size_t b) {
+        const double most = options.growth * (mesh.vertices[a] - mesh.vertices[b]).norm();
+        sizes[a] = std::min(sizes[a], sizes[b] + most);
+        sizes[b] = std::min(sizes[b], sizes[a] + most);
+      });
     }
     double count = 0;
     for (int t = 0; t < mesh.triangle_count(); ++t) {
@@ -190,18 +211,10 @@ std::vector<double> sizes_by_curvature(const smas::ImplicitFunction& field, cons
     return 2 * count;
   };
   double low = 0.05;
-  double high = 3.0;
-  for (int step = 0; step < 30; ++step) {
+  double high = 6.0;
+  for (int step = 0; step < 14; ++step) {
     const double middle = 0.5 * (low + high);
     (with_turn(middle) > options.triangles ? low : high) = middle;
-  }
-  for (int pass = 0; pass < 10; ++pass) {
-    std::vector<double> sum(sizes.size(), 0.0);
-    each_edge([&](std::size_t a, std::size_t b) {
-      sum[a] += sizes[b];
-      sum[b] += sizes[a];
-    });
-    for (std::size_t v = 0; v < sizes.size(); ++v) sizes[v] = 0.5 * sizes[v] + 0.5 * sum[v] / std::max(weight[v], 1.0);
   }
   return sizes;
 }
@@ -221,6 +234,21 @@ void improve(const smas::ImplicitFunction& field, int passes, Work& work) {
 }
 
 }  // namespace
+
+Vec3 on_surface(const smas::ImplicitFunction& field, Vec3 point, bool in_midplane) {
+  for (int step = 0; step < 12; ++step) {
+    if (in_midplane) point.x() = 0;
+    Vec3 gradient;
+    const double value = field(point, &gradient);
+    if (in_midplane) gradient.x() = 0;
+    if (!std::isfinite(value) || !gradient.allFinite() || gradient.squaredNorm() < 1e-4) break;
+    // The field is about a distance; a long step would leave the sheet.
+    point -= std::clamp(value / gradient.norm(), -1.0, 1.0) * gradient.normalized();
+    if (std::abs(value) < 1e-9) break;
+  }
+  if (in_midplane) point.x() = 0;
+  return point;
+}
 
 TriangleMesh mirrored(const TriangleMesh& half) {
   TriangleMesh whole = half;
@@ -249,12 +277,20 @@ TriangleMesh symmetric_mesh(const smas::ImplicitFunction& field, const std::vect
   snap_to_midplane(field, work);
   split_at_midplane(field, work);
   keep_left(work);
-  for (Vec3& point : work.mesh.vertices) point = on_surface(field, point, point.x() == 0);
-  work.sizes = sizes_by_curvature(field, work.mesh, options);
-  thin_out(0.9, field_normals(field, work.mesh), &work.mesh, &work.sizes);
+  const std::vector<Vec3> normals = step_to_surface(field, work.mesh);
+  work.sizes = sizes_by_curvature(normals, work.mesh, options);
+  thin_out(0.9, normals, &work.mesh, &work.sizes);
   improve(field, options.passes, work);
+  // Collapsing alone gets stuck among the slivers it makes: with those gone it goes on.
+  for (int round = 0; round < 2; ++round) {
+    thin_out(0.8, field_normals(field, work.mesh), &work.mesh, &work.sizes);
+    improve(field, options.passes, work);
+  }
+  // A triangle that came to lie in the midplane would coincide with its mirror image.
+  keep_left(work);
   for (int pass = 0; pass < 5 && split_bridges(field, work) > 0; ++pass) {
   }
+  follow_creases(field, options.rims, work.sizes, options.creases, &work.mesh);
   for (const Vec3& point : work.mesh.vertices) {
     if (!point.allFinite()) throw Error("a vertex left the surface: the figures are too sparse somewhere");
   }

@@ -67,6 +67,37 @@ Grid sample(const smas::ImplicitFunction& field, const std::vector<Vec3>& points
   return grid;
 }
 
+/// Where the surface runs out of the known nodes between sparse points, the nodes of the cubes that it leaves by become
+/// known too, a few cells deep: without them it would have pinholes.
+void follow_surface(const smas::ImplicitFunction& field, Grid& grid) {
+  constexpr int deepest = 4;  // cells
+  for (int round = 0; round < deepest; ++round) {
+    std::vector<std::size_t> missing;
+    for (int i = 0; i + 1 < grid.count[0]; ++i) {
+      for (int j = 0; j + 1 < grid.count[1]; ++j) {
+        for (int k = 0; k + 1 < grid.count[2]; ++k) {
+          bool inside = false;
+          bool outside = false;
+          std::vector<std::size_t> unknown;
+          for (int corner = 0; corner < 8; ++corner) {
+            const std::size_t at = grid.index(i + (corner & 1), j + (corner >> 1 & 1), k + (corner >> 2));
+            const double value = grid.values[at];
+            if (!std::isfinite(value)) unknown.push_back(at);
+            inside = inside || value < 0;
+            outside = outside || value > 0;
+          }
+          if (inside && outside) missing.insert(missing.end(), unknown.begin(), unknown.end());
+        }
+      }
+    }
+    if (missing.empty()) return;
+    for (const std::size_t at : missing) {
+      grid.values[at] = field(grid.node(at), nullptr);
+      if (std::abs(grid.values[at]) < 1e-6) grid.values[at] = 1e-6;
+    }
+  }
+}
+
 struct Marcher {
   const Grid& grid;
   TriangleMesh mesh;
@@ -134,7 +165,8 @@ struct Marcher {
 
 TriangleMesh march_tetrahedra(const smas::ImplicitFunction& field, const std::vector<Vec3>& points, double reach,
                               double cell) {
-  const Grid grid = sample(field, points, reach, cell);
+  Grid grid = sample(field, points, reach, cell);
+  follow_surface(field, grid);
   Marcher marcher{grid, {}, {}};
   for (int i = 0; i + 1 < grid.count[0]; ++i) {
     for (int j = 0; j + 1 < grid.count[1]; ++j) {
