@@ -145,6 +145,11 @@ TEST(HeadAndSkull, RegionsLieOnTheSkin) {
       for (const Vec3& corner : zone.polygon) {
         EXPECT_LT(surfaces().skin.closest(corner).distance, 0.0005) << zone.name << " at " << 1e3 * corner.transpose();
       }
+      // No corner has slipped to another part of the head: the straight way to the next one keeps near the skin.
+      for (std::size_t i = 0; i < zone.polygon.size(); ++i) {
+        const Vec3 middle = 0.5 * (zone.polygon[i] + zone.polygon[(i + 1) % zone.polygon.size()]);
+        EXPECT_LT(surfaces().outer.surface.closest(middle).distance, 0.015) << zone.name << " side " << i;
+      }
     }
   }
   for (const RetainingLigament& ligament : tissue.ligaments) {

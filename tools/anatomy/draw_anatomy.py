@@ -4,7 +4,8 @@
     draw_anatomy.py anatomy docs/figures
 
 skull.png: the generic skull with its curves. landmarks.png: landmarks and curves of the skin on the generic head.
-regions.png: attachment zones, gliding planes, fat compartments, aesthetic units, lids and ligaments on the face.
+muscles.png: origins, insertions and central fibres of the muscles. regions.png: attachment zones, gliding planes, fat
+compartments, aesthetic units, lids and ligaments on the face.
 """
 import colorsys
 import functools
@@ -14,10 +15,11 @@ import sys
 
 import numpy as np
 from PIL import Image, ImageDraw
+from scipy.interpolate import CubicSpline
 
 from place_landmarks import read_objects
 
-VIEWS = {"front": 0, "three-quarter": -42, "side": -90}
+VIEWS = {"front": 0, "three-quarter": -42, "side": -90, "back": 180}
 
 
 @functools.lru_cache(None)
@@ -103,9 +105,10 @@ def both(points, midline=False):
 
 
 def inside(polygon, points):
-    """Which points lie within the polygon, seen along its mean normal and no farther than 14 mm from its plane."""
+    """Which points lie within the polygon, seen along its mean normal and as near to its plane as the builder takes them."""
     centre = polygon.mean(0)
-    near = ((points > polygon.min(0) - 3) & (points < polygon.max(0) + 3)).all(1)
+    depth = 20 + 0.5 * np.linalg.norm(polygon - centre, axis=1).max()
+    near = (np.abs(points - centre) < 1.2 * np.abs(polygon - centre).max(0) + 15).all(1)
     out = np.zeros(len(points), bool)
     points = points[near]
     _, _, axes = np.linalg.svd(polygon - centre)
@@ -116,7 +119,7 @@ def inside(polygon, points):
             continue
         crosses = ((a[1] > p[:, 1]) != (b[1] > p[:, 1])) & (p[:, 0] < a[0] + (p[:, 1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0]))
         result ^= crosses
-    out[near] = result & (np.abs(p[:, 2]) < 14)
+    out[near] = result & (np.abs(p[:, 2]) < depth)
     return out
 
 
@@ -135,9 +138,10 @@ SKIN, BONE = np.array([224, 190, 168.0]), np.array([232, 224, 204.0])
 RED, BLUE, GREEN = (190, 30, 30), (30, 60, 190), (20, 120, 60)
 
 
-def draw_skull(parts, document):
+def draw_skull(document):
     panels = []
-    for view, box in (("front", (-80, 80, -80, 145)), ("three-quarter", (-105, 85, -80, 145)), ("side", (-120, 90, -80, 145))):
+    for view, box in (("front", (-80, 80, -80, 145)), ("three-quarter", (-105, 85, -80, 145)),
+                      ("side", (-120, 90, -80, 145)), ("back", (-80, 80, -80, 145))):
         panel = Panel(view, 520, box)
         for name, colour in (("cranium", BONE), ("mandible", BONE * 0.93), ("teeth_upper", np.full(3, 245.0)),
                              ("teeth_lower", np.full(3, 245.0))):
@@ -148,12 +152,13 @@ def draw_skull(parts, document):
                     panel.line(points, RED, curve.get("closed", False))
         panel.dots([np.array(m["bone"]) for m in document["landmarks"] if "bone" in m], BLUE)
         panels.append(panel)
-    return beside(panels, ["bone landmarks (blue) and curves (red)", "", ""])
+    return beside(panels, ["landmarks (blue), curves (red)", "", "", ""])
 
 
-def draw_landmarks(parts, document):
+def draw_landmarks(document):
     panels = []
-    for view, box in (("front", (-90, 90, -100, 150)), ("three-quarter", (-115, 95, -100, 150)), ("side", (-130, 110, -100, 150))):
+    for view, box in (("front", (-90, 90, -100, 150)), ("three-quarter", (-115, 95, -100, 150)),
+                      ("side", (-130, 110, -100, 150))):
         panel = Panel(view, 520, box)
         for name, colour in (("skin", SKIN), ("eye_left", np.full(3, 240.0)), ("eye_right", np.full(3, 240.0))):
             panel.surface(*sampled(name, 0.4), colour[None])
@@ -164,10 +169,36 @@ def draw_landmarks(parts, document):
         panel.dots([np.array(m["skin"]) for m in document["landmarks"] if "skin" in m and not m["required"]], BLUE)
         panel.dots([np.array(m["skin"]) for m in document["landmarks"] if "skin" in m and m["required"]], GREEN, 1.3)
         panels.append(panel)
-    return beside(panels, ["skin landmarks (blue), those to be placed (green), curves (red)", "", ""])
+    return beside(panels, ["landmarks (blue; to be placed: green), curves", "", ""])
 
 
-def draw_regions(parts, tissue):
+def course(part, count=61):
+    """Evenly spaced points of the centre line from the middle of the origin through the waypoints to that of the insertion."""
+    ends = [np.mean(part[end]["polygon"], 0) for end in ("origin", "insertion")]
+    knots = np.array([ends[0], *part.get("waypoints", []), ends[1]])
+    s = np.r_[0, np.cumsum(np.linalg.norm(np.diff(knots, axis=0), axis=1))]
+    fine = CubicSpline(s, knots)(np.linspace(0, s[-1], 400)) if len(knots) > 2 else np.linspace(*knots, 400)
+    length = np.r_[0, np.cumsum(np.linalg.norm(np.diff(fine, axis=0), axis=1))]
+    return np.stack([np.interp(np.linspace(0, length[-1], count), length, fine[:, k]) for k in range(3)], 1)
+
+
+def draw_muscles(muscles):
+    panels = []
+    for view, box in (("front", (-5, 85, -90, 110)), ("three-quarter", (-80, 85, -90, 110)), ("side", (-115, 70, -90, 110))):
+        panel = Panel(view, 620, box)
+        for name, colour in (("cranium", BONE), ("mandible", BONE * 0.93), ("teeth_upper", np.full(3, 245.0)),
+                             ("teeth_lower", np.full(3, 245.0))):
+            panel.surface(*sampled(name, 0.3), colour[None])
+        for k, part in enumerate(m for m in muscles if "origin" in m):
+            tint = tuple(int(235 * c) for c in colorsys.hsv_to_rgb(0.61803 * k % 1, 0.85, 0.8))
+            panel.line(course(part), tint, False, 30.0)
+            panel.line(part["origin"]["polygon"], RED, True, 30.0)
+            panel.line(part["insertion"]["polygon"], BLUE, True, 30.0)
+        panels.append(panel)
+    return beside(panels, ["origins (red), insertions (blue)", "central fibres; rings of lips and lids are bands", ""])
+
+
+def draw_regions(tissue):
     lists = [("skin_attachments", "SMAS to skin: attachment"), ("gliding_planes", "gliding planes"),
              ("fat_compartments", "fat compartments"), ("aesthetic_units", "aesthetic units"),
              ("tarsal_plates", "tarsal plates, ligaments (red: at the bone)")]
@@ -207,13 +238,12 @@ def draw_regions(parts, tissue):
 
 def main(anatomy, figures):
     load = lambda name: json.load(open(os.path.join(anatomy, "data", name)))
-    skull = read_objects(os.path.join(anatomy, "data/skull.obj"))
-    head = read_objects(os.path.join(anatomy, "data/head.obj"))
-    PARTS.update(skull)
-    PARTS.update(head)
+    for name in ("skull", "head"):
+        PARTS.update(read_objects(os.path.join(anatomy, f"data/{name}.obj")))
     document = load("landmarks.json")
-    for name, image in (("skull", draw_skull(skull, document)), ("landmarks", draw_landmarks(head, document)),
-                        ("regions", draw_regions(head, load("tissue.json")))):
+    for name, image in (("skull", draw_skull(document)), ("landmarks", draw_landmarks(document)),
+                        ("muscles", draw_muscles(load("muscles.json")["muscles"])),
+                        ("regions", draw_regions(load("tissue.json")))):
         image.quantize(200).save(os.path.join(figures, name + ".png"), optimize=True)
         print(name, image.size)
 

@@ -131,7 +131,7 @@ DEFINITIONS = {
     "alar_groove": "Groove behind the wing of the nose, from above its wing down to its foot.",
     "hairline": "Where the hair usually begins, from the midline over the temple to the root of the ear's helix.",
 }
-COUNTS = {"temporal_line": 16, "zygomatic_arch": 16, "brow": 12, "nasolabial_fold": 12, "jaw_line": 16}
+COUNTS = {"temporal_line": 16, "zygomatic_arch": 16, "brow": 12, "nasolabial_fold": 12}
 
 
 def measured_curves(anatomy):
@@ -172,8 +172,8 @@ def skin_loops(anatomy, head):
     return out
 
 
-def creases(landmarks, skin):
-    """Folds that the mesh has no loop for, through the named points on them."""
+def creases(landmarks):
+    """Lines of the skin that the mesh has no loop for, through the named points on them."""
     at = {m["name"]: np.array(m["skin"]) for m in landmarks if "skin" in m}
     en, ex, fold = at["endocanthion_left"], at["exocanthion_left"], at["sulcus_palpebralis_superior_left"]
     lid = [en + [1.5, 4.0, 0], 0.5 * (en + fold) + [-1.5, 2.6, 0], fold, 0.5 * (ex + fold) + [1.5, 2.6, 0], ex + [2.0, 4.0, 0]]
@@ -183,7 +183,9 @@ def creases(landmarks, skin):
     temple, helix = at["frontotemporale_left"], at["otobasion_superius_left"]
     trichion = at["trichion"]
     hair = [trichion, trichion + [25, -4, -6], temple + [3, 26, -16], temple + [8, 8, -24], helix + [-2, 22, 16], helix + [0, 2, 8]]
-    return {"upper_lid_crease": lid, "alar_groove": alar, "hairline": hair}
+    beside = at["mid_mandibular_border_left"]
+    jaw = [at["menton"], 0.5 * (at["menton"] + beside) + [0, -3, 6], beside, at["gonion_left"], at["otobasion_inferius_left"]]
+    return {"upper_lid_crease": lid, "alar_groove": alar, "hairline": hair, "jaw_line": jaw}
 
 
 def place_points(marks, parts):
@@ -258,7 +260,7 @@ def main(anatomy):
     surfaces = {"skin": Surface(*head["skin"]), "cranium": Surface(*skull["cranium"]), "mandible": Surface(*skull["mandible"])}
     measured = measured_curves(anatomy)
     place_points(document["landmarks"], {**surfaces, "orbital_rim": measured["orbital_rim"][1]})
-    loops, folds = skin_loops(anatomy, head), creases(document["landmarks"], surfaces["skin"])
+    loops, folds = skin_loops(anatomy, head), creases(document["landmarks"])
     curves = {c["name"]: c for c in document["curves"]}
     for name in list(MEASURED) + list(folds):
         bone = measured[name][0] if name in MEASURED else "skin"
@@ -270,7 +272,7 @@ def main(anatomy):
         elif name in MEASURED:
             points = evenly(measured[name][1], MEASURED[name], closed)
         elif name in folds:
-            points = evenly(folds[name], 12, False)
+            points = evenly(folds[name], 16 if name == "jaw_line" else 12, False)
         else:
             points = evenly(curve["points"], COUNTS.get(name, len(curve["points"])), closed)
         midline_start = name in ("lip_line", "upper_vermilion_border", "lower_vermilion_border", "jaw_line", "hairline")
