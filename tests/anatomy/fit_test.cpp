@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <string>
 
@@ -160,6 +162,40 @@ TEST(HeadAndSkull, RegionsLieOnTheSkin) {
       if (ligament.type == "osteocutaneous") {
         EXPECT_LT(surfaces().to_bone(ligament.bone[i]), 0.003) << ligament.name << " point " << i;
       }
+    }
+  }
+}
+
+/// How far a region's corners and the middles of its sides lie from where it says it is.
+double off_its_surface(const Region& region) {
+  const Surfaces& all = surfaces();
+  const bool on_bone = region.on == Attachment::cranium || region.on == Attachment::mandible;
+  const spatial::SurfaceQuery& surface = region.on == Attachment::cranium    ? all.cranium
+                                         : region.on == Attachment::mandible ? all.mandible
+                                                                             : all.outer.surface;
+  double worst = 0;
+  for (std::size_t i = 0; i < region.polygon.size(); ++i) {
+    const Vec3& corner = region.polygon[i];
+    const Vec3 middle = 0.5 * (corner + region.polygon[(i + 1) % region.polygon.size()]);
+    for (const Vec3& point : {corner, middle}) worst = std::max(worst, surface.closest(point).distance);
+    if (!on_bone) { EXPECT_LT(surface.signed_distance(corner), 0.0005) << "outside the skin"; }
+  }
+  return worst;
+}
+
+TEST(HeadAndSkull, MuscleRegionsLieWhereTheySay) {
+  // Within the skin by what the region is in; the orbit's apex, where the lid's levator begins, is filled in the skull.
+  const std::map<Attachment, double> within{
+      {Attachment::cranium, 0.006}, {Attachment::mandible, 0.006}, {Attachment::skin, 0.006},
+      {Attachment::tarsus, 0.004},  {Attachment::smas, 0.006},     {Attachment::galea, 0.006},
+      {Attachment::modiolus, 0.010}, {Attachment::fascia, 0.014},  {Attachment::hyoid, 0.028}};
+  for (const Muscle& muscle : surfaces().anatomy.muscles) {
+    for (const Region* region : {&muscle.origin, &muscle.insertion}) {
+      if (region->polygon.empty()) continue;
+      SCOPED_TRACE(muscle.name + (region == &muscle.origin ? " origin" : " insertion"));
+      ASSERT_EQ(within.count(region->on), 1U);
+      const bool orbit = muscle.layer == "orbit" && region->on == Attachment::cranium;
+      EXPECT_LT(off_its_surface(*region), orbit ? 0.008 : within.at(region->on));
     }
   }
 }
