@@ -61,7 +61,7 @@ void add_bake(CLI::App& app, Common& common) {
   CLI::App* command = app.add_subcommand("bake", "Bake simulated shapes into morph targets");
   command->add_option("RIG", request->rig, "Rig (.glb)")->required();
   command->add_option("--shapes", request->shapes, "Which shapes")->check(CLI::IsMember({"arkit", "muscles", "visemes"}));
-  command->add_option("--solver", request->solver, "Solver")->check(CLI::IsMember({"own", "bullet"}));
+  command->add_option("--solver", request->solver, "Solver")->check(CLI::IsMember({"own", "reference", "bullet"}));
   command->add_option("--level", request->level, "Level of detail: low, medium or high");
   command->add_option("-o,--output", request->output, "File to write (.glb)")->required();
   command->callback([request, &common] { run(common, *request); });

@@ -42,7 +42,7 @@ void add_pose(CLI::App& app, Common& common) {
   command->add_option("RIG", request->rig, "Rig (.glb)")->required();
   command->add_option("--set", request->set, "NAME=VALUE: an actuator, arkit:NAME, au:N or viseme:NAME")->take_all();
   command->add_option("--activations", request->file, "Activations (.json)");
-  command->add_option("--solver", request->solver, "Solver")->check(CLI::IsMember({"own", "bullet"}));
+  command->add_option("--solver", request->solver, "Solver")->check(CLI::IsMember({"own", "reference", "bullet"}));
   command->add_option("--level", request->level, "Level of detail: low, medium or high");
   command->add_option("-o,--output", request->output, "Mesh to write: .glb, .obj or .ply")->required();
   command->callback([request, &common] { run(common, *request); });

@@ -51,7 +51,8 @@ Face::Face(const std::filesystem::path& rig, const Options& options) {
   face_options.space = options.space;
   face_options.level = level_;
   if (options.solver == "bullet") face_options.solver = FASCIA_SOLVER_BULLET;
-  else if (options.solver != "own") throw Error("solver '" + options.solver + "' is unknown: use own or bullet");
+  else if (options.solver == "reference") face_options.solver = FASCIA_SOLVER_REFERENCE;
+  else if (options.solver != "own") throw Error("solver '" + options.solver + "' is unknown: use own, reference or bullet");
   fascia_face* face = nullptr;
   check(fascia_face_create(asset, &face_options, &face), "'" + rig.string() + "'");
   face_.reset(face);

@@ -26,7 +26,7 @@ class Face {
  public:
   struct Options {
     fascia_space space = FASCIA_SPACE_METRES;
-    std::string solver = "own";  ///< own or bullet
+    std::string solver = "own";  ///< own, reference or bullet
     std::string level;           ///< low, medium, high; empty: the finest
   };
 

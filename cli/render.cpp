@@ -75,7 +75,7 @@ void add_render(CLI::App& app, Common& common) {
   command->add_option("--activations", request->file, "Activations (.json)");
   command->add_option("--layers", request->layers, "Of skin, eyes, teeth, skull, smas, muscles, landmarks");
   command->add_option("--view", request->view, "front, side, right, three-quarter, back or turntable");
-  command->add_option("--solver", request->solver, "Solver")->check(CLI::IsMember({"own", "bullet"}));
+  command->add_option("--solver", request->solver, "Solver")->check(CLI::IsMember({"own", "reference", "bullet"}));
   command->add_option("--level", request->level, "Level of detail: low, medium or high");
   command->add_option("--size", request->size, "Width and height in pixels")->check(CLI::Range(16, 4096));
   command->add_option("-o,--output", request->output, "Picture to write (.png; a turntable also .mp4)")->required();

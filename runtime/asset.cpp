@@ -11,7 +11,8 @@ std::string lower_case(std::string_view text) {
   return lower;
 }
 
-Asset::Asset(std::span<const uint8_t> bytes) : file_(rig::read(bytes)), models_(file_.rig.tissue.levels.size()) {
+Asset::Asset(std::span<const uint8_t> bytes) : file_(rig::read(bytes)), models_(file_.rig.tissue.levels.size()),
+      realtime_models_(models_.size()) {
   index_channels();
   index_sets();
   find_jaw_muscles();
@@ -107,6 +108,17 @@ std::optional<Target> Asset::find(std::string_view name) const {
 
 const sim::FaceModel& Asset::model(std::size_t level) const {
   const std::lock_guard lock(models_mutex_);
+  return model_under_lock(level);
+}
+
+const sim::realtime::Model& Asset::realtime_model(std::size_t level) const {
+  const std::lock_guard lock(models_mutex_);
+  auto& model = realtime_models_[level];
+  if (!model) model = std::make_unique<sim::realtime::Model>(model_under_lock(level));
+  return *model;
+}
+
+const sim::FaceModel& Asset::model_under_lock(std::size_t level) const {
   auto& model = models_[level];
   if (!model) {
     auto made = std::make_unique<sim::FaceModel>(sim::lattice_of(rig().tissue.levels[level]),

@@ -15,6 +15,7 @@
 #include "runtime/message.h"
 #include "sim/face_model.h"
 #include "sim/jaw_muscles.h"
+#include "sim/realtime/model.h"
 
 namespace fascia::runtime {
 
@@ -53,6 +54,8 @@ class Asset {
 
   /// The model of a level, made on first use; any thread may ask. Throws Failure when the lattice is unsound.
   const sim::FaceModel& model(std::size_t level) const;
+  /// The same, laid out for real time.
+  const sim::realtime::Model& realtime_model(std::size_t level) const;
 
   // Arrays of texts in the shape the C interface hands them out.
   std::vector<const char*> channel_names, channel_groups, channel_units;
@@ -72,6 +75,9 @@ class Asset {
   sim::JawMuscles jaw_muscles_;
   mutable std::mutex models_mutex_;
   mutable std::vector<std::unique_ptr<sim::FaceModel>> models_;
+  mutable std::vector<std::unique_ptr<sim::realtime::Model>> realtime_models_;
+
+  const sim::FaceModel& model_under_lock(std::size_t level) const;
 };
 
 /// ASCII letters of `text` in lower case.

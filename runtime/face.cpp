@@ -31,7 +31,7 @@ Face::Face(std::shared_ptr<const Asset> asset, const fascia_face_options& option
           "unknown space");
   const std::size_t channels = asset_->channel_names.size();
   model_ = &asset_->model(level_);
-  solver_ = make_solver(options.solver, *model_, channels);
+  solver_ = make_solver(options.solver, *asset_, level_);
   values_ = effective_ = asset_->channel_rest;
   curve_channels_.assign(channels, 0.0F);
   members_.assign(asset_->members().size(), 0.0F);

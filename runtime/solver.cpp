@@ -4,16 +4,43 @@
 
 #include <string>
 
+#include "runtime/asset.h"
 #include "runtime/message.h"
+#include "sim/realtime/face.h"
 #include "sim/solver.h"
 
 namespace fascia::runtime {
 namespace {
 
-/// Fascia's own solver.
+/// Fascia's own solver, in real time.
 class OwnSolver : public Solver {
  public:
-  OwnSolver(const sim::FaceModel& model, std::size_t channels) : face_(model, channels) {}
+  OwnSolver(const sim::realtime::Model& model, std::size_t channels) : face_(model, channels) {}
+
+  void pose(const sim::Drive& drive, std::span<sim::Vec3f> displacements) override {
+    sim::PoseOptions options;
+    options.solver.iterations = 400;  // cheap ones
+    face_.settle(drive, options);
+    face_.displacements(displacements);
+  }
+  bool step(double seconds, const sim::Drive& drive, std::span<sim::Vec3f> displacements) override {
+    const sim::StepResult result = face_.step(seconds, drive);
+    face_.displacements(displacements);
+    return result.status == sim::StepStatus::done;
+  }
+  void reset(const sim::Drive& drive, std::span<sim::Vec3f> displacements) override {
+    face_.reset(drive);
+    face_.displacements(displacements);
+  }
+
+ private:
+  sim::realtime::Face face_;
+};
+
+/// The same energies in double precision, each step converged: what the other is compared with.
+class ReferenceSolver : public Solver {
+ public:
+  ReferenceSolver(const sim::FaceModel& model, std::size_t channels) : face_(model, channels) {}
 
   void pose(const sim::Drive& drive, std::span<sim::Vec3f> displacements) override {
     face_.settle(drive);
@@ -91,8 +118,11 @@ sim::MakeSolver bullet_entry() {
 
 }  // namespace
 
-std::unique_ptr<Solver> make_solver(fascia_solver kind, const sim::FaceModel& model, std::size_t channels) {
-  if (kind == FASCIA_SOLVER_OWN) return std::make_unique<OwnSolver>(model, channels);
+std::unique_ptr<Solver> make_solver(fascia_solver kind, const Asset& asset, std::size_t level) {
+  const std::size_t channels = asset.channel_names.size();
+  if (kind == FASCIA_SOLVER_OWN) return std::make_unique<OwnSolver>(asset.realtime_model(level), channels);
+  const sim::FaceModel& model = asset.model(level);
+  if (kind == FASCIA_SOLVER_REFERENCE) return std::make_unique<ReferenceSolver>(model, channels);
   require(kind == FASCIA_SOLVER_BULLET, "unknown solver");
   std::unique_ptr<sim::Solver> solver(bullet_entry()(&model, channels));
   if (!solver) throw Failure(FASCIA_ERROR_MODULE, "the module libfascia_bullet could not make a solver of this rig");

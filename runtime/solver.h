@@ -18,8 +18,9 @@ class Solver {
   virtual void reset(const sim::Drive& drive, std::span<sim::Vec3f> displacements) = 0;
 };
 
-/// Makes a solver on `model`, which must outlive it, for `channels` activations. Throws Failure when the
-/// module of `kind` is not there.
-std::unique_ptr<Solver> make_solver(fascia_solver kind, const sim::FaceModel& model, std::size_t channels);
+class Asset;
+
+/// Makes a solver on a level of `asset`, which must outlive it. Throws Failure when the module of `kind` is not there.
+std::unique_ptr<Solver> make_solver(fascia_solver kind, const Asset& asset, std::size_t level);
 
 }  // namespace fascia::runtime

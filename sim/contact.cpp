@@ -231,7 +231,7 @@ double Contacts::find_facing(const Vec3* x, std::span<FacingPair> pairs) const {
 }
 
 size_t Contacts::find_grips(const RigidTransform& mandible, const RigidTransform& mandible_step, std::span<const FacingPair> pairs,
-                            const Vec3* before, const Vec3* x, std::span<Grip> grips) const {
+                            const Vec3* before, const Vec3* x, std::span<Grip> grips, const std::vector<uint32_t>* near_bones) const {
   size_t count = 0;
   const auto add = [&](Grip grip, double force, const Vec3& slid) {
     if (count >= grips.size()) return;
@@ -249,7 +249,9 @@ size_t Contacts::find_grips(const RigidTransform& mandible, const RigidTransform
     grip.anchor = x[node];
     if (touch.depth > 0.0) add(grip, options_.globe_stiffness * touch.depth, x[node] - before[node]);
   }
-  for (size_t c = 0; c < bone_nodes_.size(); ++c) {
+  const size_t bones = near_bones != nullptr ? near_bones->size() : bone_nodes_.size();
+  for (size_t i = 0; i < bones; ++i) {
+    const size_t c = near_bones != nullptr ? (*near_bones)[i] : i;
     const Touch touch = bone_touch(c, mandible, x);
     if (touch.depth <= 0.0) continue;
     const uint32_t node = bone_nodes_[c];

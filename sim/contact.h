@@ -76,14 +76,19 @@ class Contacts {
   /// largest change of a gap against the pairs before, metres, is returned.
   double find_facing(const Vec3* x, std::span<FacingPair> pairs) const;
   /// What grips after a step from `before` to `x`, both #nodes, for the step to come; returns how many of `grips`.
-  /// Bones' own motion of the coming step is `mandible_step`.
+  /// Bones' own motion of the coming step is `mandible_step`; `near_bones` are the contacts with bone to look at, else all.
   size_t find_grips(const RigidTransform& mandible, const RigidTransform& mandible_step, std::span<const FacingPair> pairs,
-                    const Vec3* before, const Vec3* x, std::span<Grip> grips) const;
+                    const Vec3* before, const Vec3* x, std::span<Grip> grips, const std::vector<uint32_t>* near_bones = nullptr) const;
 
   size_t facing_count() const { return facing_nodes_.size(); }
   size_t grip_capacity() const { return globe_nodes_.size() + bone_nodes_.size() + facing_nodes_.size(); }
   std::span<const uint32_t> globe_nodes() const { return globe_nodes_; }
   std::span<const uint32_t> bone_nodes() const { return bone_nodes_; }
+  std::span<const double> bone_margins() const { return bone_margins_; }
+  bool bone_moves(size_t contact) const { return field_bones_[bone_fields_[contact]] == 1; }  ///< with the mandible
+  const DistanceField& bone_field(size_t contact) const { return fields_[bone_fields_[contact]]; }
+  std::span<const Vec3> globe_centres() const { return globe_centres_; }  ///< of each contact, as the radii
+  std::span<const double> globe_radii() const { return globe_radii_; }
   const ContactOptions& options() const { return options_; }
 
   /// Depth of the deepest contact beyond its margin, metres: what the penalties have let through.

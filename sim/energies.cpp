@@ -9,10 +9,6 @@ namespace fascia::sim {
 namespace {
 
 constexpr double tiny_area = 1e-16;      // square metres: an edge of 10 nanometres
-constexpr double crush_begin = 0.5;      // share of its area below which a membrane resists ever more
-constexpr double turn_begin = 0.4;       // share of its volume below which a prism resists being turned inside out
-constexpr double turn_modulus = 4e4;     // pascal, with which it does
-constexpr double fold_softness = 0.01;   // where a hinge's mean normal fades out: folds closer than 6 degrees
 
 /// The closed surface of a prism as triangles with their weights: both ends, and each bilinear side
 /// as the mean of its two diagonal splits. Corners 0..2 outer, 3..5 inner; outward.
@@ -99,7 +95,7 @@ double membrane_energy(const Membrane& m, const Vec3* x, Vec3* gradient) {
   Mat32 stress = 2.0 * m.mu * (deformation - rotation) + m.lambda * spread * rotation;
   double crush = 0.0;
   if (area_ratio < crush_begin) {
-    const double ratio = std::max(area_ratio, 1e-6), excess = crush_begin / ratio - 1.0;
+    const double ratio = std::max(area_ratio, crush_end), excess = crush_begin / ratio - 1.0;
     crush = m.mu * excess * excess;
     const double slope = -2.0 * m.mu * excess * crush_begin / (ratio * ratio);
     stress.col(0) += slope * f1.cross(normal);

@@ -9,6 +9,13 @@
 /// they touch to `gradient`, which is indexed as `x` is, by node.
 namespace fascia::sim {
 
+/// Where elements resist ever more, for whoever evaluates the same energies in another way.
+inline constexpr double crush_begin = 0.5;     ///< share of its area below which a membrane does
+inline constexpr double crush_end = 1e-6;      ///< share below which it does no more
+inline constexpr double turn_begin = 0.4;      ///< share of its volume below which a prism resists being turned inside out
+inline constexpr double turn_modulus = 4e4;    ///< pascal, with which it does
+inline constexpr double fold_softness = 0.01;  ///< where a hinge's mean normal fades out: folds closer than 6 degrees
+
 /// A spring that may stiffen: `stiffness` up to `limit` metres of stretch, `second_stiffness` beyond.
 /// A one-sided one is slack when shorter than `length`.
 struct Spring {

@@ -98,6 +98,9 @@ class FaceModel {
   const std::vector<Spring>& springs() const { return springs_; }
   const std::vector<Prism>& prisms() const { return prisms_; }
   const std::vector<Membrane>& membranes() const { return membranes_; }  ///< skin first, then SMAS
+  const std::vector<Hinge>& hinges() const { return hinges_; }            ///< skin first, then SMAS
+  const std::vector<Tether>& tethers() const { return tethers_; }
+  const std::vector<double>& fibre_lengths() const { return fibre_lengths_; }  ///< taper-weighted, at rest
 
  private:
   void make_elements();

@@ -103,5 +103,117 @@ FASCIA_INLINE Lanes3 cross(const Lanes3& a, const Lanes3& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
+/// `yes` where a < b, else `no`.
+FASCIA_INLINE Lanes where_below(const Lanes& a, const Lanes& b, const Lanes& yes, const Lanes& no) {
+  Lanes out;
+  for (size_t p = 0; p < part_count; ++p) out.part[p] = a.part[p] < b.part[p] ? yes.part[p] : no.part[p];
+  return out;
+}
+FASCIA_INLINE bool any_below(const Lanes& a, const Lanes& b) {
+  float gap[lane_count];
+  store(gap, a - b);
+  bool any = false;
+  for (size_t l = 0; l < lane_count; ++l) any |= gap[l] < 0.0F;
+  return any;
+}
+
+// Places in memory: four floats each, x y z and one of no meaning. Sixteen of them are fetched and turned into coordinates, or turned
+// back and added, in fours: lane 4j + k is the j-th quarter of a register's k-th fetch.
+
+typedef float Quad __attribute__((vector_size(16)));
+typedef float UnalignedQuad __attribute__((vector_size(16), aligned(4), may_alias));
+
+FASCIA_INLINE Quad load_quad(const float* from) { return *reinterpret_cast<const UnalignedQuad*>(from); }
+FASCIA_INLINE void store_quad(float* to, Quad value) { *reinterpret_cast<UnalignedQuad*>(to) = value; }
+
+/// Sums of lanes l, l + 4, l + 8 and l + 12, halves to halves.
+FASCIA_INLINE Quad quarters(const Lanes& a) {
+#if defined(__AVX512F__)
+  typedef float Eight __attribute__((vector_size(32)));
+  const Eight eight = __builtin_shufflevector(a.part[0], a.part[0], 0, 1, 2, 3, 4, 5, 6, 7) +
+                      __builtin_shufflevector(a.part[0], a.part[0], 8, 9, 10, 11, 12, 13, 14, 15);
+  return __builtin_shufflevector(eight, eight, 0, 1, 2, 3) + __builtin_shufflevector(eight, eight, 4, 5, 6, 7);
+#elif defined(__AVX2__)
+  const Part eight = a.part[0] + a.part[1];
+  return __builtin_shufflevector(eight, eight, 0, 1, 2, 3) + __builtin_shufflevector(eight, eight, 4, 5, 6, 7);
+#else
+  return (a.part[0] + a.part[2]) + (a.part[1] + a.part[3]);
+#endif
+}
+/// Sum of the sixteen.
+FASCIA_INLINE float total(const Lanes& a) {
+  const Quad q = quarters(a), pairs = q + __builtin_shufflevector(q, q, 2, 3, 0, 1);
+  return pairs[0] + pairs[1];
+}
+/// Sums of the sixteen, coordinate by coordinate, as a place.
+FASCIA_INLINE Quad totals(const Lanes3& a) {
+  const Quad x = quarters(a.x), y = quarters(a.y), z = quarters(a.z), zero{};
+  const Quad xy = __builtin_shufflevector(x, y, 0, 4, 1, 5) + __builtin_shufflevector(x, y, 2, 6, 3, 7);
+  const Quad z0 = __builtin_shufflevector(z, zero, 0, 4, 1, 5) + __builtin_shufflevector(z, zero, 2, 6, 3, 7);
+  return __builtin_shufflevector(xy, z0, 0, 1, 4, 5) + __builtin_shufflevector(xy, z0, 2, 3, 6, 7);
+}
+
+#if defined(__AVX512F__)
+FASCIA_INLINE Part fetch(const float* base, const int32_t* at) {
+  typedef float Eight __attribute__((vector_size(32)));
+  const Eight low = __builtin_shufflevector(load_quad(base + at[0]), load_quad(base + at[4]), 0, 1, 2, 3, 4, 5, 6, 7);
+  const Eight high = __builtin_shufflevector(load_quad(base + at[8]), load_quad(base + at[12]), 0, 1, 2, 3, 4, 5, 6, 7);
+  return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+}
+#define FASCIA_SHUFFLE(a, b, i, j, k, l)                                                                                \
+  __builtin_shufflevector(a, b, i, j, k + 12, l + 12, i + 4, j + 4, k + 16, l + 16, i + 8, j + 8, k + 20, l + 20, i + 12, \
+                          j + 12, k + 24, l + 24)
+#elif defined(__AVX2__)
+FASCIA_INLINE Part fetch(const float* base, const int32_t* at) {
+  return __builtin_shufflevector(load_quad(base + at[0]), load_quad(base + at[4]), 0, 1, 2, 3, 4, 5, 6, 7);
+}
+#define FASCIA_SHUFFLE(a, b, i, j, k, l) __builtin_shufflevector(a, b, i, j, k + 4, l + 4, i + 4, j + 4, k + 8, l + 8)
+#else
+FASCIA_INLINE Part fetch(const float* base, const int32_t* at) { return load_quad(base + at[0]); }
+#define FASCIA_SHUFFLE(a, b, i, j, k, l) __builtin_shufflevector(a, b, i, j, k, l)
+#endif
+
+/// The places that begin at base + at[lane].
+FASCIA_INLINE Lanes3 gather(const float* base, const int32_t* at) {
+  Lanes3 out;
+  for (size_t p = 0; p < part_count; ++p) {
+    const int32_t* first = at + p * part_width;
+    const Part a = fetch(base, first), b = fetch(base, first + 1), c = fetch(base, first + 2), d = fetch(base, first + 3);
+    const Part ab = FASCIA_SHUFFLE(a, b, 0, 1, 4, 5), cd = FASCIA_SHUFFLE(c, d, 0, 1, 4, 5);
+    const Part ab_z = FASCIA_SHUFFLE(a, b, 2, 3, 6, 7), cd_z = FASCIA_SHUFFLE(c, d, 2, 3, 6, 7);
+    out.x.part[p] = FASCIA_SHUFFLE(ab, cd, 0, 2, 4, 6);
+    out.y.part[p] = FASCIA_SHUFFLE(ab, cd, 1, 3, 5, 7);
+    out.z.part[p] = FASCIA_SHUFFLE(ab_z, cd_z, 0, 2, 4, 6);
+  }
+  return out;
+}
+
+/// Writes the sixteen as places, one after the other, `fourth` behind the coordinates.
+FASCIA_INLINE void interleave(const Lanes3& value, const Lanes& fourth, float* to) {
+  for (size_t p = 0; p < part_count; ++p) {
+    const Part x = value.x.part[p], y = value.y.part[p], z = value.z.part[p], w = fourth.part[p];
+    const Part low = FASCIA_SHUFFLE(x, y, 0, 1, 4, 5), high = FASCIA_SHUFFLE(x, y, 2, 3, 6, 7);
+    const Part low_z = FASCIA_SHUFFLE(z, w, 0, 1, 4, 5), high_z = FASCIA_SHUFFLE(z, w, 2, 3, 6, 7);
+    const Part fetched[4] = {FASCIA_SHUFFLE(low, low_z, 0, 2, 4, 6), FASCIA_SHUFFLE(low, low_z, 1, 3, 5, 7),
+                             FASCIA_SHUFFLE(high, high_z, 0, 2, 4, 6), FASCIA_SHUFFLE(high, high_z, 1, 3, 5, 7)};
+    for (size_t k = 0; k < 4; ++k)
+      for (size_t j = 0; j < part_width / 4; ++j) {
+        Quad quad;
+        for (size_t c = 0; c < 4; ++c) quad[c] = fetched[k][4 * j + c];
+        store_quad(to + 4 * (p * part_width + 4 * j + k), quad);
+      }
+  }
+}
+
+FASCIA_INLINE void interleave(const Lanes3& value, float* to) { interleave(value, splat(0.0F), to); }
+
+/// Adds each lane's value to the place at base + at[lane], lane after lane: places may be named twice.
+FASCIA_INLINE void scatter_add(float* base, const int32_t* at, const Lanes3& value, const Lanes& fourth) {
+  alignas(64) float places[4 * lane_count];
+  interleave(value, fourth, places);
+  for (size_t l = 0; l < lane_count; ++l) store_quad(base + at[l], load_quad(base + at[l]) + load_quad(places + 4 * l));
+}
+FASCIA_INLINE void scatter_add(float* base, const int32_t* at, const Lanes3& value) { scatter_add(base, at, value, splat(0.0F)); }
+
 }  // namespace
 }  // namespace fascia::sim::lanes::FASCIA_LANES_NAMESPACE

@@ -175,7 +175,8 @@ typedef enum fascia_space {
 
 typedef enum fascia_solver {
   FASCIA_SOLVER_OWN = 0,
-  FASCIA_SOLVER_BULLET = 1, /* needs the module libfascia_bullet beside this library or on the loader's path */
+  FASCIA_SOLVER_BULLET = 1,    /* needs the module libfascia_bullet beside this library or on the loader's path */
+  FASCIA_SOLVER_REFERENCE = 2, /* the own one in double precision, every step converged: slow, to compare with */
   FASCIA_SOLVER_32 = 0x7fffffff
 } fascia_solver;
 

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <Eigen/SparseCore>
+#include <cstdint>
+#include <vector>
+
+#include "sim/realtime/floats.h"
+#include "sim/realtime/packed.h"
+#include "sim/vector.h"
+
+namespace fascia::sim::realtime {
+
+/// How a symmetric matrix over nodes in space is eliminated: nested dissection by planes (George 1973), every separator and
+/// every last piece a supernode whose columns are treated as dense.
+class Dissection {
+ public:
+  /// `matrix` square, full; `places` of its unknowns.
+  Dissection(const Eigen::SparseMatrix<double, Eigen::RowMajor>& matrix, const Positions& places);
+
+  /// order()[k]: the unknown eliminated k-th.
+  const std::vector<uint32_t>& order() const { return order_; }
+  size_t size() const { return order_.size(); }
+
+  struct Front {
+    uint32_t first = 0, width = 0;  ///< of its unknowns in the order
+    std::vector<uint32_t> rows;     ///< later unknowns, in the order, ascending
+    int32_t parent = -1;            ///< that takes what it leaves
+  };
+  const std::vector<Front>& fronts() const { return fronts_; }  ///< children before parents
+
+ private:
+  void dissect(std::vector<uint32_t>& piece, const Eigen::SparseMatrix<double, Eigen::RowMajor>& matrix, const Positions& places);
+  void eliminate(const std::vector<uint32_t>& columns);
+  void find_rows(const Eigen::SparseMatrix<double, Eigen::RowMajor>& matrix);
+
+  std::vector<uint32_t> order_;
+  std::vector<Front> fronts_;
+  std::vector<uint8_t> mark_;
+};
+
+/// The Cholesky factor of a matrix in an order of elimination, in panels of at most sixteen columns and whole blocks of sixteen
+/// rows, single precision (computed in double). Diagonal blocks are kept as their inverses.
+class PanelFactor {
+ public:
+  /// Factors `matrix`, which must have the pattern `dissection` was made for; false when it is not positive definite.
+  bool compute(const Dissection& dissection, const Eigen::SparseMatrix<double, Eigen::RowMajor>& matrix);
+  Panels view() const { return {size_, nodes_.size(), nodes_.data(), rows_.data(), values_.data()}; }
+  size_t entries() const { return values_.size(); }
+  size_t columns() const { return size_; }
+
+ private:
+  size_t size_ = 0;
+  std::vector<Panels::Node> nodes_;
+  std::vector<uint32_t> rows_;
+  Floats values_;
+};
+
+}  // namespace fascia::sim::realtime

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sim/face.h"
+#include "sim/realtime/model.h"
+
+namespace fascia::sim::realtime {
+
+/// How time passes for a face in real time.
+struct StepOptions {
+  ActivationDynamics dynamics;
+  int iterations = 2;                   ///< at most, of each substep
+  double tolerance = 3e-7;              ///< metres: largest move of a node still wanted when a substep ends earlier
+  bool checks_last = false;             ///< whether the last iteration's energy is looked at too; costs as much as one more
+  int largest_number_of_substeps = 16;  ///< a longer frame loses the rest of its time
+  double largest_displacement = 0.15;   ///< metres: beyond it the watchdog calls the face diverged
+};
+
+/// One face on a model laid out for the loops: what sim::Face does, on the same energies, many times faster.
+///
+/// Positions are single precision and work memory is borrowed from the model, so a face is small. Not for two threads at once;
+/// different faces are free. Nothing but the constructor and the first use of borrowed memory allocates; nothing throws.
+class Face {
+ public:
+  /// `model` must be valid and outlive the face; `channels` is how many activations it listens to.
+  Face(const Model& model, size_t channels);
+
+  /// See sim::Face.
+  MinimiseResult static_pose(const Drive& drive, const PoseOptions& options, std::span<Vec3f> positions);
+  StepResult step(double seconds, const Drive& drive, const StepOptions& options = {});
+  void reset(const Drive& drive = {});
+  MinimiseResult settle(const Drive& drive, const PoseOptions& options = {});
+  void positions(std::span<Vec3f> out) const;
+  void displacements(std::span<Vec3f> out) const;
+
+  /// Bytes this face keeps for itself.
+  size_t memory() const;
+  std::span<const float> activations() const { return activations_; }
+
+ private:
+  struct Solve;
+
+  void place(const JawPose& jaw, std::span<const float> activations, Workspace& work, Driven& driven) const;
+  void fill_nodes(const float* x, Positions& nodes) const;
+  double contact_energy(Solve& solve, const float* x, float* gradient);
+  double evaluate(Solve& solve, const float* x);
+  void steady(float* direction);
+  MinimiseResult minimise(Solve& solve, const MinimiseOptions& options, bool checks_last, float* x);
+  MinimiseResult substep(double share, bool is_first, const Drive& drive, const StepOptions& options, Workspace& work);
+  bool sound(const float* carried, double largest) const;
+
+  const Model* model_;
+  Floats position_, velocity_, carried_, last_direction_, pose_offset_;
+  std::vector<FacingPair> facing_;
+  struct BoneReach {
+    float place[3] = {0, 0, 0};  ///< in the bone's frame, where the distance was last looked up
+    float free = -1.0F;          ///< metres from there within which it cannot touch; negative: not known
+  };
+  std::vector<BoneReach> reach_;  ///< of each contact with bone
+  std::vector<float> excitations_, last_excitations_, activations_;
+  JawPose last_jaw_;
+  RigidTransform last_mandible_;
+  Vec3 last_acceleration_ = Vec3::Zero();
+  double left_over_ = 0.0;
+};
+
+}  // namespace fascia::sim::realtime

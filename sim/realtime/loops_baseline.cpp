@@ -1,0 +1,3 @@
+#define FASCIA_LANES_NAMESPACE baseline
+#define FASCIA_LOOPS loops_baseline
+#include "sim/realtime/loops.h"

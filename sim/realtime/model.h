@@ -1,0 +1,104 @@
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "sim/face_model.h"
+#include "sim/lanes/instruction_set.h"
+#include "sim/realtime/dissection.h"
+#include "sim/realtime/floats.h"
+#include "sim/realtime/packed.h"
+
+namespace fascia::sim::realtime {
+
+/// What a solve needs of memory beside a face's own state; handed from face to face.
+struct Workspace {
+  static constexpr size_t history = 6;
+  Floats carried, start, gradient, tether_normals, carrier_pulls, fibre_scratch;      // places and batches
+  Floats packed, direction, moved, damped, last_gradient, begun, ballistic, answer;    // unknowns
+  std::vector<Floats> steps, changes;                                                  // `history` of unknowns
+  Positions nodes, nodes_before;                                                       // #nodes, for contact
+  std::vector<float> values;                                                           // by channel
+  std::vector<Grip> grips;
+  std::vector<uint32_t> near_bones;  // contacts that may touch
+};
+
+/// A face model laid out for the loops: the same energies, in single precision, with factors of its own. Immutable but for
+/// the workspaces it lends, so any number of faces and threads may use one.
+class Model {
+ public:
+  /// `face` must be valid and outlive this.
+  explicit Model(const FaceModel& face, lanes::InstructionSet instructions = lanes::instruction_set());
+
+  const FaceModel& face() const { return *face_; }
+  const Packed& packed() const { return packed_; }
+  const Loops& loops() const { return *loops_; }
+  size_t places() const { return packed_.places; }  ///< floats of a list of places
+  size_t unknowns() const { return slots_.size(); }
+  size_t unknown_floats() const { return unknown_floats_; }              ///< of a list of unknowns
+  const std::vector<int32_t>& slots() const { return slots_; }           ///< of each unknown in the factors' order
+  int32_t slot_of(size_t node) const {
+    const size_t columns = face_->lattice().columns;
+    return static_cast<int32_t>(16 * (node % columns) + 4 * (node / columns));
+  }
+  Panels pose_factor() const { return pose_factor_.view(); }
+  Panels step_factor() const { return step_factor_.view(); }
+  const float* pose_diagonal() const { return pose_diagonal_.data(); }   ///< of the factored matrices, each unknown's
+  const float* step_diagonal() const { return step_diagonal_.data(); }
+  SparseRows stiffness() const { return {slots_.size(), begin_.data(), column_.data(), value_.data()}; }
+  Unknowns unknown_list() const {
+    Unknowns list{};
+    list.count = slots_.size();
+    list.slot = slots_.data();
+    list.mass = masses_.data();
+    list.rest = packed_.rest;
+    return list;
+  }
+  size_t factor_entries() const { return pose_factor_.entries(); }
+  bool valid() const { return valid_; }
+
+  /// Lists and pointers for a drive; points into `work` and must be placed before use.
+  Driven driven(Workspace& work) const;
+  /// Numbers of a drive; see FaceModel::place. `values` one a channel, finite.
+  void set_jaw(const JawPose& jaw, Driven& driven) const;
+
+  std::unique_ptr<Workspace> borrow() const;
+  void give_back(std::unique_ptr<Workspace> work) const;
+
+ private:
+  void pack_triangles();
+  void pack_hinges();
+  void pack_springs();
+  void pack_held();
+  void pack_fibres();
+  void find_balance();
+  Eigen::SparseMatrix<double, Eigen::RowMajor> fibre_stiffness() const;
+  bool make_factors();
+
+  const FaceModel* face_;
+  const Loops* loops_;
+  Packed packed_{};
+  std::vector<TriangleBatch> triangles_;
+  std::vector<HingeBatch> hinges_;
+  std::vector<SpringBatch> springs_;
+  std::vector<TetherBatch> tethers_;
+  std::vector<CarrierBatch> carriers_;
+  std::vector<GlobeBatch> globes_;
+  std::vector<FibreBatch> fibres_;
+  std::vector<FibrePointBatch> fibre_points_;
+  std::vector<PressureBatch> pressures_;
+  Floats rest_, balance_, jaw_share_;
+  size_t longest_fibre_ = 0, channels_ = 0, unknown_floats_ = 0;
+  std::vector<int32_t> slots_;
+  std::vector<float> masses_;
+  std::vector<uint32_t> begin_, column_;
+  std::vector<float> value_;
+  PanelFactor pose_factor_, step_factor_;
+  std::vector<float> pose_diagonal_, step_diagonal_;
+  bool valid_ = false;
+  mutable std::mutex mutex_;
+  mutable std::vector<std::unique_ptr<Workspace>> workspaces_;
+};
+
+}  // namespace fascia::sim::realtime

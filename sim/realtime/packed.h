@@ -1,0 +1,169 @@
+#pragma once
+
+// What the loops of a face work on: plain numbers only, so that no inline function of a library is compiled for a machine that
+// may not be there.
+//
+// A place is four floats (x, y, z, nothing). The places of a column stand together on one cache line, skin, SMAS, inner layer and
+// an empty one: `at` in the lists below is 16 * column + 4 * layer. Elements are in batches of sixteen, each number of a batch sixteen
+// floats in a row; the last batch is filled up with elements without stiffness.
+
+#include <cstddef>
+#include <cstdint>
+
+namespace fascia::sim::realtime {
+
+constexpr size_t batch_width = 16;
+using Sixteen = float[batch_width];
+using SixteenAt = int32_t[batch_width];
+
+/// A membrane at rest: see sim/energies.h. The inverse of its rest edges is upper triangular: (a, b; 0, c).
+struct alignas(64) MembraneBatch {
+  Sixteen a, b, c, area_mu, area_lambda;
+};
+struct alignas(64) PrismBatch {
+  Sixteen volume, inverse_volume, stiffness, guard;
+};
+/// Two triangles of columns from skin to inner layer: both membranes, both prisms.
+struct alignas(64) TriangleBatch {
+  SixteenAt column[3];
+  MembraneBatch membrane[2];
+  PrismBatch prism[2];
+};
+struct alignas(64) HingeBatch {
+  SixteenAt column[4];
+  struct {
+    Sixteen weight[3];  ///< of the edge's second end and the opposite corners; the first's is what lacks to a sum of zero
+    Sixteen stiffness, bend, scale_a, scale_b;
+  } layer[2];
+};
+struct alignas(64) SpringBatch {
+  SixteenAt at[2];
+  Sixteen length, stiffness, limit, extra;
+  Sixteen slack;  ///< stretch below which there is no force: -1 km, or 0 when one-sided
+};
+/// Held to a place by its bones, stiffer or weaker along a normal; carriers are tethers with a pull.
+struct alignas(64) TetherBatch {
+  SixteenAt at;
+  Sixteen normal[3], tangential, extra;
+};
+struct alignas(64) CarrierBatch {
+  SixteenAt at;
+  Sixteen origin[3], axis[3], angle, reverse, stiffness, drive;
+  SixteenAt channel;
+};
+struct alignas(64) GlobeBatch {
+  SixteenAt at;
+  Sixteen centre[3], radius, stiffness;
+};
+/// Points of sixteen fibres, point after point along them.
+struct alignas(64) FibrePointBatch {
+  SixteenAt at[3];
+  Sixteen weight[3], base[3];
+  Sixteen taper;     ///< of the segment that begins here; 0 at and past a fibre's end
+  Sixteen mandible;  ///< 1: goes with it
+};
+struct alignas(64) FibreBatch {
+  uint32_t first, count;  ///< of its point batches
+  Sixteen length, shortest, strength;
+  SixteenAt channel;
+};
+struct alignas(64) PressureBatch {
+  SixteenAt at[3];
+  Sixteen pressure;
+  SixteenAt channel;
+};
+
+/// Everything of a model that its faces share.
+struct Packed {
+  const TriangleBatch* triangles;
+  const HingeBatch* hinges;
+  const SpringBatch* springs;
+  const TetherBatch* tethers;
+  const CarrierBatch* carriers;
+  const GlobeBatch* globes;
+  const FibreBatch* fibres;
+  const FibrePointBatch* fibre_points;
+  const PressureBatch* pressures;
+  size_t triangle_batches, hinge_batches, spring_batches, tether_batches, carrier_batches, globe_batches, fibre_batches, pressure_batches;
+  size_t places;          ///< 4 * columns
+  const float* rest;      ///< places
+  const float* balance;   ///< places: gradient at rest; null while it is being found
+  const float* jaw_share; ///< #places, one float each: how far the mandible carries it
+  float crush_begin, crush_end, turn_begin, fold_softness;  ///< see sim/energies.h
+};
+
+/// Where bones and drive stand for a solve.
+struct Driven {
+  const float* values;       ///< by channel
+  float jaw_origin[3], jaw_up[3], jaw_lateral[3];
+  float turn_open, turn_lateral;  ///< radians at share 1: about lateral, then about up
+  float glide[3];                 ///< at share 1
+  float jaw_rotation[9], jaw_translation[3];  ///< of the mandible itself, rows
+  bool jaw_at_rest;
+  float* carried;            ///< places: where each goes with its bones
+  float* tether_normals;     ///< 3 x 16 a batch
+  float* carrier_pulls;      ///< 3 x 16 a batch
+  float* fibre_scratch;      ///< 3 x 16 a point of the longest batch
+};
+
+/// A matrix over unknowns that x, y and z share, rows of 4-float places.
+struct SparseRows {
+  size_t size;
+  const uint32_t* begin;  ///< size + 1
+  const uint32_t* column;
+  const float* value;
+};
+
+/// A Cholesky factor by supernodes, see dissection.h.
+struct Panels {
+  struct Node {
+    uint32_t first, width;  ///< its unknowns, at most 16
+    uint32_t blocks;        ///< of sixteen rows below them
+    uint32_t rows;          ///< into `row`: 16 * blocks of them
+    uint32_t values;        ///< into `value`: the inverse of the diagonal block by columns (16 x width), then block after block the same
+  };
+  size_t size, nodes;
+  const Node* node;
+  const uint32_t* row;  ///< unknown, or `size` for none
+  const float* value;
+};
+
+/// What a solve asks for and what holds it back: unknowns by their places, with the forces that act on each alone.
+struct Unknowns {
+  size_t count;
+  const int32_t* slot;    ///< of each, into places
+  const float* mass;
+  const float* diagonal;  ///< of the factored matrix
+  const float *rest, *x, *gradient;  ///< places
+  const float *ballistic, *begun;    ///< by unknown: where inertia, where bones alone would bring it
+  float acceleration[3];
+  float per_mass, drag, stiff;       ///< 1 / h^2 and dampings over h; all 0 in a static pose
+};
+
+struct Loops {
+  /// Moves carried places, tether normals and carrier pulls.
+  void (*place)(const Packed&, const Driven&);
+  /// Energy of everything but contact with bones and lips at `x` (places), joules; writes the gradient (places), and in each
+  /// place's fourth float by how much it is stiffer than at rest, newton per metre: where walls stand and springs have stiffened.
+  double (*energy)(const Packed&, const Driven&, const float* x, float* gradient);
+  /// out = matrix * x over unknowns.
+  void (*multiply)(const SparseRows&, const float* x, float* out);
+  /// What unknowns have moved from where bones alone would bring them.
+  void (*subtract)(const Unknowns&, float* moved);
+  /// Gradient over unknowns with inertia, damping and acceleration, whose energy is returned. `answer`: S of a step S P^-1 S with
+  /// S^2 = p / (p + more), by which a node answers less where it is stiffer than the factor knows; one a float of `packed`.
+  double (*collect)(const Unknowns&, const float* moved, const float* damped, float* packed, float* answer);
+  /// list *= factors.
+  void (*scale)(const float* factors, float* list, size_t count);
+  /// Solves in place over unknowns (4 x (size + 1) floats, the last place of no meaning).
+  void (*solve)(const Panels&, float* values);
+  double (*dot)(const float* a, const float* b, size_t count);
+  void (*add)(float factor, const float* a, float* to, size_t count);  ///< to += factor * a; counts are multiples of 16
+  /// Largest squared length of a place.
+  float (*largest)(const float* a, size_t count);
+};
+const Loops& loops_baseline();
+const Loops& loops_avx2();
+const Loops& loops_avx512();
+
+}  // namespace fascia::sim::realtime
