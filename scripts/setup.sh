@@ -20,10 +20,10 @@ packages=(
   libepoxy-dev libegl-dev libgl-dev libegl1 libgl1-mesa-dri libimgui-dev libstb-dev
   ffmpeg
 )
-[ "$tier" = demo ] || packages+=(libgtest-dev libgmock-dev libvalijson-dev librapidcheck-dev binutils xvfb xauth)
+[ "$tier" = demo ] || packages+=(libgtest-dev libgmock-dev libvalijson-dev librapidcheck-dev binutils valgrind xvfb xauth)
 [ "$tier" != full ] || packages+=(
   clang clang-tidy clang-format libbenchmark-dev libvtk9-dev libcgal-dev python3-numpy python3-scipy
-  valgrind nodejs npm
+  nodejs npm
 )
 
 missing=()
