@@ -12,15 +12,17 @@
 namespace fascia::runtime {
 namespace {
 
-/// Fascia's own solver, in real time.
-class OwnSolver : public Solver {
+/// Fascia's own solver: in real time, or the reference, whose faces speak alike.
+template <class Face>
+class FaceSolver : public Solver {
  public:
-  OwnSolver(const sim::realtime::Model& model, std::size_t channels) : face_(model, channels) {}
+  template <class Model>
+  FaceSolver(const Model& model, std::size_t channels, int pose_iterations) : face_(model, channels) {
+    pose_.solver.iterations = pose_iterations;
+  }
 
   void pose(const sim::Drive& drive, std::span<sim::Vec3f> displacements) override {
-    sim::PoseOptions options;
-    options.solver.iterations = 400;  // cheap ones
-    face_.settle(drive, options);
+    face_.settle(drive, pose_);
     face_.displacements(displacements);
   }
   bool step(double seconds, const sim::Drive& drive, std::span<sim::Vec3f> displacements) override {
@@ -34,30 +36,8 @@ class OwnSolver : public Solver {
   }
 
  private:
-  sim::realtime::Face face_;
-};
-
-/// The same energies in double precision, each step converged: what the other is compared with.
-class ReferenceSolver : public Solver {
- public:
-  ReferenceSolver(const sim::FaceModel& model, std::size_t channels) : face_(model, channels) {}
-
-  void pose(const sim::Drive& drive, std::span<sim::Vec3f> displacements) override {
-    face_.settle(drive);
-    face_.displacements(displacements);
-  }
-  bool step(double seconds, const sim::Drive& drive, std::span<sim::Vec3f> displacements) override {
-    const sim::StepResult result = face_.step(seconds, drive);
-    face_.displacements(displacements);
-    return result.status == sim::StepStatus::done;
-  }
-  void reset(const sim::Drive& drive, std::span<sim::Vec3f> displacements) override {
-    face_.reset(drive);
-    face_.displacements(displacements);
-  }
-
- private:
-  sim::Face face_;
+  Face face_;
+  sim::PoseOptions pose_;
 };
 
 /// A solver from a module, behind sim's interface, which speaks of positions.
@@ -120,9 +100,9 @@ sim::MakeSolver bullet_entry() {
 
 std::unique_ptr<Solver> make_solver(fascia_solver kind, const Asset& asset, std::size_t level) {
   const std::size_t channels = asset.channel_names.size();
-  if (kind == FASCIA_SOLVER_OWN) return std::make_unique<OwnSolver>(asset.realtime_model(level), channels);
+  if (kind == FASCIA_SOLVER_OWN) return std::make_unique<FaceSolver<sim::realtime::Face>>(asset.realtime_model(level), channels, 400);
   const sim::FaceModel& model = asset.model(level);
-  if (kind == FASCIA_SOLVER_REFERENCE) return std::make_unique<ReferenceSolver>(model, channels);
+  if (kind == FASCIA_SOLVER_REFERENCE) return std::make_unique<FaceSolver<sim::Face>>(model, channels, 200);
   require(kind == FASCIA_SOLVER_BULLET, "unknown solver");
   std::unique_ptr<sim::Solver> solver(bullet_entry()(&model, channels));
   if (!solver) throw Failure(FASCIA_ERROR_MODULE, "the module libfascia_bullet could not make a solver of this rig");

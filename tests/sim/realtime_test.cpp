@@ -6,6 +6,7 @@
 #include <random>
 #include <thread>
 
+#include "tests/sim/instruction_sets.h"
 #include "tests/sim/patch.h"
 
 namespace fascia::sim::realtime {
@@ -14,15 +15,6 @@ namespace {
 using testing::add_fibre;
 using testing::make_patch;
 using testing::PatchOptions;
-
-std::vector<lanes::InstructionSet> all_sets() {
-  std::vector<lanes::InstructionSet> sets = {lanes::InstructionSet::baseline};
-#if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2")) sets.push_back(lanes::InstructionSet::avx2);
-  if (__builtin_cpu_supports("avx512f")) sets.push_back(lanes::InstructionSet::avx512);
-#endif
-  return sets;
-}
 
 /// A patch with a bit of everything: fibres, a jaw, a carrier, a globe under it, pressure behind it.
 struct Everything : ::testing::Test {
@@ -122,7 +114,7 @@ TEST_F(Everything, TheFactorSolvesItsMatrix) {
   Eigen::MatrixXd right = Eigen::MatrixXd::Random(matrix.rows(), 3);
   const Eigen::SparseMatrix<double> columns = matrix;
   const Eigen::MatrixXd expected = Eigen::SimplicialLLT<Eigen::SparseMatrix<double>>(columns).solve(right);
-  for (const lanes::InstructionSet set : all_sets()) {
+  for (const lanes::InstructionSet set : testing::all_instruction_sets()) {
     const Model model(face, set);
     Floats list(model.unknown_floats());
     for (size_t k = 0; k < dissection.size(); ++k)
@@ -209,7 +201,7 @@ TEST_F(Everything, EveryInstructionSetAndAnyNumberOfThreadsGiveTheSameBits) {
   const Model baseline(reference, lanes::InstructionSet::baseline);
   const std::vector<Vec3f> expected = played(baseline, pull, 20, 0.3F);
   EXPECT_GT(farthest(expected, std::vector<Vec3f>(expected.size(), Vec3f::Zero())), 1e-4);
-  for (const lanes::InstructionSet set : all_sets()) EXPECT_EQ(played(Model(reference, set), pull, 20, 0.3F), expected);
+  for (const lanes::InstructionSet set : testing::all_instruction_sets()) EXPECT_EQ(played(Model(reference, set), pull, 20, 0.3F), expected);
   // Many faces of one model, on one thread and on two.
   const Model model(reference);
   constexpr size_t count = 12;

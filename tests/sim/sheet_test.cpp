@@ -5,18 +5,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "tests/sim/instruction_sets.h"
+
 namespace fascia::sim {
 namespace {
-
-/// The instruction sets this machine runs.
-std::vector<lanes::InstructionSet> all_sets() {
-  std::vector<lanes::InstructionSet> sets = {lanes::InstructionSet::baseline};
-#if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2")) sets.push_back(lanes::InstructionSet::avx2);
-  if (__builtin_cpu_supports("avx512f")) sets.push_back(lanes::InstructionSet::avx512);
-#endif
-  return sets;
-}
 
 TEST(Sheet, EveryInstructionSetGivesTheSameBits) {
   SheetOptions options;
@@ -30,7 +22,7 @@ TEST(Sheet, EveryInstructionSetGivesTheSameBits) {
   };
   const Sheet expected = fallen(lanes::InstructionSet::baseline);
   EXPECT_LT(expected.position(22, 18).y(), -0.1F);
-  for (const lanes::InstructionSet set : all_sets()) {
+  for (const lanes::InstructionSet set : testing::all_instruction_sets()) {
     const Sheet sheet = fallen(set);
     for (uint32_t row = 0; row < options.rows; ++row)
       for (uint32_t column = 0; column < options.columns; ++column)
