@@ -17,17 +17,30 @@ struct HalfEdge {
   bool forward;
 };
 
+// By ends, then by triangle: buckets by the lower end, each short enough to sort by insertion.
 std::vector<HalfEdge> sorted_half_edges(const TriangleMesh& mesh) {
-  std::vector<HalfEdge> edges;
-  edges.reserve(mesh.triangles.size() * 3);
+  std::vector<int> offsets(mesh.vertices.size() + 1, 0);
+  for (const Triangle& triangle : mesh.triangles)
+    for (int e = 0; e < 3; ++e) ++offsets[std::min(triangle[e], triangle[(e + 1) % 3]) + 1];
+  std::partial_sum(offsets.begin(), offsets.end(), offsets.begin());
+  std::vector<HalfEdge> edges(mesh.triangles.size() * 3);
+  std::vector<int> filled(offsets.begin(), offsets.end() - 1);
   for (int t = 0; t < mesh.triangle_count(); ++t)
     for (int e = 0; e < 3; ++e) {
       const int a = mesh.triangles[t][e], b = mesh.triangles[t][(e + 1) % 3];
-      edges.push_back({std::min(a, b), std::max(a, b), t, e, a < b});
+      edges[filled[std::min(a, b)]++] = {std::min(a, b), std::max(a, b), t, e, a < b};
     }
-  std::sort(edges.begin(), edges.end(), [](const HalfEdge& p, const HalfEdge& q) {
-    return std::tie(p.low, p.high, p.triangle, p.edge) < std::tie(q.low, q.high, q.triangle, q.edge);
-  });
+  const auto by_high = [](const HalfEdge& p, const HalfEdge& q) { return p.high < q.high; };
+  for (size_t v = 0; v + 1 < offsets.size(); ++v) {
+    const auto first = edges.begin() + offsets[v], last = edges.begin() + offsets[v + 1];
+    // A hub of a fan has as many edges as the mesh has triangles.
+    if (last - first > 32) {
+      std::stable_sort(first, last, by_high);
+      continue;
+    }
+    for (auto next = first; next != last; ++next)
+      std::rotate(std::upper_bound(first, next, *next, by_high), next, next + 1);
+  }
   return edges;
 }
 

@@ -21,28 +21,25 @@ int Front::add_vertex(const Vec3& position, const Vec3& normal, double size) {
   normals.push_back(normal);
   sizes.push_back(size);
   outgoing.emplace_back();
-  grid.add(position);
+  joined_.emplace_back().reserve(8);
+  all.add(position);
+  open.add(position);
   return mesh.vertex_count() - 1;
 }
 
 int Front::add_first_triangle(int a, int b, int c) {
-  add_triangle(a, b, c);
+  mesh.triangles.push_back({a, b, c});
   const int ab = add_edge(a, b, c), bc = add_edge(b, c, a), ca = add_edge(c, a, b);
   link(ab, bc), link(bc, ca), link(ca, ab);
   return ab;
-}
-
-void Front::add_triangle(int a, int b, int c) {
-  mesh.triangles.push_back({a, b, c});
-  directed_.insert(key(a, b));
-  directed_.insert(key(b, c));
-  directed_.insert(key(c, a));
 }
 
 int Front::add_edge(int from, int to, int opposite) {
   edges.push_back({from, to, -1, -1, opposite, true});
   const int e = static_cast<int>(edges.size()) - 1;
   outgoing[from].push_back(e);
+  joined_[from].push_back(to);
+  joined_[to].push_back(from);
   return e;
 }
 
@@ -56,9 +53,9 @@ bool Front::in_sector(int e, const Vec3& point) const {
   const int v = edges[e].from, before = edges[edges[e].prev].from;
   const Vec3& at = mesh.vertices[v];
   const Vec3 along = mesh.vertices[edges[e].to] - at;
-  const double open = clockwise_angle(normals[v], along, mesh.vertices[before] - at);
+  const double gap = clockwise_angle(normals[v], along, mesh.vertices[before] - at);
   const double angle = clockwise_angle(normals[v], along, point - at);
-  return angle > 0.0 && angle < open;
+  return angle > 0.0 && angle < gap;
 }
 
 int Front::sector(int vertex, const Vec3& point) const {
@@ -68,6 +65,14 @@ int Front::sector(int vertex, const Vec3& point) const {
 }
 
 bool Front::connect(int e, int apex) {
+  const int corners[] = {edges[e].from, edges[e].to, apex};
+  if (!fill(e, apex)) return false;
+  for (int v : corners)
+    if (!on_front(v)) open.remove(v);
+  return true;
+}
+
+bool Front::fill(int e, int apex) {
   const int a = edges[e].from, b = edges[e].to;
   const int prev = edges[e].prev, next = edges[e].next;
   const bool closes_prev = edges[prev].from == apex, closes_next = edges[next].to == apex;
@@ -103,7 +108,7 @@ bool Front::connect(int e, int apex) {
       link(in, leaving), link(arriving, out);
     }
   }
-  add_triangle(b, a, apex);
+  mesh.triangles.push_back({b, a, apex});
   return true;
 }
 

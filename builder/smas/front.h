@@ -1,7 +1,6 @@
 #pragma once
 
-#include <cstdint>
-#include <unordered_set>
+#include <algorithm>
 #include <vector>
 
 #include "builder/smas/vertex_grid.h"
@@ -23,7 +22,8 @@ class Front {
     bool alive;
   };
 
-  explicit Front(double grid_cell) : grid(grid_cell) {}
+  /// `edge_length`: of most edges.
+  explicit Front(double edge_length) : all(edge_length), open(3.0 * edge_length) {}
 
   int add_vertex(const Vec3& position, const Vec3& normal, double size);
 
@@ -48,17 +48,16 @@ class Front {
   std::vector<double> sizes;
   std::vector<Edge> edges;
   std::vector<std::vector<int>> outgoing;  // alive front edges that leave each vertex
-  VertexGrid grid;
+  VertexGrid all, open;  // every vertex; those on a front
 
  private:
-  bool has_edge(int a, int b) const { return directed_.count(key(a, b)) || directed_.count(key(b, a)); }
-  static uint64_t key(int a, int b) { return static_cast<uint64_t>(a) << 32 | static_cast<uint32_t>(b); }
-  void add_triangle(int a, int b, int c);
+  bool has_edge(int a, int b) const { return std::find(joined_[a].begin(), joined_[a].end(), b) != joined_[a].end(); }
   int add_edge(int from, int to, int opposite);
   void kill(int e);
+  bool fill(int e, int apex);
   void link(int e, int next) { edges[e].next = next, edges[next].prev = e; }
 
-  std::unordered_set<uint64_t> directed_;
+  std::vector<std::vector<int>> joined_;  // vertices that each vertex has an edge with
 };
 
 }  // namespace fascia::smas

@@ -42,7 +42,7 @@ double face_scale(const Landmarks& landmarks) {
 
 double ReachField::Opening::distance(const Vec3& point) const {
   const double depth = (point - centre).dot(z);
-  return depth < near || depth > far ? 1.0 : across(point);
+  return std::max({across(point), near - depth, depth - far});
 }
 
 double ReachField::Opening::across(const Vec3& point) const {
@@ -126,14 +126,28 @@ void ReachField::add_nostrils(const Landmarks& landmarks) {
   nose.z = nose.x.cross(tip - under).normalized();
   if (nose.z.dot(under - landmark(landmarks, "nasion")) < 0.0) nose.z = -nose.z;
   nose.y = nose.z.cross(nose.x);
-  nose.half_width = 0.5 * (centres[0] - centres[1]).norm() + 0.24 * length;
-  nose.up = nose.down = 0.23 * length;
+  // As wide as the alae, of which the lowest part goes with it: their free edges are thinner than a triangle.
+  const double wings = (landmark(landmarks, "alare_left") - landmark(landmarks, "alare_right")).norm();
+  nose.half_width = std::max(0.5 * wings, 0.5 * (centres[0] - centres[1]).norm() + 0.24 * length);
+  nose.up = nose.down = 0.3 * length;
   // Bent, so that it passes in front of subnasale and back into the nostrils beside it.
   const double ahead = std::max((under - nose.centre).dot(nose.y) + 1.2 * nose.down, 0.0);
   nose.centre += ahead * nose.y;
   nose.bend = -1.5 * ahead / (nose.half_width * nose.half_width);
-  nose.near = -0.006 * scale_, nose.far = 0.006 * scale_;
+  nose.near = -0.004 * scale_, nose.far = 0.008 * scale_;
   openings_.push_back(nose);
+  for (const Vec3& rim : centres) nostrils_.push_back({rim, nose.z, 0.9 * length});
+}
+
+bool ReachField::in_nostril(const Vec3& point, const Vec3& normal) const {
+  for (const Nostril& nostril : nostrils_) {
+    const Vec3 inwards = nostril.rim - point;
+    const double along = inwards.dot(nostril.out);
+    const Vec3 across = inwards - along * nostril.out;
+    if (along < -0.002 * scale_ || along > 0.025 * scale_ || across.norm() > nostril.radius) continue;
+    if (normal.dot(across) > 0.15 * across.norm()) return true;
+  }
+  return false;
 }
 
 void ReachField::add_limits(const Landmarks& landmarks, const ReachOptions& options) {
@@ -188,7 +202,7 @@ bool ReachField::may_be_lining(const Vec3& point, const Vec3& normal) const {
         opening.across(point) < 0.005 * scale_)
       return true;
   }
-  return false;
+  return in_nostril(point, normal);
 }
 
 bool ReachField::is_socket(const Vec3& point, const Vec3& normal) const {

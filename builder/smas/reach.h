@@ -67,7 +67,15 @@ class ReachField {
   void add_nostrils(const Landmarks& landmarks);
   void add_limits(const Landmarks& landmarks, const ReachOptions& options);
 
+  // The way up into a nostril: what looks towards it, beside and above its rim, is its wall.
+  struct Nostril {
+    Vec3 rim, out;
+    double radius;
+  };
+  bool in_nostril(const Vec3& point, const Vec3& normal) const;
+
   std::vector<Opening> openings_;
+  std::vector<Nostril> nostrils_;
   std::vector<Limit> limits_;
   double scale_, band_;
 };

@@ -58,22 +58,31 @@ std::vector<Vec3> blended_normals(const TriangleMesh& mesh) {
 
 // Evens out the depths over their neighbourhood, as fascia does over the edges and pits of bone, but never
 // beyond what the bone allows.
-void smooth_depths(const VertexGrid& grid, double radius, std::vector<DepthSample>* samples) {
-  std::vector<int> near;
+void smooth_depths(double radius, std::vector<DepthSample>* samples) {
+  VertexGrid grid(radius);
+  for (const DepthSample& sample : *samples) grid.add(sample.skin);
+  // The weights are the same in every round.
+  std::vector<int> near, neighbours;
+  std::vector<double> weights, sums;
+  std::vector<size_t> ends;
+  for (const DepthSample& sample : *samples) {
+    grid.near(sample.skin, radius, &near);
+    double sum = 0.0;
+    for (int j : near) {
+      const DepthSample& other = (*samples)[j];
+      const double w = std::max(other.normal.dot(sample.normal), 0.0) *
+                       (1.0 - (other.skin - sample.skin).squaredNorm() / (radius * radius));
+      neighbours.push_back(j), weights.push_back(w);
+      sum += w;
+    }
+    sums.push_back(sum), ends.push_back(neighbours.size());
+  }
+  std::vector<double> depths(samples->size());
   for (int round = 0; round < 2; ++round) {
-    std::vector<double> depths(samples->size());
-    for (size_t i = 0; i < samples->size(); ++i) {
-      const DepthSample& sample = (*samples)[i];
-      grid.near(sample.skin, radius, &near);
-      double sum = 0.0, weights = 0.0;
-      for (int j : near) {
-        const DepthSample& other = (*samples)[j];
-        const double w = std::max(other.normal.dot(sample.normal), 0.0) *
-                         (1.0 - (other.skin - sample.skin).squaredNorm() / (radius * radius));
-        sum += w * other.depth;
-        weights += w;
-      }
-      depths[i] = std::clamp(sum / weights, sample.least, sample.most);
+    for (size_t i = 0, k = 0; i < samples->size(); ++i) {
+      double sum = 0.0;
+      for (; k < ends[i]; ++k) sum += weights[k] * (*samples)[neighbours[k]].depth;
+      depths[i] = std::clamp(sum / sums[i], (*samples)[i].least, (*samples)[i].most);
     }
     for (size_t i = 0; i < samples->size(); ++i) (*samples)[i].depth = depths[i];
   }
@@ -123,7 +132,7 @@ std::vector<DepthSample> depth_samples(const FacialSkin& face, const Bones& bone
         if (normal.norm() > 0.2) add(u * a + v * b + (1 - u - v) * c, normal.normalized());
       }
   }
-  smooth_depths(grid, 3.0 * spacing, &samples);
+  smooth_depths(3.0 * spacing, &samples);
   return samples;
 }
 

@@ -23,13 +23,20 @@ struct Inputs {
   Landmarks landmarks;
 };
 
+/// What the implicit function is told besides where it is 0.
+enum class ImplicitForm {
+  variational,  ///< its height at points over and under the surface (Turk and O'Brien)
+  hermite,      ///< its gradient, the skin's normal, at every fourth point
+};
+
 /// How the SMAS is built. Lengths are for an adult face and scale with the face.
 struct Options {
   double edge_length = 0.004;
   ReachOptions reach;
   /// Depth of the SMAS by region; empty: `adult_layers()`.
   std::vector<LayerSample> layers;
-  /// Centres of the implicit function at most: accuracy against time, which grows with the cube.
+  ImplicitForm form = ImplicitForm::variational;
+  /// Data of the implicit function at most: accuracy against time, which grows with the cube.
   int max_centres = 700;
   /// Distance to the depth asked for at which no more centres are added.
   double fit_tolerance = 0.0002;
@@ -49,7 +56,7 @@ struct Result {
   int outside_layers = 0;      ///< vertices not strictly between bone and skin
   int folds = 0;               ///< triangles that face against their vertices' normals
   TriangleQuality quality;
-  int centres = 0;             ///< of the implicit function
+  int centres = 0;             ///< data of the implicit function
   double fit_error = 0.0;      ///< root mean square distance of the depths asked for to the function's surface, metres
   double depth_error = 0.0;    ///< the largest such distance, metres
   long evaluations = 0;

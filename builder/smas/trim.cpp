@@ -9,8 +9,6 @@
 
 namespace fascia::smas {
 
-namespace {
-
 void keep_triangles(const std::vector<bool>& keep, TriangleMesh* mesh, std::vector<Vec3>* normals,
                     std::vector<double>* sizes, std::vector<double>* field) {
   std::vector<int> map;
@@ -28,8 +26,6 @@ void keep_triangles(const std::vector<bool>& keep, TriangleMesh* mesh, std::vect
   *sizes = std::move(kept_sizes);
   *field = std::move(kept_field);
 }
-
-}  // namespace
 
 void trim(double snap, TriangleMesh* mesh, std::vector<Vec3>* normals, std::vector<double>* sizes,
           std::vector<double>* field) {

@@ -15,6 +15,10 @@ namespace fascia::smas {
 void trim(double snap, TriangleMesh* mesh, std::vector<Vec3>* normals, std::vector<double>* sizes,
           std::vector<double>* field);
 
+/// Keeps the triangles with `keep` set and the vertices that they use; vertex data as in `trim`, of which `field` may be anything.
+void keep_triangles(const std::vector<bool>& keep, TriangleMesh* mesh, std::vector<Vec3>* normals,
+                    std::vector<double>* sizes, std::vector<double>* field);
+
 /// Keeps the part of a mesh that holds most triangles, joined by edges, and drops boundary triangles at
 /// vertices where two stretches of the boundary meet; vertex data as in `trim`.
 void keep_main_part(TriangleMesh* mesh, std::vector<Vec3>* normals, std::vector<double>* sizes,

@@ -117,10 +117,11 @@ void evaluate_points(const SplineCoefficients& s, const Vec3* points, size_t cou
   }
 }
 
-double evaluate_gradient(const SplineCoefficients& s, int output, const Vec3& q, Vec3& gradient) {
+namespace {
+
+double kernel_gradient(const SplineCoefficients& s, int output, const Vec3& q, Vec3& gradient) {
   const size_t begin = static_cast<size_t>(output) * s.stride;
   double value = 0;
-  gradient.setZero();
   for (int i = 0; i < s.centres; ++i) {
     const Vec3 h = q - Vec3(s.x[i], s.y[i], s.z[i]);
     const Radial radial = s.kernel.radial(h.squaredNorm());
@@ -132,6 +133,28 @@ double evaluate_gradient(const SplineCoefficients& s, int output, const Vec3& q,
     value -= radial.g * along;
     gradient -= radial.g * b + radial.s * along * h;
   }
+  return value;
+}
+
+double kernel_gradient_in_vectors(const SplineCoefficients& s, int exponent, int output, const Vec3& q,
+                                  Vec3& gradient) {
+  const size_t begin = static_cast<size_t>(output) * s.stride;
+  const auto dipoles = [&](const std::vector<double>& b) { return b.empty() ? nullptr : b.data() + begin; };
+  double out[4];
+  simd::functions().gradient_sum({s.x.data(), s.y.data(), s.z.data(), static_cast<size_t>(s.stride),
+                                  s.c.data() + begin, dipoles(s.bx), dipoles(s.by), dipoles(s.bz), exponent,
+                                  s.kernel.sign(), q.x(), q.y(), q.z(), out});
+  gradient = Vec3(out[1], out[2], out[3]);
+  return out[0];
+}
+
+}  // namespace
+
+double evaluate_gradient(const SplineCoefficients& s, int output, const Vec3& q, Vec3& gradient) {
+  gradient.setZero();
+  const int exponent = simd_exponent(s.kernel);
+  double value = exponent > 0 ? kernel_gradient_in_vectors(s, exponent, output, q, gradient)
+                              : kernel_gradient(s, output, q, gradient);
   for (size_t j = 0; j < s.monomials.size(); ++j) {
     const double a = s.polynomial(static_cast<Eigen::Index>(j), output);
     value += a * monomial_value(s.monomials[j], q);

@@ -23,6 +23,19 @@ struct Sum {
   size_t value_stride;
 };
 
+/// Value and gradient of such a sum at one point, with dipoles too when `bx` is not null (exponent 3 or 5):
+/// sum_j weights[j] phi(|h_j|) - b_j . grad phi(h_j), h_j = p - centre_j, and its three derivatives.
+struct GradientSum {
+  const double *x, *y, *z;  ///< centres
+  size_t centres;           ///< a multiple of 8; padding has weight 0
+  const double* weights;
+  const double *bx, *by, *bz;
+  int exponent;
+  double sign;
+  double px, py, pz;
+  double* out;  ///< value, then gradient: 4
+};
+
 /// Lower triangle, column by column, of the matrix of phi(|p_i - p_j|) for the same kernels.
 struct KernelMatrix {
   const double *x, *y, *z;
@@ -57,6 +70,7 @@ struct Cholesky {
 struct Functions {
   const char* name;
   void (*sum)(const Sum&);
+  void (*gradient_sum)(const GradientSum&);
   void (*kernel_matrix)(const KernelMatrix&);
   void (*rank_update)(const RankUpdate&);
   bool (*cholesky)(const Cholesky&);

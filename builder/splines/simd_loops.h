@@ -156,6 +156,64 @@ void sum(const Sum& s) {
     sum_exponent<5>(s);
 }
 
+inline double across(Vector v) {
+  double total = 0;
+  for (size_t l = 0; l < lanes; ++l)
+    total += v[l];
+  return total;
+}
+
+template <int exponent, bool dipoles>
+void gradient_sum_of(const GradientSum& s) {
+  const Vector x = splat(s.px), y = splat(s.py), z = splat(s.pz);
+  Vector value = splat(0), along_x = splat(0), along_y = splat(0), along_z = splat(0);
+  for (size_t j = 0; j < s.centres; j += lanes) {
+    const Vector dx = x - load(s.x + j), dy = y - load(s.y + j), dz = z - load(s.z + j);
+    const Vector squared = dx * dx + dy * dy + dz * dz, r = square_root(squared), w = load(s.weights + j);
+    // phi, phi'/r and the factor of h h^T in the Hessian; at a centre h is 0, and so is all that they multiply.
+    Vector phi, g, second = splat(0);
+    if constexpr (exponent == 1) {
+      phi = r;
+      g = r / (squared + 1e-300);
+    } else if constexpr (exponent == 3) {
+      phi = r * squared;
+      g = 3.0 * r;
+      if constexpr (dipoles) second = 3.0 * r / (squared + 1e-300);
+    } else {
+      phi = r * squared * squared;
+      g = 5.0 * r * squared;
+      second = 15.0 * r;
+    }
+    Vector slope = w * g;
+    value += w * phi;
+    if constexpr (dipoles) {
+      const Vector bx = load(s.bx + j), by = load(s.by + j), bz = load(s.bz + j);
+      const Vector along = bx * dx + by * dy + bz * dz;
+      value -= g * along;
+      slope -= second * along;
+      along_x -= g * bx;
+      along_y -= g * by;
+      along_z -= g * bz;
+    }
+    along_x += slope * dx;
+    along_y += slope * dy;
+    along_z += slope * dz;
+  }
+  s.out[0] = s.sign * across(value);
+  s.out[1] = s.sign * across(along_x);
+  s.out[2] = s.sign * across(along_y);
+  s.out[3] = s.sign * across(along_z);
+}
+
+void gradient_sum(const GradientSum& s) {
+  if (s.exponent == 1)
+    gradient_sum_of<1, false>(s);
+  else if (s.exponent == 3)
+    s.bx ? gradient_sum_of<3, true>(s) : gradient_sum_of<3, false>(s);
+  else
+    s.bx ? gradient_sum_of<5, true>(s) : gradient_sum_of<5, false>(s);
+}
+
 template <int exponent>
 void matrix_exponent(const KernelMatrix& m) {
   for (size_t j = 0; j < m.count; ++j) {
@@ -323,6 +381,6 @@ bool cholesky(const Cholesky& m) {
 }  // namespace
 
 extern const Functions table;
-const Functions table = {FASCIA_SIMD_NAME, sum, kernel_matrix, rank_update, cholesky};
+const Functions table = {FASCIA_SIMD_NAME, sum, gradient_sum, kernel_matrix, rank_update, cholesky};
 
 }  // namespace fascia::splines::simd::FASCIA_SIMD_NAMESPACE

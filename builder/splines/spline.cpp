@@ -71,6 +71,11 @@ void Spline::evaluate(const Vec3& point, double* values) const {
 }
 
 double Spline::scalar(const Vec3& point) const {
+  if (outputs() == 1) {
+    double value;
+    evaluate(point, &value);
+    return value;
+  }
   Vec3 gradient;
   return value_and_gradient(point, gradient);
 }

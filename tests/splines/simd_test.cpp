@@ -78,6 +78,45 @@ TEST(Simd, SumsAreRightToTheLastDigitsOnEveryUnit) {
   }
 }
 
+TEST(Simd, GradientSumsAreRightToTheLastDigitsOnEveryUnit) {
+  constexpr int centres = 45, stride = 48;
+  const std::vector<Vec3> sites = scattered(centres, 4);
+  Coordinates c(sites);
+  for (auto* array : {&c.x, &c.y, &c.z})
+    array->resize(stride, 0);
+  std::vector<double> weights(stride, 0), b[3];
+  for (int j = 0; j < centres; ++j)
+    weights[static_cast<size_t>(j)] = std::sin(1.0 + j);
+  for (int k = 0; k < 3; ++k) {
+    b[k].assign(stride, 0);
+    for (int j = 0; j < centres; ++j)
+      b[k][static_cast<size_t>(j)] = std::cos(2.0 + j + 5 * k);
+  }
+  for (const Vec3& p : {sites[7], Vec3(0.3, -0.2, 0.1), Vec3(4, 5, -6)})  // at a centre all that is radial is 0
+    for (int exponent : {1, 3, 5})
+      for (bool dipoles : {false, true}) {
+        if (exponent == 1 && dipoles) continue;
+        const Kernel kernel(exponent);
+        double exact[4] = {}, size = 1;
+        for (int j = 0; j < centres; ++j) {
+          const size_t at = static_cast<size_t>(j);
+          const Vec3 h = p - sites[at], dipole = dipoles ? Vec3(b[0][at], b[1][at], b[2][at]) : Vec3(0, 0, 0);
+          const Radial radial = kernel.radial(h.squaredNorm());
+          const Vec3 gradient = weights[at] * radial.g * h - radial.g * dipole - radial.s * dipole.dot(h) * h;
+          exact[0] += weights[at] * radial.phi - radial.g * dipole.dot(h);
+          for (int k = 0; k < 3; ++k) exact[k + 1] += gradient[k];
+          size += std::abs(radial.phi) + 6 * std::abs(radial.g) * (1 + h.norm());
+        }
+        for (const Functions* functions : all()) {
+          double out[4];
+          functions->gradient_sum({c.x.data(), c.y.data(), c.z.data(), stride, weights.data(),
+                                   dipoles ? b[0].data() : nullptr, b[1].data(), b[2].data(), exponent,
+                                   kernel.sign(), p.x(), p.y(), p.z(), out});
+          for (int k = 0; k < 4; ++k) EXPECT_NEAR(out[k], exact[k], 2e-15 * size) << functions->name << ' ' << exponent;
+        }
+      }
+}
+
 TEST(Simd, KernelMatricesOnEveryUnit) {
   for (int count : {1, 5, 8, 9, 40}) {
     const Coordinates p(scattered(count, 3));
