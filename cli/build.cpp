@@ -127,6 +127,11 @@ void add_build(CLI::App& app, Common& common) {
   command->add_option("--up", request->options.prepare.up, "Up axis of the file")->check(CLI::IsMember({"auto", "y", "z"}));
   command->add_option("--skin", request->options.prepare.skin, "Name of the mesh that is the skin");
   command->add_option("--tissue-scale", request->options.tissue_scale, "Scales every tissue depth")->check(CLI::Range(0.2, 3.0));
+  smas::ReachOptions& reach = request->options.smas.reach;
+  command->add_option("--smas-galea", reach.galea, "How far the SMAS follows the galea: 0 the hairline, 1 the vertex")->check(CLI::Range(0.0, 1.0));
+  command->add_option_function<double>("--smas-neck", [&reach](double millimetres) { reach.neck = 1e-3 * millimetres; },
+                                       "How far it follows the platysma below the chin's angle, mm of an adult")->check(CLI::Range(0.0, 80.0));
+  command->add_flag("--smas-nostrils,!--no-smas-nostrils", reach.nostrils, "Open under the nose, the default, or not");
   command->add_option("--detail", request->options.detail, "Finest lattice")->check(CLI::IsMember({"low", "medium", "high"}));
   command->add_option("--report", request->report, "Folder for report.html: one page with pictures of every stage and figures");
   command->callback([request, &common] {

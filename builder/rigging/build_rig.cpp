@@ -108,7 +108,7 @@ BuildResult build_rig(const formats::Scene& scene, const formats::LandmarkFile& 
     inputs.cranium = &skull.cranium;
     inputs.mandible = &skull.mandible;
     inputs.landmarks = points;
-    return smas::build(inputs);
+    return smas::build(inputs, options.smas);
   });
   report.smas_vertices = smas.mesh.vertex_count();
   report.smas_triangles = smas.mesh.triangle_count();

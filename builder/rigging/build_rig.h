@@ -6,6 +6,7 @@
 
 #include "anatomy/anatomy.h"
 #include "builder/prepare/prepare.h"
+#include "builder/smas/smas.h"
 #include "formats/landmark_file.h"
 #include "formats/scene.h"
 #include "rig/model/rig.h"
@@ -16,6 +17,7 @@ namespace fascia::rigging {
 struct BuildOptions {
   prepare::PrepareOptions prepare;
   double tissue_scale = 1.0;      ///< scales every tissue depth: children, stylised heads
+  smas::Options smas;             ///< how far it reaches, how fine it is
   std::string detail = "medium";  ///< finest level of the lattice: low, medium or high
   /// Called as each stage begins, with its name; may be empty.
   std::function<void(const std::string& stage)> progress;

@@ -82,7 +82,7 @@ Result build(const Inputs& inputs, const Options& options) {
   const HeightFit height = fit_height(samples, options, scale, area_of(face.mesh));
   const splines::Spline& spline = height.spline();
   const ImplicitFunction function = [&spline](const Vec3& p, Vec3* gradient) {
-    return gradient ? spline.value_and_gradient(p, *gradient) : spline.scalar(p);
+    return gradient ? spline.fast_value_and_gradient(p, *gradient) : spline.scalar(p);
   };
 
   MarchingOptions marching;

@@ -148,13 +148,8 @@ double kernel_gradient_in_vectors(const SplineCoefficients& s, int exponent, int
   return out[0];
 }
 
-}  // namespace
-
-double evaluate_gradient(const SplineCoefficients& s, int output, const Vec3& q, Vec3& gradient) {
-  gradient.setZero();
-  const int exponent = simd_exponent(s.kernel);
-  double value = exponent > 0 ? kernel_gradient_in_vectors(s, exponent, output, q, gradient)
-                              : kernel_gradient(s, output, q, gradient);
+// Adds the polynomial part, and turns the gradient to user units.
+double add_polynomial(const SplineCoefficients& s, int output, const Vec3& q, double value, Vec3& gradient) {
   for (size_t j = 0; j < s.monomials.size(); ++j) {
     const double a = s.polynomial(static_cast<Eigen::Index>(j), output);
     value += a * monomial_value(s.monomials[j], q);
@@ -163,6 +158,21 @@ double evaluate_gradient(const SplineCoefficients& s, int output, const Vec3& q,
   if (s.dimension == 2) gradient.z() = 0;
   gradient *= s.scale;
   return value;
+}
+
+}  // namespace
+
+double evaluate_gradient(const SplineCoefficients& s, int output, const Vec3& q, Vec3& gradient) {
+  gradient.setZero();
+  const double value = kernel_gradient(s, output, q, gradient);
+  return add_polynomial(s, output, q, value, gradient);
+}
+
+double evaluate_gradient_in_vectors(const SplineCoefficients& s, int output, const Vec3& q, Vec3& gradient) {
+  const int exponent = simd_exponent(s.kernel);
+  if (exponent == 0) return evaluate_gradient(s, output, q, gradient);
+  const double value = kernel_gradient_in_vectors(s, exponent, output, q, gradient);
+  return add_polynomial(s, output, q, value, gradient);
 }
 
 }  // namespace fascia::splines

@@ -17,4 +17,7 @@ int simd_exponent(const Kernel& kernel);
 /// Value of one output at local point `q` (see SplineCoefficients) and its gradient in user units.
 double evaluate_gradient(const SplineCoefficients& spline, int output, const Vec3& q, Vec3& gradient);
 
+/// The same on the machine's vector unit, where the loops know the kernel; the last digits depend on it.
+double evaluate_gradient_in_vectors(const SplineCoefficients& spline, int output, const Vec3& q, Vec3& gradient);
+
 }  // namespace fascia::splines

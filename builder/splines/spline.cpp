@@ -85,6 +85,11 @@ double Spline::value_and_gradient(const Vec3& point, Vec3& gradient) const {
   return evaluate_gradient(s, 0, to_local(s, point), gradient);
 }
 
+double Spline::fast_value_and_gradient(const Vec3& point, Vec3& gradient) const {
+  const SplineCoefficients& s = *data_;
+  return evaluate_gradient_in_vectors(s, 0, to_local(s, point), gradient);
+}
+
 Eigen::MatrixXd Spline::jacobian(const Vec3& point) const {
   const SplineCoefficients& s = *data_;
   Eigen::MatrixXd out(outputs(), 3);

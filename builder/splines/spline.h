@@ -55,8 +55,12 @@ class Spline {
   /// Values of all outputs into `values` (outputs()) without allocation.
   void evaluate(const Vec3& point, double* values) const;
 
-  /// First output and its gradient at `point`, without allocation: the evaluator for implicit surfaces.
+  /// First output and its gradient at `point`, without allocation.
   double value_and_gradient(const Vec3& point, Vec3& gradient) const;
+
+  /// The same on the machine's vector unit, several times faster: the evaluator for implicit surfaces. The last digits
+  /// depend on the unit.
+  double fast_value_and_gradient(const Vec3& point, Vec3& gradient) const;
 
   /// First output alone, without allocation.
   double scalar(const Vec3& point) const;

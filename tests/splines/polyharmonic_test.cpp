@@ -94,6 +94,9 @@ TEST(ThinPlate, Figures43And44DirectionalDerivatives) {
     EXPECT_NEAR(f.scalar({7, 3, 0}), expected.at_7_3, digits10);
     Vec3 gradient;
     f.value_and_gradient({5, 5, 0}, gradient);
+    Vec3 fast;
+    EXPECT_NEAR(f.fast_value_and_gradient({5, 5, 0}, fast), f.value({5, 5, 0})[0], 1e-12);
+    EXPECT_LT((fast - gradient).norm(), 1e-12);
     EXPECT_NEAR(gradient.dot(Vec3(h, h, 0)), 1, 1e-9);
     EXPECT_NEAR(gradient.dot(Vec3(-h, h, 0)), expected.cross, 1e-9);
   }

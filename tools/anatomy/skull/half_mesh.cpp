@@ -6,9 +6,9 @@
 #include <string>
 #include <utility>
 
-#include "builder/smas/surface_quality.h"
 #include "geometry/connectivity.h"
 #include "geometry/error.h"
+#include "tools/anatomy/skull/improve.h"
 #include "tools/anatomy/skull/tetrahedra.h"
 #include "tools/anatomy/skull/thin_out.h"
 
@@ -225,7 +225,7 @@ void improve(const smas::ImplicitFunction& field, int passes, Work& work) {
   quality.passes = passes;
   quality.move_boundary = true;
   quality.boundary_smoothing = 0;
-  smas::improve_triangles(field, quality, &work.mesh, &normals, &work.sizes);
+  skull_maker::improve(field, quality, &work.mesh, &normals, &work.sizes);
   // The boundary lies in the midplane up to rounding and the smoothing's slip along the surface.
   const Connectivity links = connectivity(work.mesh);
   for (const auto& loop : boundary_loops(work.mesh, links)) {
