@@ -39,17 +39,24 @@ void mend(const Layers& layers, MarchingResult* surface, std::vector<Lie>* lies)
     (*lies)[v] = there;
     return true;
   };
-  for (int round = 0; round < 3; ++round) {
+  for (int round = 0; round < 6; ++round) {
     flip_edges(kFeatureTurn, &work);
-    if (!relax_worst({true, 0.3}, kMendBelow, stays, &work)) break;
+    const bool moved = relax_worst({true, 0.3}, kMendBelow, stays, &work);
+    // What neither helps has a vertex too many.
+    std::vector<Lie> kept;
+    for (int v : collapse_slivers(kDropBelow, &work)) kept.push_back((*lies)[v]);
+    const bool merged = kept.size() < lies->size();
+    *lies = std::move(kept);
+    if (!moved && !merged) break;
   }
   flip_edges(kFeatureTurn, &work);
   surface->mesh.vertices = std::move(work.points);
   surface->mesh.triangles = std::move(work.triangles);
   surface->normals = std::move(work.normals);
+  surface->sizes = std::move(work.sizes);
 }
 
-// Drops triangles at the boundary that lie folded over or are slivers. Returns whether there were any.
+// Drops triangles at the boundary that lie folded over, outside the layers or are slivers. Returns whether there were any.
 bool drop_poor_border(MarchingResult* surface, std::vector<Lie>* lies) {
   const TriangleMesh& mesh = surface->mesh;
   const Connectivity links = connectivity(mesh);
@@ -63,7 +70,7 @@ bool drop_poor_border(MarchingResult* surface, std::vector<Lie>* lies) {
     if (!border[a] && !border[b] && !border[c]) continue;
     const Vec3 facing = surface->normals[a] + surface->normals[b] + surface->normals[c];
     keep[t] = smallest_angle_cosine(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]) < std::cos(kDropBelow) &&
-              triangle_normal(mesh, t).dot(facing) > 0.0;
+              triangle_normal(mesh, t).dot(facing) > 0.0 && (*lies)[a].between() && (*lies)[b].between() && (*lies)[c].between();
     any = any || !keep[t];
   }
   if (!any) return false;
@@ -82,7 +89,9 @@ bool drop_poor_border(MarchingResult* surface, std::vector<Lie>* lies) {
 Lie Layers::lie(const Vec3& point) const {
   Lie lie;
   lie.skin = skin.closest(point);
-  lie.under_skin = -lie.skin.signed_distance;
+  // Past a rim, where the skin turns in, the sign of its nearest patch says nothing.
+  const bool inside = lie.skin.signed_distance < 0.0 && outward(lie.skin.surface).dot(lie.skin.position - point) > 0.0;
+  lie.under_skin = inside ? lie.skin.distance : -lie.skin.distance;
   lie.over_bone = bones.distance(point);
   return lie;
 }
@@ -91,14 +100,14 @@ Lie Layers::move_between(Vec3* point) const {
   Lie at = lie(*point);
   if (clear(at)) return at;
   for (int round = 0; round < 12 && !clear(at); ++round) {
-    const Vec3 outward = skin.smooth_normal(at.skin.surface);
+    const Vec3 up = skin.smooth_normal(at.skin.surface);
     if (at.under_skin < clearance && at.over_bone < clearance) break;
     if (at.under_skin < clearance) {
       const double room = std::isfinite(at.over_bone) ? 0.5 * (at.over_bone - at.under_skin) : 1.0;
-      *point -= outward * std::min(1.1 * (clearance - at.under_skin), std::max(room, 0.0));
+      *point -= up * std::min(1.1 * (clearance - at.under_skin), std::max(room, 0.0));
     } else {
       const double room = 0.5 * (at.under_skin - at.over_bone);
-      *point += outward * std::min(1.1 * (clearance - at.over_bone), std::max(room, 0.0));
+      *point += up * std::min(1.1 * (clearance - at.over_bone), std::max(room, 0.0));
     }
     at = lie(*point);
   }
@@ -114,7 +123,7 @@ std::vector<Lie> order_layers(const Layers& layers, MarchingResult* surface) {
   std::vector<Lie> lies;
   lies.reserve(surface->mesh.vertices.size());
   for (Vec3& point : surface->mesh.vertices) lies.push_back(layers.move_between(&point));
-  for (int round = 0; round < 6; ++round) {
+  for (int round = 0; round < 10; ++round) {
     mend(layers, surface, &lies);
     if (!drop_poor_border(surface, &lies)) break;
   }

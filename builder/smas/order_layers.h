@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "builder/smas/marching_triangles.h"
@@ -21,6 +22,8 @@ struct Layers {
   const Bones& bones;
   double clearance;  ///< metres kept to both where there is room
   double range;      ///< depth within which bone is looked for, metres
+  /// Outward direction at a point of `skin`; at its rims that of the whole skin, which goes on there.
+  std::function<Vec3(const SurfacePoint&)> outward;
 
   Lie lie(const Vec3& point) const;
   bool clear(const Lie& lie) const { return lie.under_skin >= clearance && lie.over_bone >= clearance; }

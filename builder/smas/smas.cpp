@@ -108,7 +108,11 @@ Result build(const Inputs& inputs, const Options& options) {
   Result result;
   result.evaluations = surface.evaluations;
   std::vector<double> field(surface.mesh.vertices.size());
-  for (size_t v = 0; v < field.size(); ++v) field[v] = reach(surface.mesh.vertices[v]);
+  for (size_t v = 0; v < field.size(); ++v) {
+    // Itself, and the skin over it: lids and lips turn in before their fissure ends.
+    const Vec3& p = surface.mesh.vertices[v];
+    field[v] = std::min(reach(p), reach(skin.closest(p).position));
+  }
   trim(0.35, &surface.mesh, &surface.normals, &surface.sizes, &field);
   keep_main_part(&surface.mesh, &surface.normals, &surface.sizes, &field);
   if (surface.mesh.empty()) throw Error("SMAS: no surface between skin and bone; check the landmarks and the fitted skull");
@@ -117,7 +121,12 @@ Result build(const Inputs& inputs, const Options& options) {
   quality.boundary_smoothing = 0.3;
   quality.passes = 4;
   result.evaluations += improve_triangles(function, quality, &surface.mesh, &surface.normals, &surface.sizes);
-  const std::vector<Lie> lies = order_layers({skin, bones, options.clearance * scale, 0.06 * scale}, &surface);
+  const std::vector<Vec3> skin_normals = vertex_normals(*inputs.skin);
+  const auto outward = [&](const SurfacePoint& at) {
+    const Triangle& t = inputs.skin->triangles[face.skin_triangle[at.triangle]];
+    return Vec3(at.barycentric[0] * skin_normals[t[0]] + at.barycentric[1] * skin_normals[t[1]] + at.barycentric[2] * skin_normals[t[2]]);
+  };
+  const std::vector<Lie> lies = order_layers({skin, bones, options.clearance * scale, 0.06 * scale, outward}, &surface);
   result.mesh = std::move(surface.mesh);
   result.normals = std::move(surface.normals);
   for (const Lie& lie : lies) {

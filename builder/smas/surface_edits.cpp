@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "builder/smas/triangle_shape.h"
 
@@ -111,6 +112,25 @@ bool collapse_short_edges(double feature_turn, SurfaceMesh* mesh) {
   }
   if (any) m.compact();
   return any;
+}
+
+std::vector<int> collapse_slivers(double least_angle, SurfaceMesh* mesh) {
+  SurfaceMesh& m = *mesh;
+  const double limit = std::cos(least_angle);
+  CollapseCheck can_collapse;
+  for (int t = 0; t < static_cast<int>(m.triangles.size()); ++t) {
+    const Triangle& c = m.triangles[t];
+    if (m.gone(3 * t) || smallest_angle_cosine(m.points[c[0]], m.points[c[1]], m.points[c[2]]) <= limit) continue;
+    int shortest = 3 * t;
+    for (int h = 3 * t + 1; h < 3 * t + 3; ++h)
+      if (m.length(h) < m.length(shortest)) shortest = h;
+    for (const auto& [a, b] : {std::pair(m.from(shortest), m.to(shortest)), std::pair(m.to(shortest), m.from(shortest))}) {
+      if (m.on_boundary(a) || !m.may_edit(shortest) || !can_collapse(m, a, b)) continue;
+      m.collapse(shortest, b);
+      break;
+    }
+  }
+  return m.compact();
 }
 
 namespace {

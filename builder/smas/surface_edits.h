@@ -23,6 +23,10 @@ void split_long_edges(SurfaceField* field, SurfaceMesh* mesh);
 /// across a larger turn of the normal than `feature_turn`, radians. Returns whether there were any.
 bool collapse_short_edges(double feature_turn, SurfaceMesh* mesh);
 
+/// Collapses the shortest edges of triangles inside the mesh with an angle below `least_angle`, radians, where nothing folds or
+/// flattens. Returns the old numbers of the vertices that stay, all of them when there was none.
+std::vector<int> collapse_slivers(double least_angle, SurfaceMesh* mesh);
+
 /// Flips edges to larger smallest angles.
 void flip_edges(double feature_turn, SurfaceMesh* mesh);
 

@@ -129,12 +129,14 @@ void SurfaceMesh::collapse(int h, int kept) {
   dead_vertex_[a] = 1;
 }
 
-void SurfaceMesh::compact() {
+std::vector<int> SurfaceMesh::compact() {
+  std::vector<int> stay;
   std::vector<int> vertex(points.size()), triangle(triangles.size());
   int vertices = 0, count = 0;
   for (size_t v = 0; v < points.size(); ++v) {
     vertex[v] = vertices;
     if (dead_vertex_[v]) continue;
+    stay.push_back(static_cast<int>(v));
     points[vertices] = points[v];
     normals[vertices] = normals[v];
     sizes[vertices] = sizes[v];
@@ -157,6 +159,7 @@ void SurfaceMesh::compact() {
   triangles.resize(count), twin.resize(3 * static_cast<size_t>(count));
   dead_vertex_.assign(points.size(), 0);
   dead_triangle_.assign(triangles.size(), 0);
+  return stay;
 }
 
 }  // namespace fascia::smas

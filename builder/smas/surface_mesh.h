@@ -64,8 +64,8 @@ struct SurfaceMesh {
   void collapse(int h, int kept);
   bool gone(int h) const { return dead_triangle_[h / 3] != 0; }
 
-  /// Drops what collapses left behind.
-  void compact();
+  /// Drops what collapses left behind. Returns the old numbers of the vertices that stay.
+  std::vector<int> compact();
 
  private:
   void link(int g, int h);
