@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
-#include <ctime>
 #include <filesystem>
 #include <vector>
 
+#include "bench/smas/workload.h"
 #include "builder/rigging/find_landmarks.h"
 #include "builder/rigging/stages.h"
 #include "builder/smas/smas.h"
@@ -17,12 +17,6 @@
 namespace {
 
 using namespace fascia;
-
-double now() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
 
 double quantile(std::vector<double> values, double share) {
   std::sort(values.begin(), values.end());
@@ -40,9 +34,9 @@ void run(const std::filesystem::path& file, const anatomy::GenericAnatomy& anato
   std::vector<double> seconds;
   smas::Result smas;
   for (int repeat = 0; repeat < 5; ++repeat) {
-    const double started = now();
+    const double started = bench::processor_time();
     smas = smas::build(inputs);
-    seconds.push_back(now() - started);
+    seconds.push_back(bench::processor_time() - started);
   }
   const auto millimetres = [](double metres) { return 1e3 * metres; };
   std::printf("%-24s %7.0f skin triangles %7.3f s  %5d triangles  angle min %4.1f mean %4.1f  ratio %.3f  %zu loops  folds %d  outside %d  "
