@@ -60,29 +60,37 @@ DistanceField::DistanceField(const Lattice& lattice, size_t index)
 }
 
 double DistanceField::sample(const Vec3& point, Vec3& gradient) const {
+  // Quadratic B-splines on the grid: the slope does not jump between cells, which solvers would stumble over.
   const Vec3 at = (point - origin_) / spacing_;
   gradient.setZero();
-  size_t cell[3];
-  double t[3];
+  size_t first[3];
+  double weight[3][3], slope[3][3];
   for (int axis = 0; axis < 3; ++axis) {
-    const auto most = static_cast<double>(size_[static_cast<size_t>(axis)] - 1);
-    if (!(at[axis] >= 0.0 && at[axis] < most)) return std::numeric_limits<double>::infinity();
-    cell[axis] = static_cast<size_t>(at[axis]);
-    t[axis] = at[axis] - static_cast<double>(cell[axis]);
+    const double most = static_cast<double>(size_[static_cast<size_t>(axis)]) - 1.5;
+    const bool is_inside = at[axis] > 0.5 && at[axis] < most;  // beyond, the field goes on as it ends: no jump at its border
+    const double place = is_inside ? at[axis] : at[axis] >= most ? most : 0.5;
+    const double middle = std::min(std::floor(place + 0.5), most - 0.5), t = place - middle;
+    first[axis] = static_cast<size_t>(middle) - 1;
+    weight[axis][0] = 0.5 * (0.5 - t) * (0.5 - t);
+    weight[axis][1] = 0.75 - t * t;
+    weight[axis][2] = 0.5 * (0.5 + t) * (0.5 + t);
+    slope[axis][0] = is_inside ? t - 0.5 : 0.0;
+    slope[axis][1] = is_inside ? -2.0 * t : 0.0;
+    slope[axis][2] = is_inside ? t + 0.5 : 0.0;
   }
   const size_t row = size_[0], slice = row * size_[1];
-  const uint8_t* corner = values_.data() + cell[0] + row * cell[1] + slice * cell[2];
-  double v[8];
-  for (size_t k = 0; k < 8; ++k)
-    v[k] = corner[(k & 1U) + ((k >> 1U) & 1U) * row + (k >> 2U) * slice];
-  const auto mix = [](double a, double b, double s) { return a + s * (b - a); };
-  const double x00 = mix(v[0], v[1], t[0]), x10 = mix(v[2], v[3], t[0]), x01 = mix(v[4], v[5], t[0]), x11 = mix(v[6], v[7], t[0]);
-  const double y0 = mix(x00, x10, t[1]), y1 = mix(x01, x11, t[1]);
-  const double scale = step_ / spacing_;
-  gradient.z() = scale * (y1 - y0);
-  gradient.y() = scale * mix(x10 - x00, x11 - x01, t[2]);
-  gradient.x() = scale * mix(mix(v[1] - v[0], v[3] - v[2], t[1]), mix(v[5] - v[4], v[7] - v[6], t[1]), t[2]);
-  return step_ * (mix(y0, y1, t[2]) - 128.0);
+  const uint8_t* corner = values_.data() + first[0] + row * first[1] + slice * first[2];
+  double value = 0.0;
+  for (size_t k = 0; k < 3; ++k)
+    for (size_t j = 0; j < 3; ++j) {
+      const uint8_t* v = corner + row * j + slice * k;
+      const double along = weight[0][0] * v[0] + weight[0][1] * v[1] + weight[0][2] * v[2];
+      const double change = slope[0][0] * v[0] + slope[0][1] * v[1] + slope[0][2] * v[2];
+      value += weight[1][j] * weight[2][k] * along;
+      gradient += Vec3(weight[1][j] * weight[2][k] * change, slope[1][j] * weight[2][k] * along, weight[1][j] * slope[2][k] * along);
+    }
+  gradient *= step_ / spacing_;
+  return step_ * (value - 128.0);
 }
 
 Contacts::Contacts(const Lattice& lattice, const std::vector<Vec3>& rest, const ContactOptions& options) : options_(options) {
@@ -186,6 +194,26 @@ double Contacts::grip_energy(std::span<const Grip> grips, const Vec3* x, Vec3* g
       for (size_t k = 0; k < 3; ++k) gradient[grip.corners[k]] -= grip.weights[static_cast<int>(k)] * force;
   }
   return energy;
+}
+
+void Contacts::add_curvature(const RigidTransform& mandible, std::span<const FacingPair> pairs, std::span<const Grip> grips, const Vec3* x,
+                             Curvature& out) const {
+  const auto press = [&](uint32_t node, const Touch& touch, double stiffness) {
+    if (touch.depth > 0.0) out.points.push_back({{node}, {1.0}, stiffness * touch.normal * touch.normal.transpose()});
+  };
+  for (size_t c = 0; c < globe_nodes_.size(); ++c) press(globe_nodes_[c], globe_touch(c, x), options_.globe_stiffness);
+  for (size_t c = 0; c < bone_nodes_.size(); ++c) press(bone_nodes_[c], bone_touch(c, mandible, x), options_.bone_stiffness);
+  const auto quad = [&](uint32_t node, const std::array<uint32_t, 3>& corners, const Vec3& weights, const Mat3& block) {
+    if (corners[0] == FacingPair::none) out.points.push_back({{node}, {1.0}, block});
+    else out.quads.push_back({{node, corners[0], corners[1], corners[2]}, {1.0, -weights[0], -weights[1], -weights[2]}, block});
+  };
+  for (const FacingPair& pair : pairs)
+    if (pair.is_found() && pair.gap(x) < pair.margin)
+      quad(pair.node, pair.corners, pair.weights, options_.facing_stiffness * pair.normal * pair.normal.transpose());
+  for (const Grip& grip : grips) {
+    const Mat3 along = grip.normal * grip.normal.transpose();
+    quad(grip.node, grip.corners, grip.weights, grip.stiffness * (Mat3::Identity() - along) + grip.normal_stiffness * along);
+  }
 }
 
 void Contacts::pair_of(size_t contact, const Vec3* x, FacingPair& pair) const {

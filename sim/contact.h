@@ -3,6 +3,7 @@
 #include <limits>
 #include <vector>
 
+#include "sim/curvature.h"
 #include "sim/jaw.h"
 #include "sim/lattice.h"
 #include "sim/vector.h"
@@ -25,7 +26,8 @@ class DistanceField {
  public:
   /// Field `index` of the lattice, which must be sound.
   DistanceField(const Lattice& lattice, size_t index);
-  /// Distance in metres at `point`, negative inside, and its gradient: trilinear. Infinite outside the grid.
+  /// Distance in metres at `point`, negative inside, and its gradient: quadratic B-splines on the grid, so the gradient is
+  /// continuous. Outside the grid it goes on as it ends.
   double sample(const Vec3& point, Vec3& gradient) const;
 
  private:
@@ -71,6 +73,10 @@ class Contacts {
   /// Energy of found pairs.
   double facing_energy(std::span<const FacingPair> pairs, const Vec3* x, Vec3* gradient) const;
   double grip_energy(std::span<const Grip> grips, const Vec3* x, Vec3* gradient) const;
+
+  /// Adds what they add to the Hessian: globes, bones, pairs and grips; the surfaces' own bend is left out.
+  void add_curvature(const RigidTransform& mandible, std::span<const FacingPair> pairs, std::span<const Grip> grips, const Vec3* x,
+                     Curvature& out) const;
 
   /// Finds for each facing node the nearest place of the other side as the face stands in `x`. #facing nodes; the
   /// largest change of a gap against the pairs before, metres, is returned.

@@ -75,6 +75,26 @@ Membrane make_membrane(std::array<uint32_t, 3> nodes, double youngs_thickness, d
   return m;
 }
 
+namespace {
+
+/// (begin / ratio - 1)^2 below `begin`, from `end` on as its parabola; with both derivatives by the ratio.
+struct Wall {
+  double value = 0.0, slope = 0.0, curvature = 0.0;
+};
+Wall wall(double ratio, double begin, double end) {
+  if (ratio >= begin) return {};
+  const double r = std::max(ratio, end), share = begin / r, lack = share - 1.0, below = ratio - r;
+  const double slope = -2.0 * lack * share / r, curvature = 2.0 * share * (3.0 * share - 2.0) / (r * r);
+  return {lack * lack + slope * below + 0.5 * curvature * below * below, slope + curvature * below, curvature};
+}
+
+}  // namespace
+
+MembraneCrush membrane_crush(const Membrane& m, double ratio) {
+  const Wall w = wall(ratio, crush_begin, crush_end);
+  return {m.mu * w.value, m.mu * w.slope, m.mu * w.curvature};
+}
+
 double membrane_energy(const Membrane& m, const Vec3* x, Vec3* gradient) {
   using Mat32 = Eigen::Matrix<double, 3, 2>;
   Mat32 edges;
@@ -93,19 +113,16 @@ double membrane_energy(const Membrane& m, const Vec3* x, Vec3* gradient) {
   rotation.col(1) = (f1 + normal.cross(f0)) / trace;
   const double spread = trace - 2.0;
   Mat32 stress = 2.0 * m.mu * (deformation - rotation) + m.lambda * spread * rotation;
-  double crush = 0.0;
-  if (area_ratio < crush_begin) {
-    const double ratio = std::max(area_ratio, crush_end), excess = crush_begin / ratio - 1.0;
-    crush = m.mu * excess * excess;
-    const double slope = -2.0 * m.mu * excess * crush_begin / (ratio * ratio);
-    stress.col(0) += slope * f1.cross(normal);
-    stress.col(1) += slope * normal.cross(f0);
+  const MembraneCrush crush = membrane_crush(m, area_ratio);
+  if (crush.slope != 0.0) {
+    stress.col(0) += crush.slope * f1.cross(normal);
+    stress.col(1) += crush.slope * normal.cross(f0);
   }
   const Mat32 forces = m.area * stress * m.inverse_rest.transpose();
   gradient[m.nodes[0]] -= forces.col(0) + forces.col(1);
   gradient[m.nodes[1]] += forces.col(0);
   gradient[m.nodes[2]] += forces.col(1);
-  return m.area * (m.mu * (squares - 2.0 * trace + 2.0) + 0.5 * m.lambda * spread * spread + crush);
+  return m.area * (m.mu * (squares - 2.0 * trace + 2.0) + 0.5 * m.lambda * spread * spread + crush.energy);
 }
 
 double hinge_angle(const std::array<uint32_t, 4>& nodes, const Vec3* x) { return angle_of(hinge_frame(nodes, x)); }
@@ -133,6 +150,14 @@ Hinge make_hinge(std::array<uint32_t, 4> nodes, double rigidity, const Vec3* res
   return hinge;
 }
 
+HingeNormal hinge_normal(const Hinge& h, const Vec3* x) {
+  const auto& n = h.nodes;
+  const Vec3 edge = x[n[1]] - x[n[0]], arm_a = x[n[2]] - x[n[0]], arm_b = x[n[3]] - x[n[0]];
+  const Vec3 normal = h.scale_a * edge.cross(arm_a) + h.scale_b * arm_b.cross(edge);
+  const double length = std::sqrt(normal.squaredNorm() + fold_softness);
+  return {normal / length, length};
+}
+
 double hinge_energy(const Hinge& h, const Vec3* x, Vec3* gradient) {
   const auto& n = h.nodes;
   Vec3 away = Vec3::Zero();
@@ -142,9 +167,7 @@ double hinge_energy(const Hinge& h, const Vec3* x, Vec3* gradient) {
     return 0.5 * h.stiffness * away.squaredNorm();
   }
   const Vec3 edge = x[n[1]] - x[n[0]], arm_a = x[n[2]] - x[n[0]], arm_b = x[n[3]] - x[n[0]];
-  Vec3 normal = h.scale_a * edge.cross(arm_a) + h.scale_b * arm_b.cross(edge);
-  const double length = std::sqrt(normal.squaredNorm() + fold_softness);
-  normal /= length;
+  const auto [normal, length] = hinge_normal(h, x);
   const Vec3 miss = away - h.bend * normal;
   for (size_t i = 0; i < 4; ++i) gradient[n[i]] += (h.stiffness * h.weights[i]) * miss;
   // The normal turns with the triangles: d(normal) = (I - normal normal^T) d(sum of normals) / length.
@@ -184,14 +207,23 @@ Prism make_prism(std::array<uint32_t, 6> nodes, double stiffness, const Vec3* re
   return {nodes, prism_volume(nodes, rest), stiffness};
 }
 
+PrismPressure prism_pressure(const Prism& p, double volume) {
+  const double rest = std::max(std::abs(p.volume), 1e-12), excess = volume - p.volume;
+  PrismPressure out{0.5 * p.stiffness * excess * excess / rest, p.stiffness * excess / rest, p.stiffness / rest};
+  if (p.volume <= 0.0) return out;
+  const Wall w = wall(volume / rest, turn_begin, turn_end);
+  out.energy += turn_modulus * rest * w.value;
+  out.pressure += turn_modulus * w.slope;
+  out.slope += turn_modulus * w.curvature / rest;
+  return out;
+}
+
 double prism_energy(const Prism& p, const Vec3* x, Vec3* gradient) {
-  const double rest = std::max(std::abs(p.volume), 1e-12), excess = prism_volume(p.nodes, x) - p.volume;
-  const double lack = p.volume > 0.0 ? std::max(0.0, turn_begin - 1.0 - excess / rest) : 0.0;
-  if (p.stiffness == 0.0 && lack == 0.0) return 0.0;
-  const double pressure = p.stiffness * excess / rest - turn_modulus * lack;
+  const PrismPressure at = prism_pressure(p, prism_volume(p.nodes, x));
+  if (at.pressure == 0.0) return at.energy;
   const auto parts = prism_volume_gradient(p.nodes, x);
-  for (size_t i = 0; i < 6; ++i) gradient[p.nodes[i]] += pressure * parts[i];
-  return 0.5 * p.stiffness * excess * excess / rest + 0.5 * turn_modulus * rest * lack * lack;
+  for (size_t i = 0; i < 6; ++i) gradient[p.nodes[i]] += at.pressure * parts[i];
+  return at.energy;
 }
 
 double tether_energy(const Tether& t, const Vec3& place, const Vec3& normal, const Vec3* x, Vec3* gradient) {

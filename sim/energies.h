@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 #include "sim/vector.h"
@@ -11,9 +12,11 @@ namespace fascia::sim {
 
 /// Where elements resist ever more, for whoever evaluates the same energies in another way.
 inline constexpr double crush_begin = 0.5;     ///< share of its area below which a membrane does
-inline constexpr double crush_end = 1e-6;      ///< share below which it does no more
+inline constexpr double crush_end = 0.1;       ///< share below which its resistance goes on as a parabola
 inline constexpr double turn_begin = 0.4;      ///< share of its volume below which a prism resists being turned inside out
-inline constexpr double turn_modulus = 4e4;    ///< pascal, with which it does
+inline constexpr double turn_end = 0.1;        ///< share below which its resistance goes on as a parabola
+inline constexpr double turn_modulus = 800.0;  ///< pascal, with which it does
+inline constexpr double segment_rounding = 6.25e-8;  ///< square metres: rounds off short stretches of fibre
 inline constexpr double fold_softness = 0.01;  ///< where a hinge's mean normal fades out: folds closer than 6 degrees
 
 /// A spring that may stiffen: `stiffness` up to `limit` metres of stretch, `second_stiffness` beyond.
@@ -26,7 +29,7 @@ struct Spring {
 
 /// A constant-strain triangle of corotated linear elasticity in plane stress.
 /// W = area (mu |F - R|^2 + lambda/2 (tr S - 2)^2), F = R S (Sifakis & Barbic 2012, section 3.3). Below half of
-/// its area a term mu (1 / (2 J) - 1)^2 grows without bound, so that no triangle collapses under a muscle's pull.
+/// its area a term mu (1 / (2 J) - 1)^2 is added, from a tenth on by its parabola, so that no triangle collapses.
 struct Membrane {
   std::array<uint32_t, 3> nodes;
   Eigen::Matrix2d inverse_rest;  ///< of the rest edges in the triangle's own plane
@@ -44,12 +47,16 @@ struct Hinge {
   double scale_a, scale_b;        ///< of the triangles' normals to unit ones at rest
 };
 
-/// The prism between two layers: W = stiffness/(2 V0) (V - V0)^2, sides bilinear. Below 0.4 V0 a further 40 kPa
-/// resist its being turned inside out, also where the stiffness is 0.
+/// The prism between two layers: W = stiffness/(2 V0) (V - V0)^2, sides bilinear. Below t = 0.4 V0 it resists being
+/// turned inside out ever more, also where the stiffness is 0: W = 800 Pa V0 (t / V - 1)^2, from 0.1 V0 on by its parabola.
 struct Prism {
   std::array<uint32_t, 6> nodes;  ///< outer triangle, then inner, same column order
   double volume, stiffness;       ///< cubic metres, pascal
 };
+
+/// Length of a stretch of fibre, metres, rounded off below a quarter of a millimetre: one that has collapsed has no direction left to
+/// pull in, and without the rounding its force would jump from one side to the other.
+inline double segment_length(const Vec3& along) { return std::sqrt(along.squaredNorm() + segment_rounding); }
 
 /// A node held to a place: `normal_stiffness` along a normal, `tangential_stiffness` across it.
 struct Tether {
@@ -57,6 +64,25 @@ struct Tether {
   Vec3 normal;
   double normal_stiffness, tangential_stiffness;
 };
+
+/// What resists a membrane's collapse below half its area, by its share `ratio` of the rest area.
+struct MembraneCrush {
+  double energy = 0.0, slope = 0.0, curvature = 0.0;  ///< per area, and its derivatives by the ratio
+};
+MembraneCrush membrane_crush(const Membrane& membrane, double ratio);
+
+/// The mean normal of a hinge's two triangles, faded out where they fold onto each other.
+struct HingeNormal {
+  Vec3 unit;      ///< shorter than 1 where it fades
+  double length;  ///< it was divided by
+};
+HingeNormal hinge_normal(const Hinge& hinge, const Vec3* x);
+
+/// Energy of a prism of the volume `volume`, joules, with its derivatives by the volume (pascal; pascal per cubic metre).
+struct PrismPressure {
+  double energy = 0.0, pressure = 0.0, slope = 0.0;
+};
+PrismPressure prism_pressure(const Prism& prism, double volume);
 
 double spring_energy(const Spring& spring, const Vec3* x, Vec3* gradient);
 double membrane_energy(const Membrane& membrane, const Vec3* x, Vec3* gradient);

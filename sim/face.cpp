@@ -11,19 +11,32 @@ Face::Face(const FaceModel& model, size_t channels)
       pose_offset_(position_.size(), Vec3::Zero()), start_(position_), work_(position_.size()), excitations_(channels),
       last_excitations_(channels), activations_(channels), workspace_(position_.size(), model.unknowns().size()) {}
 
+MinimiseResult Face::find_pose(const PoseOptions& options) {
+  const auto energy = [this](const Vec3* x, Vec3* gradient) { return model_->energy(pose_frame_, x, gradient); };
+  const auto& unknowns = model_->unknowns();
+  MinimiseResult result = minimise(energy, model_->pose_factor(), unknowns, options.solver, workspace_, pose_);
+  if (result.converged || !std::isfinite(result.residual) || options.newton.iterations <= 0) return result;
+  newton_.resize(pose_.size(), unknowns.size());
+  for (size_t i = 0; i < unknowns.size(); ++i) newton_.weights[i] = model_->stiffness().coeff(static_cast<int>(i), static_cast<int>(i));
+  const auto curvature = [this](const Vec3* x, Curvature& out) { model_->find_curvature(pose_frame_, x, out); };
+  const int before = result.iterations;
+  result = newton(energy, curvature, model_->pose_factor(), unknowns, options.newton, options.solver.tolerance, workspace_, newton_, pose_);
+  result.iterations += before;
+  return result;
+}
+
 MinimiseResult Face::static_pose(const Drive& drive, const PoseOptions& options, std::span<Vec3f> positions) {
   model_->place(drive, pose_frame_);
   for (size_t i = 0; i < pose_.size(); ++i) {
     pose_[i] = pose_frame_.carried[i];
     if (options.from_last_pose) pose_[i] += pose_offset_[i];
   }
-  const auto energy = [this](const Vec3* x, Vec3* gradient) { return model_->energy(pose_frame_, x, gradient); };
   // What lips and lids face is found, held during a solve, and found again until it no longer matters.
   MinimiseResult result;
   model_->face_up(pose_.data(), pose_frame_);
   for (int round = 0; round < options.contact_rounds; ++round) {
     const int before = result.iterations;
-    result = minimise(energy, model_->pose_factor(), model_->unknowns(), options.solver, workspace_, pose_);
+    result = find_pose(options);
     result.iterations += before;
     if (model_->face_up(pose_.data(), pose_frame_) < options.contact_tolerance) break;
   }

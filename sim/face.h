@@ -5,12 +5,16 @@
 #include "sim/activation.h"
 #include "sim/face_model.h"
 #include "sim/minimise.h"
+#include "sim/newton.h"
 
 namespace fascia::sim {
 
 /// How a static pose is solved.
+///
+/// Quasi-Newton steps first, which end soon in most poses; what they have not brought to an end, Newton steps do.
 struct PoseOptions {
-  MinimiseOptions solver;
+  MinimiseOptions solver{120};
+  NewtonOptions newton;
   int contact_rounds = 4;             ///< how often at most lips and lids look again for what they face
   double contact_tolerance = 1e-4;    ///< metres a gap may still change when they do
   bool from_last_pose = false;  ///< start from the last static pose instead of the bones' motion alone
@@ -50,8 +54,8 @@ struct AdjointResult {
 
 /// One face: its own state on a shared model. Not for two threads at once; different faces are free.
 ///
-/// Positions are #nodes in the head's frame, metres. Nothing here but the constructor and `static_gradient` allocates, and
-/// nothing throws.
+/// Positions are #nodes in the head's frame, metres. Nothing here but the constructor, `static_gradient` and the first hard
+/// static pose allocates, and nothing throws.
 class Face {
  public:
   /// `model` must be valid and outlive the face; `channels` is how many activations it listens to.
@@ -91,6 +95,7 @@ class Face {
   const Frame& frame() const { return frame_; }
 
  private:
+  MinimiseResult find_pose(const PoseOptions& options);
   MinimiseResult substep(double share, const Drive& drive, const StepOptions& options);
   bool sound(const StepOptions& options) const;
 
@@ -113,6 +118,7 @@ class Face {
   Vec3 last_acceleration_ = Vec3::Zero();
   double left_over_ = 0.0;  ///< seconds of the last frame not yet simulated
   MinimiseWorkspace workspace_;
+  NewtonWorkspace newton_;  ///< sized at its first use
 };
 
 }  // namespace fascia::sim

@@ -69,7 +69,7 @@ double FaceModel::pull_fibre(const Frame& frame, uint32_t f, double pull, const 
   const uint32_t first = lattice_.fibre_offsets[f], last = lattice_.fibre_offsets[f + 1];
   double length = 0.0;
   for (uint32_t p = first; p + 1 < last; ++p)
-    length += lattice_.fibre_taper[p] * (fibre_point(frame, p + 1, x) - fibre_point(frame, p, x)).norm();
+    length += lattice_.fibre_taper[p] * segment_length(fibre_point(frame, p + 1, x) - fibre_point(frame, p, x));
   // The pull falls with the fibre's length and ends at its shortest: the rising limb of the
   // force-length curve, as a line. Its integral is convex in length, which keeps the solve stable.
   const double range = 1.0 - lattice_.fibre_shortest[f];
@@ -78,8 +78,7 @@ double FaceModel::pull_fibre(const Frame& frame, uint32_t f, double pull, const 
   const double tension = pull * left / range;
   for (uint32_t p = first; p + 1 < last; ++p) {
     const Vec3 along = fibre_point(frame, p + 1, x) - fibre_point(frame, p, x);
-    const double segment = along.norm();
-    if (segment < 1e-9) continue;
+    const double segment = segment_length(along);
     const Vec3 force = (tension * lattice_.fibre_taper[p] / segment) * along;
     for (const uint32_t end : {p, p + 1}) {
       const auto anchor = static_cast<FibreAnchor>(lattice_.fibre_anchor[end]);

@@ -84,7 +84,7 @@ void FaceModel::make_elements() {
     double length = 0.0;
     for (uint32_t p = lattice_.fibre_offsets[f]; p + 1 < lattice_.fibre_offsets[f + 1]; ++p)
       length += lattice_.fibre_taper[p] *
-                (fibre_point(frame, p + 1, rest_.data()) - fibre_point(frame, p, rest_.data())).norm();
+                segment_length(fibre_point(frame, p + 1, rest_.data()) - fibre_point(frame, p, rest_.data()));
     fibre_lengths_.push_back(length);
   }
 }

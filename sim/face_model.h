@@ -79,6 +79,10 @@ class FaceModel {
   /// (error about 1e-8 of its size). `work` holds 3 x #nodes.
   void hessian_times(const Frame& frame, const Vec3* x, const Vec3* direction, Vec3* result, Positions& work) const;
 
+  /// Writes a positive semidefinite stand-in for the Hessian at `x`, for Newton steps: each element's own without its
+  /// negative curvatures; pressures' share is left out. Allocates while `out` grows to its size.
+  void find_curvature(const Frame& frame, const Vec3* x, Curvature& out) const;
+
   /// Adds, for each channel, lambda . d gradient / d activation at `x`: fibres, carriers and pressures (the jaw and eyes move
   /// bones and are not among them). `frame` must be placed for `drive`; `lambda` is #nodes, zero where prescribed.
   void channel_slopes(const Frame& frame, const Drive& drive, const Vec3* x, const Vec3* lambda, std::span<double> by_channel) const;
@@ -109,6 +113,7 @@ class FaceModel {
   double raw_energy(const Frame& frame, const Vec3* x, Vec3* gradient) const;
   double energy_beside_springs(const Frame& frame, const Vec3* x, Vec3* gradient) const;
   double balanced(double energy, const Vec3* x, Vec3* gradient) const;
+  void add_fibre_curvature(const Frame& frame, uint32_t fibre, const Vec3* x, Curvature& out) const;
   double fibre_energy(const Frame& frame, const Vec3* x, Vec3* gradient) const;
   template <class Force>
   double pull_fibre(const Frame& frame, uint32_t fibre, double pull, const Vec3* x, Force&& add_force) const;

@@ -28,6 +28,6 @@ void add_ligaments(const TissueInputs& inputs, const Columns& columns, rig::Tiss
 void add_contact(const TissueInputs& inputs, const Columns& columns, rig::TissueLevel& level);
 
 /// Lips before lips: which skin may touch which. (Lids meet by how far their carriers take them.)
-void add_facing(const TissueInputs& inputs, const Columns& columns, rig::TissueLevel& level);
+void add_facing(const Columns& columns, rig::TissueLevel& level);
 
 }  // namespace fascia::tissue

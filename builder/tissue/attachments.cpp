@@ -75,6 +75,7 @@ Attachments attachments_of(const TissueInputs& inputs, const Columns& c) {
   a.normal.assign(n, 1.0);
   const std::vector<Patch> patches = patches_of(inputs);
   const std::vector<Hold> holds = holds_of(inputs);
+  const Vestibule vestibule(inputs);
   std::optional<spatial::SurfaceQuery> smas;
   const bool measured = !inputs.smas.empty() && inputs.smas_bone_attachment.size() == inputs.smas.vertices.size();
   if (measured) smas.emplace(inputs.smas);
@@ -105,10 +106,10 @@ Attachments attachments_of(const TissueInputs& inputs, const Columns& c) {
     const double near = 0.08 + 0.92 * lids * (0.08 + 0.92 * lips);
     a.bone[v] *= near;
     a.normal[v] = near;
-    if (!c.bone[v]) {  // mucosa behind, and air
-      a.bone[v] *= 0.35;
-      a.normal[v] *= 0.1;
-    }
+    // Mucosa behind, and air: also where a mesh has no lining there.
+    const double air = c.bone[v] ? vestibule.share(c.mesh.vertices[v]) * smoothstep(0.006, 0.010, c.inner_depth[v]) : 1.0;
+    a.bone[v] *= 1.0 - 0.65 * air;
+    a.normal[v] *= 1.0 - 0.9 * air;
     double hold = 1.0;
     for (const Hold& h : holds) {
       const double r = (c.mesh.vertices[v] - h.centre).norm() / h.radius;

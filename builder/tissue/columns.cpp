@@ -27,11 +27,16 @@ double blend(const FaceRegion& region, const SurfacePoint& p, const std::vector<
   return sum;
 }
 
-std::vector<double> target_lengths(const FaceRegion& region, const LevelOptions& level, const TissueOptions& options) {
+std::vector<double> target_lengths(const TissueInputs& inputs, const FaceRegion& region, const LevelOptions& level, const TissueOptions& options) {
+  const Vec3 corners[] = {landmark(inputs, "cheilion_left"), landmark(inputs, "cheilion_right")};
   std::vector<double> lengths(region.mesh.vertices.size());
   for (size_t v = 0; v < lengths.size(); ++v) {
     const double t = std::clamp(region.feature_distance[v] / options.edge_growth, 0.0, 1.0);
     lengths[v] = 0.003 * (1.0 + (options.edge_ratio - 1.0) * t * t * (3.0 - 2.0 * t));
+    // Where lips join, edges as long as elsewhere would bridge them.
+    const Vec3& p = region.mesh.vertices[v];
+    const double corner = std::min((p - corners[0]).norm(), (p - corners[1]).norm());
+    lengths[v] *= options.corner_ratio + (1.0 - options.corner_ratio) * std::clamp(corner / options.corner_growth - 0.3, 0.0, 1.0);
   }
   const double scale = edge_scale_for(region.mesh, lengths, level.columns);
   for (double& length : lengths) length *= scale;
@@ -66,6 +71,11 @@ void find_depths(const TissueInputs& inputs, const Bones& bones, Columns& c) {
     if (const auto hit = skin.first_hit(p, down, reach, skip); hit) thickness = std::max(hit->distance, 0.001);
     for (const auto* query : {&cranium, &mandible})
       if (const auto hit = query->first_hit(p, down, reach, skip); hit) bone = std::min(bone, hit->distance);
+    // A ray may pass a thin border of bone, as under the chin: what it would stop beside lies on it all the same.
+    constexpr double beside = 0.0035, deepest = 0.012;
+    if (c.outer[v] && !(bone < thickness) && thickness >= reach)
+      for (const auto* query : {&cranium, &mandible})
+        if (query->closest(p + deepest * down, beside).found()) bone = deepest;
     c.bone[v] = c.outer[v] && bone < thickness && bone < reach;
     const double room = c.bone[v] ? bone : 0.8 * thickness;
     double smas_depth = std::clamp(0.45 * room, 0.0010, 0.006);
@@ -136,7 +146,7 @@ Bones bones_of(const TissueInputs& inputs) {
 
 Columns make_columns(const TissueInputs& inputs, const FaceRegion& region, const LevelOptions& level,
                      const TissueOptions& options) {
-  RemeshResult remeshed = remesh(region.mesh, target_lengths(region, level, options));
+  RemeshResult remeshed = remesh(region.mesh, target_lengths(inputs, region, level, options));
   Columns c;
   c.mesh = std::move(remeshed.mesh);
   c.source = std::move(remeshed.source);
@@ -177,11 +187,9 @@ Columns make_columns(const TissueInputs& inputs, const FaceRegion& region, const
     c.inner_depth[v] = std::max(std::min(c.inner_depth[v], 1.15 * inner_limit[v]), 1.3 * c.smas_depth[v] + 2e-4);
   }
   place_layers(c);
-  const Vec3 left = landmark(inputs, "cheilion_left"), right = landmark(inputs, "cheilion_right");
-  Mouth mouth{0.5 * (left + right), 0.5 * (left - right).norm(), c.opening_distance[static_cast<size_t>(Opening::mouth)]};
-  for (size_t v = 0; v < n; ++v)
-    if (!c.outer[v]) mouth.distance[v] = 1e9;
-  c.jaw_weight = jaw_weights(c.mesh, c.rim, bones, mouth);
+  const std::vector<double>& lips = c.opening_distance[static_cast<size_t>(Opening::mouth)];
+  c.lower_lip = lower_lip(inputs, c.mesh, c.outer, lips);
+  c.jaw_weight = jaw_weights(c.mesh, c.rim, bones, {lips, c.lower_lip});
   return c;
 }
 

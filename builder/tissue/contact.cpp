@@ -68,19 +68,17 @@ void add_contact(const TissueInputs& inputs, const Columns& c, rig::TissueLevel&
   }
 }
 
-void add_facing(const TissueInputs& inputs, const Columns& c, rig::TissueLevel& level) {
-  const double stomion = 0.5 * (landmark(inputs, "cheilion_left").y() + landmark(inputs, "cheilion_right").y());
+void add_facing(const Columns& c, rig::TissueLevel& level) {
   for (size_t t = 0; t < c.mesh.triangles.size(); ++t) {
-    Vec3 centre = Vec3::Zero();
-    double distance = 0.0;
+    double lower = 0.0, distance = 0.0;
     for (const int i : c.mesh.triangles[t]) {
       const auto v = static_cast<size_t>(i);
-      centre += c.mesh.vertices[v] / 3.0;
+      lower += c.lower_lip[v] / 3.0;
       distance = std::max(distance, c.opening_distance[static_cast<size_t>(Opening::mouth)][v]);
     }
-    if (distance > 0.012) continue;
+    if (distance > 0.012 || std::abs(lower - 0.5) < 0.06) continue;  // at the corner both lips are one
     level.facing_prism.push_back(static_cast<uint32_t>(t));
-    level.facing_side.push_back(centre.y() > stomion ? 0 : 1);
+    level.facing_side.push_back(lower < 0.5 ? 0 : 1);
   }
 }
 

@@ -61,12 +61,12 @@ void add_membranes(const Columns& c, const TissueMaterial& m, rig::TissueLevel& 
   level.skin_bending.assign(n, plate(m.skin_modulus, m.skin_thickness));
   level.smas_bending.assign(n, plate(m.smas_modulus, m.smas_thickness));
   for (const fascia::Triangle& t : c.mesh.triangles) {
-    bool outer = false, bone = false;
+    bool outer = false, bone = true;
     double soft = 1.0;
     for (const int v : t) {
       soft = std::min({soft, lid_share(c, static_cast<size_t>(v)), lip_share(c, static_cast<size_t>(v))});
       outer = outer || c.outer[static_cast<size_t>(v)];
-      bone = bone || c.bone[static_cast<size_t>(v)];
+      bone = bone && c.bone[static_cast<size_t>(v)];
     }
     level.triangles.push_back({static_cast<uint32_t>(t[0]), static_cast<uint32_t>(t[1]), static_cast<uint32_t>(t[2])});
     // Mucosa is thinner and softer than skin; it has no SMAS, only submucosa.
@@ -128,6 +128,27 @@ void add_retinacula(const Columns& c, const Attachments& attachments, const Tiss
   }
 }
 
+/// Between the columns of a lip's or cheek's outer skin and those of its lining lies the same flesh: each lining column hangs
+/// on the three outer ones that end nearest before it.
+void add_lip_body(const Columns& c, const TissueMaterial& m, rig::TissueLevel& level) {
+  const auto n = static_cast<size_t>(c.count());
+  const SpringAdder spring{level};
+  const auto& mouth = c.opening_distance[static_cast<size_t>(Opening::mouth)];
+  for (size_t v = 0; v < n; ++v) {
+    if (c.outer[v] || c.rim[v] || mouth[v] > 0.03) continue;
+    std::vector<std::pair<double, size_t>> near;
+    for (size_t w = 0; w < n; ++w) {
+      if (!c.outer[w] || c.rim[w] || c.bone[w] || std::abs(c.lower_lip[w] - c.lower_lip[v]) > 0.3) continue;
+      const double distance = (c.inner[w] - c.inner[v]).norm();
+      if (distance < 0.009 && (c.mesh.vertices[w] - c.mesh.vertices[v]).dot(c.normals[v]) < 0.0) near.emplace_back(distance, w);
+    }
+    const size_t count = std::min<size_t>(near.size(), 3);
+    std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(count), near.end());
+    for (size_t k = 0; k < count; ++k)
+      spring(2 * n + v, 2 * n + near[k].second, m.fat_modulus * c.area[v] / (static_cast<double>(count) * std::max(near[k].first, 0.001)));
+  }
+}
+
 void add_tethers(const Columns& c, const Attachments& attachments, const TissueMaterial& m, rig::TissueLevel& level) {
   const auto n = static_cast<size_t>(c.count());
   for (size_t v = 0; v < n; ++v) {
@@ -163,6 +184,7 @@ rig::TissueLevel make_level(const TissueInputs& inputs, const TissueOptions& opt
   add_nodes(columns, options.material, level);
   add_membranes(columns, options.material, level);
   add_retinacula(columns, attachments, options.material, level);
+  add_lip_body(columns, options.material, level);
   add_tethers(columns, attachments, options.material, level);
   return level;
 }

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "builder/spatial/surface_query.h"
 #include "builder/tissue/actuators.h"
@@ -35,6 +36,36 @@ std::vector<size_t> thinned(const std::vector<rig::Vec3f>& points, size_t first,
   return kept;
 }
 
+/// Whether a fibre from bone ends across the midline, where its fellow of the other side begins.
+bool meets_fellow(const rig::Muscle& muscle, size_t first, size_t last) {
+  const rig::Vec3f way = muscle.points[last - 1] - muscle.points[last - 2];
+  return (muscle.origin == rig::FibreEnd::cranium || muscle.origin == rig::FibreEnd::mandible) && last > first + 2 &&
+         std::abs(muscle.points[last - 1].x()) < 0.006F && std::abs(way.x()) > 0.5F * way.norm();
+}
+
+/// The lining of the lips as triangles of columns.
+TriangleMesh lip_lining(const Columns& c) {
+  TriangleMesh mesh;
+  mesh.vertices = c.mesh.vertices;
+  for (const fascia::Triangle& t : c.mesh.triangles) {
+    bool lining = true;
+    for (const int v : t)
+      lining = lining && !c.outer[static_cast<size_t>(v)] && c.opening_distance[static_cast<size_t>(Opening::mouth)][static_cast<size_t>(v)] < 0.03;
+    if (lining) mesh.triangles.push_back(t);
+  }
+  return mesh;
+}
+
+/// Adds one point of a fibre that lies on `triangle` of the layer that begins at node `layer`.
+void add_point(uint32_t layer, const fascia::Triangle& t, const Vec3& barycentric, const rig::Vec3f& place, rig::FibreEnd end, double taper,
+               rig::TissueLevel& level) {
+  level.fibre_nodes.push_back({layer + static_cast<uint32_t>(t[0]), layer + static_cast<uint32_t>(t[1]), layer + static_cast<uint32_t>(t[2])});
+  level.fibre_weights.push_back(barycentric.cast<float>());
+  level.fibre_rest.push_back(place);
+  level.fibre_anchor.push_back(end);
+  level.fibre_taper.push_back(static_cast<float>(std::clamp(taper, 0.15, 1.0)));
+}
+
 }  // namespace
 
 int channel_index(const std::vector<rig::Channel>& channels, const std::string& name) {
@@ -48,6 +79,9 @@ void add_fibres(const TissueInputs& inputs, const TissueOptions& options, const 
   level.fibre_offsets.assign(1, 0);
   if (outer.mesh.empty()) return;
   const spatial::SurfaceQuery query(outer.mesh);
+  const TriangleMesh lining = lip_lining(c);
+  std::optional<spatial::SurfaceQuery> inside;
+  if (!lining.empty()) inside.emplace(lining);
   const auto n = static_cast<uint32_t>(c.count());
   for (size_t m = 0; m < inputs.muscles.size(); ++m) {
     const rig::Muscle& muscle = inputs.muscles[m];
@@ -65,26 +99,29 @@ void add_fibres(const TissueInputs& inputs, const TissueOptions& options, const 
         along[k] = along[k - 1] + static_cast<double>((muscle.points[kept[k]] - muscle.points[kept[k - 1]]).norm());
       const double length = along.back();
       if (!(length > 1e-4)) continue;
+      // Compressors run through the lip from its skin to its lining.
+      const bool is_through = muscle.kind == "compressor" && inside;
       for (size_t k = 0; k < kept.size(); ++k) {
+        if (is_through && k > 0 && k + 1 < kept.size()) continue;
         const rig::Vec3f& point = muscle.points[kept[k]];
-        const rig::FibreEnd end = k == 0 ? muscle.origin : k + 1 == kept.size() ? muscle.insertion : rig::FibreEnd::smas;
+        const bool is_last = k + 1 == kept.size();
+        if (is_through) {
+          const SurfacePoint place = (is_last ? *inside : query).closest(point.cast<double>()).surface;
+          add_point(0, (is_last ? lining : outer.mesh).triangles[static_cast<size_t>(place.triangle)], place.barycentric, point, rig::FibreEnd::skin, 1.0, level);
+          continue;
+        }
+        const rig::FibreEnd end = k == 0 ? muscle.origin : is_last ? muscle.insertion : rig::FibreEnd::smas;
         const SurfacePoint place = query.closest(point.cast<double>()).surface;
-        const fascia::Triangle& t = outer.mesh.triangles[static_cast<size_t>(place.triangle)];
-        const uint32_t layer = end == rig::FibreEnd::skin ? 0 : n;
-        level.fibre_nodes.push_back({layer + static_cast<uint32_t>(t[0]), layer + static_cast<uint32_t>(t[1]),
-                                     layer + static_cast<uint32_t>(t[2])});
-        level.fibre_weights.push_back(place.barycentric.cast<float>());
-        level.fibre_rest.push_back(point);
-        level.fibre_anchor.push_back(end);
         // A free end takes up the pull over a few millimetres, so that no node is drawn out alone.
-        const double middle = k + 1 < kept.size() ? 0.5 * (along[k] + along[k + 1]) : length;
+        const double middle = is_last ? length : 0.5 * (along[k] + along[k + 1]);
         // A ring that hangs on one bone gives its pull to the skin all along its way.
         const bool hung_ring = muscle.kind == "sphincter_ring" && bony(muscle.origin) != bony(muscle.insertion);
         const double spread = hung_ring ? 0.9 * length : std::min(options.material.insertion_spread, 0.35 * length);
         double taper = 1.0;
-        if (!bony(muscle.insertion)) taper = std::min(taper, (length - middle) / spread);
+        // Slung over the bridge of the nose, a muscle ends on its fellow of the other side, which holds it.
+        if (!bony(muscle.insertion) && !meets_fellow(muscle, first, last)) taper = std::min(taper, (length - middle) / spread);
         if (!bony(muscle.origin)) taper = std::min(taper, middle / spread);
-        level.fibre_taper.push_back(static_cast<float>(std::clamp(taper, 0.15, 1.0)));
+        add_point(end == rig::FibreEnd::skin ? 0 : n, outer.mesh.triangles[static_cast<size_t>(place.triangle)], place.barycentric, point, end, taper, level);
       }
       level.fibre_offsets.push_back(static_cast<uint32_t>(level.fibre_nodes.size()));
       level.fibre_muscle.push_back(static_cast<uint32_t>(m));
@@ -97,20 +134,7 @@ void add_fibres(const TissueInputs& inputs, const TissueOptions& options, const 
 }
 
 void add_pressures(const TissueInputs& inputs, const TissueOptions& options, const Columns& c, rig::TissueLevel& level) {
-  const Vec3 corner_left = landmark(inputs, "cheilion_left"), corner_right = landmark(inputs, "cheilion_right");
-  const Vec3 mouth = 0.5 * (corner_left + corner_right);
-  const double half = 0.5 * (corner_left - corner_right).norm();
-  const double top = landmark(inputs, "subnasale").y() - mouth.y(), bottom = 0.75 * (landmark(inputs, "gnathion").y() - mouth.y());
-  const auto falling = [](double from, double to, double x) {
-    const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
-    return 1.0 - t * t * (3.0 - 2.0 * t);
-  };
-  // The vestibule: one space behind lips and cheeks, from fold to fold, back to the masseter's front edge.
-  const auto vestibule = [&](const Vec3& p) {
-    const double out = std::abs(p.x() - mouth.x()) / half, up = p.y() - mouth.y();
-    const double height = up > 0.0 ? up / top : up / bottom;
-    return falling(1.5, 2.6, out) * falling(0.55, 1.15, height) * falling(0.0, 0.5, (mouth.z() - p.z()) / half - 1.1);
-  };
+  const Vestibule vestibule(inputs);
   for (const double side : {1.0, -1.0}) {
     const int channel = channel_index(inputs.channels, side > 0 ? "buccal_pressure_left" : "buccal_pressure_right");
     if (channel < 0) continue;
@@ -122,8 +146,8 @@ void add_pressures(const TissueInputs& inputs, const TissueOptions& options, con
         outer = outer && c.outer[static_cast<size_t>(v)];
       }
       // The two sides share the middle of the lips.
-      const double own = falling(-0.2, 0.2, -side * (centre.x() - mouth.x()) / half);
-      const double share = outer ? own * vestibule(centre) : 0.0;
+      const double own = vestibule.side(centre, side > 0.0);
+      const double share = outer ? own * vestibule.share(centre) : 0.0;
       if (share < 0.02) continue;
       level.pressure_channel.push_back(static_cast<uint32_t>(channel));
       level.pressure_prism.push_back(static_cast<uint32_t>(t));

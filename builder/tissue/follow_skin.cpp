@@ -1,8 +1,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
+#include <optional>
 
+#include "builder/spatial/surface_query.h"
 #include "builder/spatial/triangle.h"
 #include "builder/tissue/bind.h"
 #include "builder/tissue/distance.h"
@@ -11,6 +14,7 @@ namespace fascia::tissue {
 namespace {
 
 using Row = std::map<uint32_t, double>;  // node -> weight, in node order
+constexpr uint32_t jaw_entry = std::numeric_limits<uint32_t>::max();  // in a row, for the jaw's own motion
 
 double smoothstep(double low, double high, double x) {
   const double t = std::clamp((x - low) / (high - low), 0.0, 1.0);
@@ -78,24 +82,84 @@ void smooth(const TriangleMesh& mesh, const Columns& c, int passes, std::vector<
   }
 }
 
+void add(const Row& from, double share, Row& to) {
+  for (const auto& [node, weight] : from) to[node] += share * weight;
+}
+
 /// The strongest entries, their sum kept.
-Follow pack(const Row& row, double jaw) {
+Follow pack(const Row& row) {
   std::vector<std::pair<double, uint32_t>> order;
   double total = 0.0, kept = 0.0;
+  Follow follow;
   for (const auto& [node, weight] : row) {
+    if (node == jaw_entry) {
+      follow.jaw = static_cast<float>(weight);
+      continue;
+    }
     order.emplace_back(-weight, node);
     total += weight;
   }
   std::sort(order.begin(), order.end());
   if (order.size() > Follow::influences) order.resize(Follow::influences);
   for (const auto& [negative, node] : order) kept -= negative;
-  Follow follow;
   for (size_t k = 0; k < order.size() && kept > 0.0; ++k) {
     follow.nodes[k] = order[k].second;
     follow.weights[k] = static_cast<float>(-order[k].first * total / kept);
   }
-  follow.jaw = static_cast<float>(jaw);
   return follow;
+}
+
+/// What lies deeper in the mouth than the simulated lining: the walls of the vestibule go with the cheek or lip in front of
+/// them, the rest with palate or jaw by its height, and nothing moves far down the throat.
+class DeepMouth {
+ public:
+  DeepMouth(const TissueInputs& inputs, const FaceRegion& region, const std::vector<Row>& rows)
+      : region_(region), rows_(rows), normals_(vertex_normals(inputs.skin)),
+        height_(0.5 * (landmark(inputs, "cheilion_left").y() + landmark(inputs, "cheilion_right").y())) {
+    outer_.vertices = region.mesh.vertices;
+    for (const fascia::Triangle& t : region.mesh.triangles)
+      if (region.outer[static_cast<size_t>(t[0])] && region.outer[static_cast<size_t>(t[1])] && region.outer[static_cast<size_t>(t[2])])
+        outer_.triangles.push_back(t);
+    query_.emplace(outer_);
+  }
+
+  /// The row of skin vertex `v` at `p`, so far along the surface from the lining's edge.
+  Row row(size_t v, const Vec3& p, double distance) const {
+    Row row;
+    const auto hit = query_->first_hit(p, -normals_[v], 0.02, 2e-4);
+    const double wall = hit ? 1.0 - smoothstep(0.009, 0.018, hit->distance) : 0.0;
+    if (wall > 0.0)
+      for (int k = 0; k < 3; ++k)
+        add(rows_[static_cast<size_t>(outer_.triangles[static_cast<size_t>(hit->surface.triangle)][static_cast<size_t>(k)])],
+            wall * hit->surface.barycentric[k], row);
+    const double jaw = (1.0 - smoothstep(-0.008, 0.008, p.y() - height_)) * (1.0 - smoothstep(0.02, 0.065, distance));
+    if (jaw > 0.0) row[jaw_entry] += (1.0 - wall) * jaw;
+    return row;
+  }
+
+ private:
+  const FaceRegion& region_;
+  const std::vector<Row>& rows_;
+  std::vector<Vec3> normals_;
+  double height_;
+  TriangleMesh outer_;
+  std::optional<spatial::SurfaceQuery> query_;
+};
+
+/// Evens out the rows of `deep` vertices over the skin's edges; the others stand.
+void smooth_deep(const std::vector<std::vector<int>>& neighbours, const std::vector<bool>& deep, int passes, std::vector<Row>& rows) {
+  for (int pass = 0; pass < passes; ++pass) {
+    std::vector<std::pair<size_t, Row>> changed;
+    for (size_t v = 0; v < rows.size(); ++v) {
+      if (!deep[v] || neighbours[v].empty()) continue;
+      Row next;
+      add(rows[v], 0.5, next);
+      for (const int n : neighbours[v]) add(rows[static_cast<size_t>(n)], 0.5 / static_cast<double>(neighbours[v].size()), next);
+      std::erase_if(next, [](const auto& entry) { return entry.second < 1e-4; });
+      changed.emplace_back(v, std::move(next));
+    }
+    for (auto& [v, row] : changed) rows[v] = std::move(row);
+  }
 }
 
 }  // namespace
@@ -103,28 +167,28 @@ Follow pack(const Row& row, double jaw) {
 std::vector<Follow> follow_skin(const TissueInputs& inputs, const FaceRegion& region, const Columns& c) {
   std::vector<Row> rows = rows_of_region(region, c);
   smooth(region.mesh, c, 2, rows);
-  std::vector<Follow> follow(inputs.skin.vertices.size());
+  std::vector<Row> skin(inputs.skin.vertices.size());
   std::vector<DistanceSeed> edge;
   for (size_t v = 0; v < rows.size(); ++v) {
     const auto s = static_cast<size_t>(region.skin_vertex[v]);
-    follow[s] = pack(rows[v], 0.0);
+    skin[s] = rows[v];
     if (region.opening[s] != Opening::none) edge.push_back({region.skin_vertex[v]});
   }
   // Deeper than the simulated lining: carried on from its edge.
-  std::vector<bool> deep(follow.size());
+  std::vector<bool> deep(skin.size()), deep_mouth(skin.size());
   for (size_t v = 0; v < deep.size(); ++v) deep[v] = region.region_vertex[v] < 0 && region.opening[v] != Opening::none;
-  const EdgeDistances beyond = edge_distances(inputs.skin, edge, 0.08, deep);
-  const double teeth = 0.5 * (landmark(inputs, "cheilion_left").y() + landmark(inputs, "cheilion_right").y());
-  for (size_t v = 0; v < follow.size(); ++v) {
+  const EdgeDistances beyond = edge_distances(inputs.skin, edge, 0.15, deep);
+  const DeepMouth mouth(inputs, region, rows);
+  for (size_t v = 0; v < skin.size(); ++v) {
     if (!deep[v] || beyond.seed[v] < 0) continue;
-    const bool mouth = region.opening[v] == Opening::mouth;
-    const double share = 1.0 - smoothstep(0.0, mouth ? 0.018 : 0.008, beyond.distance[v]);
-    Follow copy = follow[static_cast<size_t>(edge[static_cast<size_t>(beyond.seed[v])].vertex)];
-    for (float& weight : copy.weights) weight *= static_cast<float>(share);
-    if (mouth) copy.jaw = static_cast<float>((1.0 - share) * (1.0 - smoothstep(-0.008, 0.008, inputs.skin.vertices[v].y() - teeth)));
-    follow[v] = copy;
+    deep_mouth[v] = region.opening[v] == Opening::mouth;
+    const double share = 1.0 - smoothstep(0.0, deep_mouth[v] ? 0.018 : 0.008, beyond.distance[v]);
+    add(skin[static_cast<size_t>(edge[static_cast<size_t>(beyond.seed[v])].vertex)], share, skin[v]);
+    if (deep_mouth[v]) add(mouth.row(v, inputs.skin.vertices[v], beyond.distance[v]), 1.0 - share, skin[v]);
   }
-  // Seeds may overlap between copies; a pass of smoothing over the deep skin evens them out.
+  smooth_deep(vertex_neighbours(inputs.skin), deep_mouth, 10, skin);
+  std::vector<Follow> follow(skin.size());
+  for (size_t v = 0; v < skin.size(); ++v) follow[v] = pack(skin[v]);
   return follow;
 }
 

@@ -64,13 +64,14 @@ struct LevelOptions {
 
 struct TissueOptions {
   TissueMaterial material;
-  /// Contact with bones, teeth and the other lip, and one-sided ligaments. Off: the expression tables are fitted without
-  /// them, and poses with lips in contact take two to five times as many iterations.
-  bool contact = false;
+  /// Contact with bones, teeth and the other lip, and one-sided ligaments. The bones must be closed surfaces.
+  bool contact = true;
   std::vector<LevelOptions> levels = {{"low", 700}, {"medium", 2000}, {"high", 5000}};
   double lining = 0.010;       ///< how far the simulated skin goes on over lips and lids into the openings
   double edge_ratio = 2.7;     ///< edge length far from lips and lids over that at them
   double edge_growth = 0.045;  ///< distance over which it grows
+  double corner_ratio = 0.5;   ///< edge length at the mouth's corners over that along the lips
+  double corner_growth = 0.012; ///< distance over which it grows
 };
 
 }  // namespace fascia::tissue

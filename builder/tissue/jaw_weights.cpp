@@ -5,6 +5,7 @@
 
 #include "builder/spatial/surface_query.h"
 #include "builder/tissue/columns.h"
+#include "builder/tissue/distance.h"
 #include "geometry/error.h"
 
 namespace fascia::tissue {
@@ -23,7 +24,26 @@ double cotangent(const Vec3& corner, const Vec3& a, const Vec3& b) {
 
 }  // namespace
 
-std::vector<double> jaw_weights(const TriangleMesh& mesh, const std::vector<bool>& rim, const Bones& bones, const Mouth& mouth) {
+std::vector<double> lower_lip(const TissueInputs& inputs, const TriangleMesh& mesh, const std::vector<bool>& outer,
+                              const std::vector<double>& distance) {
+  const Vec3 left = landmark(inputs, "cheilion_left"), right = landmark(inputs, "cheilion_right"), centre = 0.5 * (left + right);
+  const double half = 0.5 * (left - right).norm();
+  std::array<std::vector<DistanceSeed>, 2> seeds;
+  for (size_t v = 0; v < mesh.vertices.size(); ++v) {
+    const Vec3 p = mesh.vertices[v] - centre;
+    if (!outer[v] || distance[v] < 0.004 || distance[v] > 0.016 || std::abs(p.x()) > 0.7 * half || std::abs(p.y()) < 0.006) continue;
+    seeds[p.y() < 0.0].push_back({static_cast<int>(v)});
+  }
+  std::vector<double> lower(mesh.vertices.size(), 0.5);
+  if (seeds[0].empty() || seeds[1].empty()) return lower;
+  const EdgeDistances above = edge_distances(mesh, seeds[0]), below = edge_distances(mesh, seeds[1]);
+  for (size_t v = 0; v < lower.size(); ++v)
+    if (std::isfinite(above.distance[v] + below.distance[v]))
+      lower[v] = above.distance[v] / std::max(above.distance[v] + below.distance[v], 1e-9);
+  return lower;
+}
+
+std::vector<double> jaw_weights(const TriangleMesh& mesh, const std::vector<bool>& rim, const Bones& bones, const Lips& lips) {
   constexpr double spread = 0.008;  // metres over which the field goes from one bone to the other
   const spatial::SurfaceQuery cranium(bones.cranium), mandible(bones.mandible);
   const int n = mesh.vertex_count();
@@ -48,12 +68,11 @@ std::vector<double> jaw_weights(const TriangleMesh& mesh, const std::vector<bool
     const double near = std::min(to_cranium, to_mandible), far = std::max(to_cranium, to_mandible);
     const double sure = smoothstep(1.25, 2.2, far / std::max(near, 1e-4)) * (1.0 - smoothstep(0.018, 0.035, near));
     double weight = area[v] * (0.002 + sure), goal = to_mandible < to_cranium ? sure / (sure + 0.002) : 0.0;
-    // Bones are no guide between the lips, where both rows of teeth are near; which lip it is, is.
-    const double side = p.y() - mouth.centre.y(), out = std::abs(p.x() - mouth.centre.x()) / mouth.half_width;
-    const double lip = smoothstep(0.003, 0.006, std::abs(side)) * (1.0 - smoothstep(0.010, 0.016, mouth.distance[static_cast<size_t>(v)])) *
-                       (1.0 - smoothstep(0.5, 0.9, out));
-    goal = (weight * goal + (side < 0.0 ? area[v] * lip : 0.0)) / (weight + area[v] * lip);
-    weight += area[v] * lip;
+    // Bones are no guide between the lips, where both rows of teeth are near; which lip it is, is. From the corner, which
+    // goes half the way, the share changes along the whole lip.
+    const double lip = area[v] * (1.0 - smoothstep(0.012, 0.020, lips.distance[static_cast<size_t>(v)]));
+    goal = (weight * goal + lip * smoothstep(0.10, 0.90, lips.lower[static_cast<size_t>(v)])) / (weight + lip);
+    weight += lip;
     if (rim[static_cast<size_t>(v)]) {
       weight = 1e3 * area[v] + 1e-6;
       goal = 0.0;

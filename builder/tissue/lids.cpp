@@ -58,13 +58,14 @@ struct Margin {
   }
 };
 
-void carry(rig::TissueLevel& level, int channel, size_t node, const EyeFrame& f, const Vec3& axis, double angle, double stiffness) {
+void carry(rig::TissueLevel& level, int channel, size_t node, const EyeFrame& f, const Vec3& axis, double angle, double stiffness,
+           double reverse_share = 1.0) {
   level.carrier_channel.push_back(static_cast<uint32_t>(channel));
   level.carrier_node.push_back(static_cast<uint32_t>(node));
   level.carrier_origin.push_back(f.centre.cast<float>());
   level.carrier_axis.push_back(axis.cast<float>());
   level.carrier_angle.push_back(static_cast<float>(angle));
-  level.carrier_reverse.push_back(static_cast<float>(-angle));
+  level.carrier_reverse.push_back(static_cast<float>(-reverse_share * angle));
   level.carrier_stiffness.push_back(0.0F);
   level.carrier_drive.push_back(static_cast<float>(stiffness));
 }
@@ -123,14 +124,14 @@ void add_eye(const TissueInputs& inputs, const TissueOptions& options, const Col
       const double stiffness = options.material.lid_hold * c.area[v] * held;
       // A positive turn about the leftward axis lowers what lies in front.
       const size_t before = level.carrier_node.size();
-      if (is_upper && close >= 0) carry(level, close, node, f, f.lateral, 0.85 * gap * fade, stiffness);
+      if (is_upper && close >= 0) carry(level, close, node, f, f.lateral, 0.85 * gap * fade, stiffness, 0.38);  // the levator lifts it some 3 mm above rest
       if (!is_upper && raise >= 0) carry(level, raise, node, f, f.lateral, -0.22 * gap * fade, stiffness);
       if (pitch >= 0) carry(level, pitch, node, f, f.lateral, (is_upper ? -0.75 : -0.4) * fade, stiffness);
       // Horner's part of the pretarsal muscle draws the plates, the lower one most, towards the nose.
       const int draw = is_upper ? draw_upper : draw_lower;
       if (draw >= 0) carry(level, draw, node, f, f.up, (left ? -1.0 : 1.0) * (is_upper ? 0.10 : 0.30) * fade, stiffness);
       // The cornea's bulge takes both lids a little way sideways.
-      if (yaw >= 0) carry(level, yaw, node, f, f.up, 0.27 * fade, stiffness);
+      if (yaw >= 0) carry(level, yaw, node, f, f.up, 0.18 * fade, stiffness);
       // One of a node's carriers holds it, however many move it.
       if (level.carrier_node.size() > before) level.carrier_stiffness[before] = static_cast<float>(stiffness);
     }

@@ -44,11 +44,11 @@ void add_lip_rolls(const TissueInputs& inputs, const TissueOptions& options, con
     LipEdge edge;
     for (size_t v = 0; v < n; ++v) {
       const Vec3& p = c.mesh.vertices[v];
-      if (c.outer[v] && distance[v] < 0.003 && (p.y() > centre.y()) == upper) edge.add(place_of(p), p);
+      if (c.outer[v] && distance[v] < 0.003 && (c.lower_lip[v] < 0.5) == upper) edge.add(place_of(p), p);
     }
     for (size_t v = 0; v < n; ++v) {
       const Vec3& p = c.mesh.vertices[v];
-      if (c.rim[v] || distance[v] > 0.014 || (p.y() > centre.y()) != upper) continue;
+      if (c.rim[v] || distance[v] > 0.014 || (c.lower_lip[v] < 0.5) != upper) continue;
       // The lip's body lies above (below) and behind its edge: the vermilion turns about that, the white lip stays.
       const Vec3 origin = edge.at(place_of(p), p.x()) + Vec3(0, upper ? 0.006 : -0.006, -0.006);
       const double fade = (1.0 - smoothstep(0.005, 0.014, distance[v])) * (1.0 - smoothstep(0.55, 1.0, std::abs(p.x() - centre.x()) / half));

@@ -19,7 +19,7 @@ double margin_at(const TissueInputs& inputs, const Vec3& p) {
   const double third = glabella.y() - nose.y();
   const auto hairline = inputs.landmarks.find("trichion");
   const double top = (hairline != inputs.landmarks.end() ? hairline->second.y() : glabella.y() + third) + 0.15 * third;
-  const double bottom = chin.y() - 0.6 * third;
+  const double bottom = chin.y() - 0.9 * third;
   // In front of the ear; below the jaw's angle the neck turns away, so the limit goes back a little.
   const double below = std::clamp((ear.y() - 0.7 * third - p.y()) / third, 0.0, 1.0);
   const double back = ear.z() + third * (0.18 - 0.28 * below);
@@ -87,6 +87,33 @@ Opening opening_at(const TissueInputs& inputs, const Vec3& p) {
 }
 
 }  // namespace
+
+namespace {
+
+double falling(double from, double to, double x) {
+  const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
+  return 1.0 - t * t * (3.0 - 2.0 * t);
+}
+
+}  // namespace
+
+Vestibule::Vestibule(const TissueInputs& inputs) {
+  const Vec3 left = landmark(inputs, "cheilion_left"), right = landmark(inputs, "cheilion_right");
+  mouth_ = 0.5 * (left + right);
+  half_width_ = 0.5 * (left - right).norm();
+  top_ = landmark(inputs, "subnasale").y() - mouth_.y();
+  bottom_ = 0.75 * (landmark(inputs, "gnathion").y() - mouth_.y());
+}
+
+double Vestibule::share(const Vec3& p) const {
+  const double out = std::abs(p.x() - mouth_.x()) / half_width_, up = p.y() - mouth_.y();
+  const double height = up > 0.0 ? up / top_ : up / bottom_;
+  return falling(1.5, 2.6, out) * falling(0.55, 1.15, height) * falling(0.0, 0.5, (mouth_.z() - p.z()) / half_width_ - 1.1);
+}
+
+double Vestibule::side(const Vec3& p, bool left) const {
+  return falling(-0.2, 0.2, (left ? -1.0 : 1.0) * (p.x() - mouth_.x()) / half_width_);
+}
 
 Vec3 landmark(const TissueInputs& inputs, const std::string& name) {
   const auto found = inputs.landmarks.find(name);

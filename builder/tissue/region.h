@@ -25,6 +25,20 @@ struct FaceRegion {
 /// Finds the region. Throws Error when a landmark it needs is missing or no skin lies in it.
 FaceRegion find_region(const TissueInputs& inputs, const TissueOptions& options);
 
+/// The vestibule of the mouth: one space behind lips and cheeks, from fold to fold, back to the masseter's front edge.
+class Vestibule {
+ public:
+  explicit Vestibule(const TissueInputs& inputs);
+  /// 1 before it, 0 beside it.
+  double share(const Vec3& point) const;
+  /// How much of a place belongs to the left or right half.
+  double side(const Vec3& point, bool left) const;
+
+ private:
+  Vec3 mouth_;
+  double half_width_, top_, bottom_;
+};
+
 /// The landmark `name`; throws Error that names it when it is missing.
 Vec3 landmark(const TissueInputs& inputs, const std::string& name);
 

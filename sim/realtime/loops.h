@@ -26,19 +26,14 @@ FASCIA_INLINE Lanes positive(const Lanes& a) { return greater(a, splat(0.0F)); }
 struct Wall {
   Lanes value, slope, bend;
 };
-/// (begin / ratio - 1)^2, of a membrane; from where it ends, its parabola, so that a step gone too far has a way back.
-FASCIA_INLINE Wall crush_wall(const Packed& packed, const Lanes& ratio) {
-  const Lanes begin = splat(packed.crush_begin), r = greater(ratio, packed.crush_end), inverse = 1.0F / r, none = splat(0.0F);
+/// (begin / ratio - 1)^2; from `end` on its parabola, so that a step gone too far has a way back.
+FASCIA_INLINE Wall wall_at(float wall_begin, float wall_end, const Lanes& ratio) {
+  const Lanes begin = splat(wall_begin), r = greater(ratio, wall_end), inverse = 1.0F / r, none = splat(0.0F);
   const Lanes share = begin * inverse, lack = positive(share - 1.0F), below = ratio - r;
   const Lanes slope = -2.0F * lack * share * inverse;
   const Lanes bend = where_below(ratio, begin, 2.0F * share * (3.0F * share - 2.0F) * (inverse * inverse), none);
   return {where_below(ratio, begin, lack * lack + slope * below + 0.5F * bend * below * below, none),
           where_below(ratio, begin, slope + bend * below, none), bend};
-}
-/// (begin - ratio)^2 / 2, of a prism.
-FASCIA_INLINE Wall turn_wall(const Packed& packed, const Lanes& ratio) {
-  const Lanes begin = splat(packed.turn_begin), lack = positive(begin - ratio);
-  return {0.5F * lack * lack, -lack, where_below(ratio, begin, splat(1.0F), splat(0.0F))};
 }
 
 FASCIA_INLINE void membrane(const MembraneBatch& m, const Packed& packed, const Lanes3* x, Lanes3* gradient, Lanes* stiffer, Lanes& energy) {
@@ -53,7 +48,7 @@ FASCIA_INLINE void membrane(const MembraneBatch& m, const Packed& packed, const 
   const Lanes3 r0 = inverse * (f0 + turned_1), r1 = inverse * (f1 + turned_0);
   const Lanes3 off0 = f0 - r0, off1 = f1 - r1;
   const Lanes spread = trace - 2.0F, along = lambda * spread, twice = 2.0F * mu;
-  const Wall wall = crush_wall(packed, ratio);
+  const Wall wall = wall_at(packed.crush_begin, packed.crush_end, ratio);
   const Lanes slope = mu * wall.slope;
   const Lanes3 s0 = twice * off0 + along * r0 + slope * turned_1, s1 = twice * off1 + along * r1 + slope * turned_0;
   const Lanes3 force_1 = a * s0 + b * s1, force_2 = c * s1;
@@ -93,7 +88,7 @@ FASCIA_INLINE void prism(const PrismBatch& m, const Packed& packed, const Lanes3
   const Lanes volume = prism_volume<true>(p, q, outer, inner);
   const Lanes inverse = load(m.inverse_volume), excess = volume - load(m.volume);
   const Lanes stiff = load(m.stiffness) * inverse * excess, guard = load(m.guard);
-  const Wall wall = turn_wall(packed, volume * inverse);
+  const Wall wall = wall_at(packed.turn_begin, packed.turn_end, volume * inverse);
   energy += 0.5F * stiff * excess + guard * wall.value * greater(load(m.volume), 0.0F);
   const Lanes pressure = (stiff + guard * wall.slope) * (1.0F / 6.0F);
   for (size_t k = 0; k < 3; ++k) {
@@ -254,7 +249,7 @@ Lanes fibre_energy(const Packed& packed, const Driven& driven, const float* x, f
     Lanes3 last = fibre_point(points[0], driven, x);
     for (uint32_t p = 0; p + 1 < f.count; ++p) {
       const Lanes3 next = fibre_point(points[p + 1], driven, x), along = next - last;
-      const Lanes segment = square_root(dot(along, along) + 1e-18F), taper = load(points[p].taper);
+      const Lanes segment = square_root(dot(along, along) + packed.segment_rounding), taper = load(points[p].taper);
       length += taper * segment;
       float* kept = driven.fibre_scratch + 3 * batch_width * p;
       const Lanes3 way = (taper / segment) * along;

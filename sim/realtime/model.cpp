@@ -54,8 +54,10 @@ Model::Model(const FaceModel& face, lanes::InstructionSet instructions) : face_(
   packed_.rest = rest_.data();
   packed_.jaw_share = jaw_share_.data();
   packed_.crush_begin = f(crush_begin);
-  packed_.crush_end = f(std::max(crush_end, 0.05));  // a twentieth of its area: no face gets there but by a step too far
+  packed_.crush_end = f(crush_end);
   packed_.turn_begin = f(turn_begin);
+  packed_.turn_end = f(turn_end);
+  packed_.segment_rounding = f(segment_rounding);
   packed_.fold_softness = f(fold_softness);
   for (const auto* list : {&lattice.fibre_channel, &lattice.carrier_channel, &lattice.pressure_channel})
     for (const uint32_t channel : *list) channels_ = std::max<size_t>(channels_, channel + 1);

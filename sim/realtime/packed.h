@@ -89,7 +89,7 @@ struct Packed {
   const float* rest;      ///< places
   const float* balance;   ///< places: gradient at rest; null while it is being found
   const float* jaw_share; ///< #places, one float each: how far the mandible carries it
-  float crush_begin, crush_end, turn_begin, fold_softness;  ///< see sim/energies.h
+  float crush_begin, crush_end, turn_begin, turn_end, segment_rounding, fold_softness;  ///< see sim/energies.h
 };
 
 /// Where bones and drive stand for a solve.

@@ -50,7 +50,7 @@ TEST(Adjoint, GradientsMatchDifferencesOfThePose) {
   ASSERT_TRUE(model.valid()) << model.fault();
   Face face(model, 4);
   PoseOptions tight;
-  tight.solver = {400, 2e-9};
+  tight.solver = {400, 1e-10};
   const size_t nodes = patch.level.rest.size();
   Positions slope(nodes);
   for (size_t i = 0; i < nodes; ++i) slope[i] = Vec3(std::sin(0.7 * static_cast<double>(i)), std::cos(1.3 * static_cast<double>(i)), 0.5);
