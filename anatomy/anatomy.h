@@ -91,10 +91,14 @@ struct OrificeBand {
 
 enum class MuscleKind { strap, sheet, fan, sphincter_ring, compressor };
 
+/// How some faces differ from the usual.
 struct Variant {
   std::string name;         ///< absent, bifid, ...
   double prevalence = 0.0;  ///< share of faces, 0..1
   std::string note;
+  bool is_absent = false;                      ///< the muscle is not there
+  double width = 1.0;                          ///< times the usual width
+  Vec3 insertion_offset = Vec3::Zero();        ///< from the usual insertion, metres on the generic head
 };
 
 /// A muscle, or the part of one that has a channel of its own.
@@ -240,6 +244,14 @@ GenericAnatomy load_generic();
 /// Throws fascia::Error naming the file, the entry and the remedy when a file is missing or malformed
 /// or a reference does not resolve.
 GenericAnatomy load_generic(const std::filesystem::path& directory);
+
+/// Adds a muscle with its channel, and its name to its whole's members. One that bears the name of a muscle there is takes
+/// its place. Throws fascia::Error when the name is that of a channel or whole of another kind.
+void add_muscle(GenericAnatomy& anatomy, Muscle muscle);
+
+/// Adds the muscles of a file of the form of anatomy/data/muscles.json, drawn on the generic head, as `add_muscle` does.
+/// Throws fascia::Error naming the file and the entry at fault.
+void add_muscles(GenericAnatomy& anatomy, const std::filesystem::path& file);
 
 /// Names of the data files built in, such as "landmarks.json" or "expressions/arkit.json".
 std::vector<std::string> embedded_files();

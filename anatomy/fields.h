@@ -63,6 +63,12 @@ std::string with_side(const std::string& name, Side side);
 /// The sides a list entry stands for: left and right, or midline when it says "midline": true.
 std::vector<Side> sides_of(const Fields& fields);
 
+/// A muscle of muscles.json as it stands there: on the left side or the midline, its name without a side.
+Muscle read_muscle(const Fields& fields);
+
+/// The channel of `muscle`.
+Actuator muscle_actuator(const Muscle& muscle);
+
 /// Readers of one file each, into `anatomy`.
 void load_landmarks(const DataFiles& files, GenericAnatomy& anatomy);
 void load_tissue_depths(const DataFiles& files, GenericAnatomy& anatomy);

@@ -29,13 +29,7 @@ void add_muscles(const Fields& root, GenericAnatomy& anatomy) {
     bool found = false;
     for (const Muscle& muscle : anatomy.muscles) {
       if (with_side(name, muscle.side) != muscle.name) continue;
-      Actuator actuator;
-      actuator.name = muscle.name;
-      actuator.group = "muscle";
-      actuator.unit = "1";
-      actuator.note = muscle.title;
-      actuator.is_muscle = true;
-      anatomy.actuators.push_back(actuator);
+      anatomy.actuators.push_back(muscle_actuator(muscle));
       found = true;
     }
     if (!found) root.fail("the muscle " + name + " is not in muscles.json");

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <fstream>
 #include <numbers>
 
 #include "anatomy/fields.h"
@@ -55,7 +56,21 @@ OrificeBand band_of(const Fields& fields) {
   return band;
 }
 
-Muscle left_muscle(const Fields& fields) {
+Variant variant_of(const Fields& entry) {
+  Variant variant;
+  variant.name = entry.text("name");
+  variant.prevalence = entry.number("prevalence");
+  variant.note = entry.text_or("note", "");
+  variant.is_absent = entry.flag("absent");
+  variant.width = entry.number_or("width", 1.0);
+  if (!(variant.width > 0.0)) entry.fail("\"width\" is a factor above 0");
+  if (entry.has("insertion_offset_mm")) variant.insertion_offset = entry.point_mm("insertion_offset_mm");
+  return variant;
+}
+
+}  // namespace
+
+Muscle read_muscle(const Fields& fields) {
   Muscle muscle;
   muscle.name = fields.text("name");
   muscle.whole = fields.text_or("whole", muscle.name);
@@ -85,11 +100,13 @@ Muscle left_muscle(const Fields& fields) {
   muscle.prevalence = fields.number_or("prevalence", 1.0);
   if (fields.has("variants"))
     for (const Fields& entry : fields.list("variants"))
-      muscle.variants.push_back({entry.text("name"), entry.number("prevalence"), entry.text_or("note", "")});
+      muscle.variants.push_back(variant_of(entry));
   for (const double unit : fields.numbers("action_units")) muscle.action_units.push_back(static_cast<int>(unit));
   muscle.source = fields.text("source");
   return muscle;
 }
+
+namespace {
 
 OrificeBand mirrored_band(OrificeBand band) {
   const double begin = std::numbers::pi - band.end_angle;
@@ -113,7 +130,18 @@ Muscle on_side(Muscle muscle, Side side) {
   std::reverse(muscle.origin.polygon.begin(), muscle.origin.polygon.end());
   std::reverse(muscle.insertion.polygon.begin(), muscle.insertion.polygon.end());
   muscle.waypoints = mirrored(muscle.waypoints);
+  for (Variant& variant : muscle.variants) variant.insertion_offset = mirrored(variant.insertion_offset);
   return muscle;
+}
+
+template <class Entry>
+void put(std::vector<Entry>& entries, Entry entry) {
+  for (Entry& known : entries)
+    if (known.name == entry.name) {
+      known = std::move(entry);
+      return;
+    }
+  entries.push_back(std::move(entry));
 }
 
 }  // namespace
@@ -122,9 +150,50 @@ void load_muscles(const DataFiles& files, GenericAnatomy& anatomy) {
   const Json document = files.json("muscles.json");
   const Fields root(document, "muscles.json");
   for (const Fields& entry : root.list("muscles")) {
-    const Muscle muscle = left_muscle(entry);
+    const Muscle muscle = read_muscle(entry);
     for (const Side side : sides_of(entry)) anatomy.muscles.push_back(on_side(muscle, side));
   }
+}
+
+Actuator muscle_actuator(const Muscle& muscle) {
+  Actuator actuator;
+  actuator.name = muscle.name;
+  actuator.group = "muscle";
+  actuator.unit = "1";
+  actuator.note = muscle.title;
+  actuator.is_muscle = true;
+  return actuator;
+}
+
+void add_muscle(GenericAnatomy& anatomy, Muscle muscle) {
+  for (const Actuator& actuator : anatomy.actuators)
+    if (actuator.name == muscle.name && !actuator.is_muscle)
+      throw Error(muscle.name + ": there is a channel of that name that is not a muscle's; choose another name");
+  if (anatomy.whole(muscle.name))
+    throw Error(muscle.name + ": this is the name of several parts together; choose another name");
+  put(anatomy.actuators, muscle_actuator(muscle));
+  if (muscle.whole != muscle.name) {
+    Whole whole{muscle.whole, {}};
+    if (const Whole* known = anatomy.whole(muscle.whole)) whole = *known;
+    if (std::find(whole.members.begin(), whole.members.end(), muscle.name) == whole.members.end())
+      whole.members.push_back(muscle.name);
+    put(anatomy.wholes, std::move(whole));
+  }
+  put(anatomy.muscles, std::move(muscle));
+}
+
+void add_muscles(GenericAnatomy& anatomy, const std::filesystem::path& file) {
+  const std::string where = "'" + file.string() + "'";
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw Error(where + " cannot be read");
+  const Json document = Json::parse(stream, nullptr, false);
+  if (document.is_discarded()) throw Error(where + " is not JSON");
+  const Fields root(document, where);
+  for (const Fields& entry : root.list("muscles")) {
+    const Muscle muscle = read_muscle(entry);
+    for (const Side side : sides_of(entry)) add_muscle(anatomy, on_side(muscle, side));
+  }
+  check_references(anatomy);
 }
 
 }  // namespace fascia::anatomy

@@ -43,7 +43,18 @@ Json muscles_json(const rigging::BuildReport& report) {
       list.push_back(whole);
     }
     last = muscle.whole;
-    list.push_back({{"name", muscle.name}, {"fibres", muscle.fibres}, {"length_mm", muscle.length_mm}});
+    list.push_back({{"name", muscle.name},
+                    {"fibres", muscle.fibres},
+                    {"length_mm", muscle.length_mm},
+                    {"shortest_mm", muscle.shortest_mm},
+                    {"longest_mm", muscle.longest_mm},
+                    {"area_mm2", muscle.area_mm2},
+                    {"thickness_mm", muscle.thickness_mm},
+                    {"volume_mm3", muscle.volume_mm3},
+                    {"strength_n", muscle.strength_n},
+                    {"origin_distance_mm", muscle.origin_distance_mm},
+                    {"insertion_distance_mm", muscle.insertion_distance_mm},
+                    {"crossings", muscle.crossings}});
   }
   return list;
 }
@@ -70,6 +81,16 @@ Json report_json(const rigging::BuildReport& report) {
                   {"min_angle_deg", report.smas_min_angle_deg},
                   {"outside_layers", report.smas_outside_layers}};
   json["muscles"] = muscles_json(report);
+  json["modioli"] = Json::array();
+  for (const auto& node : report.modioli)
+    json["modioli"].push_back({{"name", node.name},
+                               {"centre_m", {node.centre[0], node.centre[1], node.centre[2]}},
+                               {"radius_mm", node.radius_mm},
+                               {"muscles", node.muscles}});
+  json["edits"] = {{"landmarks", report.edits.landmarks},
+                   {"changed", report.edits.changed},
+                   {"added", report.edits.added},
+                   {"absent", report.edits.absent}};
   json["tissue"] = Json::object();
   for (const auto& level : report.tissue) json["tissue"][level.name] = {{"nodes", level.nodes}, {"springs", level.springs}};
   json["warnings"] = report.warnings;
@@ -105,6 +126,11 @@ rigging::BuildReport build_file(const Common& common, const BuildRequest& reques
   formats::LandmarkFile landmarks;
   if (!request.landmarks.empty()) landmarks = formats::read_landmarks(request.landmarks);
   rigging::BuildOptions options = request.options;
+  if (!request.edits.empty()) options.edits = rigging::read_edits(request.edits);
+  options.edits.muscle_files = request.muscles;
+  for (const std::string& variant : request.variants) rigging::set_variant(options.edits, variant);
+  if (request.fibre_spacing_mm > 0.0) options.edits.fibre_spacing = 1e-3 * request.fibre_spacing_mm;
+  if (request.least_prevalence >= 0.0) options.edits.least_prevalence = request.least_prevalence;
   options.progress = [&](const std::string& stage) { common.progress(stage); };
   const rigging::BuildResult result = rigging::build_rig(scene, landmarks, anatomy, options);
   const std::vector<uint8_t> bytes =
@@ -133,6 +159,11 @@ void add_build(CLI::App& app, Common& common) {
                                        "How far it follows the platysma below the chin's angle, mm of an adult")->check(CLI::Range(0.0, 80.0));
   command->add_flag("--smas-nostrils,!--no-smas-nostrils", reach.nostrils, "Open under the nose, the default, or not");
   command->add_option("--detail", request->options.detail, "Finest lattice")->check(CLI::IsMember({"low", "medium", "high"}));
+  command->add_option("--edits", request->edits, "Your own landmarks, regions, strengths and muscles (.json), kept over every rebuild");
+  command->add_option("--muscles", request->muscles, "More muscles on the generic head: a file like anatomy/data/muscles.json");
+  command->add_option("--variant", request->variants, "MUSCLE=VARIANT, such as risorius=absent")->take_all();
+  command->add_option("--fibre-spacing", request->fibre_spacing_mm, "Millimetres between fibres (2)")->check(CLI::Range(0.1, 20.0));
+  command->add_option("--least-prevalence", request->least_prevalence, "Leave out muscles that fewer people have, 0..1")->check(CLI::Range(0.0, 1.0));
   command->add_option("--report", request->report, "Folder for report.html: one page with pictures of every stage and figures");
   command->callback([request, &common] {
     const rigging::BuildReport report = build_file(common, *request);

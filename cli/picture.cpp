@@ -1,6 +1,7 @@
 #include "cli/picture.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -106,6 +107,29 @@ Vec3 muscle_colour(const std::string& name) {
   return Vec3(channel(5.0), channel(3.0), channel(1.0));
 }
 
+std::vector<std::pair<std::string, std::vector<std::vector<Vec3>>>> all_fibres(const Face& face, const rig::Rig& rig) {
+  auto all = face.fibres();
+  std::set<std::string> known;
+  for (const auto& [name, lines] : all) known.insert(name);
+  const Mat4 jaw = face.jaw();
+  for (const rig::Muscle& muscle : rig.muscles) {
+    if (known.count(muscle.name)) continue;
+    const double begin = muscle.origin == rig::FibreEnd::mandible ? 1.0 : 0.0, end = muscle.insertion == rig::FibreEnd::mandible ? 1.0 : 0.0;
+    std::vector<std::vector<Vec3>> lines;
+    for (size_t f = 0; f + 1 < muscle.fibre_offsets.size(); ++f) {
+      lines.emplace_back();
+      const size_t first = muscle.fibre_offsets[f], last = muscle.fibre_offsets[f + 1];
+      for (size_t k = first; k < last; ++k) {
+        const Vec3 rest = muscle.points[k].cast<double>();
+        const double share = last - first > 1 ? double(k - first) / double(last - first - 1) : 0.0;
+        lines.back().push_back(rest + (begin + share * (end - begin)) * (transform_point(jaw, rest) - rest));
+      }
+    }
+    all.emplace_back(muscle.name, std::move(lines));
+  }
+  return all;
+}
+
 Bounds face_box(const rig::Rig& rig) {
   std::vector<Vec3> points;
   for (const auto& landmark : rig.skull.landmarks) points.push_back(landmark.skin.cast<double>());
@@ -118,7 +142,8 @@ Bounds face_box(const rig::Rig& rig) {
   return box;
 }
 
-view::DrawList draw_face(const Face& face, const rig::Rig& rig, const std::set<std::string>& layers) {
+view::DrawList draw_face(const Face& face, const rig::Rig& rig, const std::set<std::string>& layers,
+                         const std::vector<std::string>& muscles) {
   view::DrawList list;
   const bool has_depth = layers.count("skull") || layers.count("smas") || layers.count("muscles") || layers.count("teeth");
   const Mat4 still = Mat4::Identity(), jaw = face.jaw();
@@ -154,7 +179,9 @@ view::DrawList draw_face(const Face& face, const rig::Rig& rig, const std::set<s
   if (layers.count("smas"))
     add_surface(list, mesh_of(rig.smas.surface), Vec3(0.78, 0.45, 0.42), layers.count("muscles") || layers.count("skull") ? 0.55 : 1.0, still);
   if (layers.count("muscles"))
-    for (auto& [name, lines] : face.fibres()) list.lines.push_back({std::move(lines), muscle_colour(name), 2.5});
+    for (auto& [name, lines] : all_fibres(face, rig))
+      if (muscles.empty() || std::find(muscles.begin(), muscles.end(), name) != muscles.end())
+        list.lines.push_back({std::move(lines), muscle_colour(name), 2.5});
   if (layers.count("landmarks"))
     for (const auto& landmark : rig.skull.landmarks) {
       const Vec3 skin = landmark.skin.cast<double>(), bone = landmark.bone.cast<double>();

@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "cli/common.h"
+#include "cli/muscle_sheet.h"
 #include "cli/picture.h"
 #include "formats/scene.h"
 #include "geometry/error.h"
@@ -15,7 +16,7 @@ namespace {
 struct Request {
   std::filesystem::path rig, output, file;
   std::vector<std::string> set;
-  std::string layers = "skin,eyes", view = "front", solver = "own", level;
+  std::string layers = "skin,eyes", muscles, view = "front", solver = "own", level;
   int size = 900;
 };
 
@@ -53,7 +54,14 @@ void run(const Common& common, const Request& request) {
   const rig::RigFile file = rig::read(formats::read_bytes(request.rig), request.rig.string());
   for (const auto& [name, value] : values) face.set(name, value);
   if (!values.empty()) face.pose();
-  const view::DrawList list = draw_face(face, file.rig, layers);
+  const std::vector<std::string> muscles = muscles_from(request.muscles, file.rig);
+  if (request.view == "sheet") {
+    view::write_png(request.output, muscle_sheet(face, file.rig, muscles, request.size / 2));
+    common.say("wrote " + request.output.string());
+    common.report({{"output", request.output.string()}, {"view", request.view}, {"muscles", muscles}});
+    return;
+  }
+  const view::DrawList list = draw_face(face, file.rig, layers, muscles);
   const Bounds box = face_box(file.rig);
   if (request.view == "turntable") {
     write_turntable(list, box, request);
@@ -74,8 +82,9 @@ void add_render(CLI::App& app, Common& common) {
   command->add_option("--set", request->set, "NAME=VALUE: an actuator, arkit:NAME, au:N or viseme:NAME")->take_all();
   command->add_option("--activations", request->file, "Activations (.json)");
   command->add_option("--layers", request->layers, "Of skin, eyes, teeth, skull, smas, muscles, landmarks");
-  command->add_option("--view", request->view, "front, side, right, three-quarter, back or turntable");
   command->add_option("--solver", request->solver, "Solver")->check(CLI::IsMember({"own", "reference", "bullet"}));
+  command->add_option("--view", request->view, "front, side, right, three-quarter, back, turntable, or sheet: muscles in four views with a legend");
+  command->add_option("--muscles", request->muscles, "Draw these muscles only: names of parts or wholes, with a side or without");
   command->add_option("--level", request->level, "Level of detail: low, medium or high");
   command->add_option("--size", request->size, "Width and height in pixels")->check(CLI::Range(16, 4096));
   command->add_option("-o,--output", request->output, "Picture to write (.png; a turntable also .mp4)")->required();

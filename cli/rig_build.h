@@ -8,7 +8,11 @@
 namespace fascia::cli {
 
 struct BuildRequest {
-  std::filesystem::path head, output, landmarks;
+  std::filesystem::path head, output, landmarks, edits;
+  std::vector<std::filesystem::path> muscles;  ///< files of more muscles on the generic head
+  std::vector<std::string> variants;           ///< MUSCLE=VARIANT
+  double fibre_spacing_mm = 0.0;               ///< 0: as the edits say
+  double least_prevalence = -1.0;              ///< below 0: as the edits say
   std::filesystem::path report;  ///< folder of the page that shows the build; empty: none
   rigging::BuildOptions options;
 };

@@ -1,6 +1,8 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <utility>
 
+#include "builder/muscles/order.h"
 #include "builder/muscles/parts.h"
 
 namespace fascia::muscles {
@@ -81,6 +83,17 @@ void leave_bones(const std::vector<const spatial::SurfaceQuery*>& bones, Vec3& p
   }
 }
 
+/// The directions along which the fibres stand in a row at either end. A region that is narrow against the other, or turned
+/// far from it, follows the other's: so the sheet is not twisted.
+std::pair<Vec3, Vec3> directions_across(const Course& course, const Vec3& from, const Vec3& to) {
+  const Vec3 axis = (to - from).normalized();
+  Vec3 begin = widest_across(course.origin.polygon, from, axis), end = widest_across(course.insertion.polygon, to, axis);
+  if (end.dot(begin) < 0.0) end = -end;
+  if (end.dot(begin) >= 0.5) return {begin, end};
+  const bool insertion_is_wider = extent(course.insertion.polygon, end) > 1.5 * extent(course.origin.polygon, begin);
+  return insertion_is_wider ? std::make_pair(end, end) : std::make_pair(begin, begin);
+}
+
 }  // namespace
 
 Vec3 Place::centre() const {
@@ -92,14 +105,9 @@ Vec3 Place::centre() const {
 std::vector<Fibre> lay_through_space(const Carrier& smas, const Course& course,
                                      const std::vector<const spatial::SurfaceQuery*>& bones, const Options& options) {
   const Vec3 from = course.origin.centre(), to = course.insertion.centre();
-  const Vec3 axis = (to - from).normalized();
-  const Vec3 across = widest_across(course.origin.polygon, from, axis);
-  Vec3 across_end = widest_across(course.insertion.polygon, to, axis);
-  if (across_end.dot(across) < 0.0) across_end = -across_end;
-  // A round insertion has no widest direction of its own: follow the origin's.
-  if (across_end.dot(across) < 0.5) across_end = across;
+  const auto [across, across_end] = directions_across(course, from, to);
   const double width = 0.5 * (extent(course.origin.polygon, across) + extent(course.insertion.polygon, across_end));
-  const int count = fibre_count(width, course.muscle.bundles, options);
+  const int count = fibre_count(width, course.muscle, options);
   std::vector<Fibre> fibres;
   for (int i = 0; i < count; ++i) {
     const double s = (i + 0.5) / count;
@@ -122,6 +130,11 @@ std::vector<Fibre> lay_through_space(const Carrier& smas, const Course& course,
     }
     fibres.push_back(std::move(fibre));
   }
+  put_in_order(fibres, smas.query, [&](const Vec3& position, double) {
+    Vec3 place = position;
+    leave_bones(bones, place);
+    return unbound(smas, place);
+  });
   return fibres;
 }
 

@@ -42,6 +42,12 @@ FibrePoint Depths::at(const SurfacePoint& place, double fraction) const {
   return point;
 }
 
+FibrePoint Depths::near(const Vec3& position, double fraction) const {
+  const spatial::ClosestPoint closest = smas_.query.closest(position);
+  const Vec3 normal = smas_.query.smooth_normal(closest.surface), gap = position - closest.position;
+  return (gap - normal * normal.dot(gap)).norm() < 5e-4 ? at(closest.surface, fraction) : unbound(smas_, position);
+}
+
 double Depths::thickness(const SurfacePoint& place) const {
   const Layers here = layers(place);
   return here.over + here.under;
@@ -87,9 +93,13 @@ int point_count(double length, const Options& options) {
                     options.most_points);
 }
 
-int fibre_count(double width, int bundles, const Options& options) {
-  const int count = static_cast<int>(std::lround(width / options.spacing)) + 1;
-  return std::max(std::clamp(count, options.fewest_fibres, options.most_fibres), bundles);
+int fibre_count(double width, const anatomy::Muscle& muscle, const Options& options) {
+  const auto edit = options.edits.find(muscle.name);
+  const double spacing = edit == options.edits.end() ? options.spacing : edit->second.spacing.value_or(options.spacing);
+  const double denser = std::max(1.0, Options().spacing / spacing);
+  const int most = static_cast<int>(std::lround(options.most_fibres * denser));
+  const int count = static_cast<int>(std::lround(width / spacing)) + 1;
+  return std::max(std::clamp(count, options.fewest_fibres, most), muscle.bundles);
 }
 
 FibrePoint unbound(const Carrier& smas, const Vec3& position) {

@@ -17,6 +17,10 @@ class Depths {
   /// The point over or under `place` at `fraction` of the way from skin (0) to bone (1).
   FibrePoint at(const SurfacePoint& place, double fraction) const;
 
+  /// The point at `fraction` over or under the place of the SMAS nearest to `position`; `position` itself, not bound, where
+  /// the SMAS ends half a millimetre or more beside it.
+  FibrePoint near(const Vec3& position, double fraction) const;
+
   /// Thickness of all soft tissue at `place`, metres.
   double thickness(const SurfacePoint& place) const;
 
@@ -47,8 +51,8 @@ double polyline_length(const std::vector<Vec3>& points);
 /// How many points a fibre of `length` metres gets.
 int point_count(double length, const Options& options);
 
-/// How many fibres lie side by side over `width` metres.
-int fibre_count(double width, int bundles, const Options& options);
+/// How many fibres of `muscle` lie side by side over `width` metres.
+int fibre_count(double width, const anatomy::Muscle& muscle, const Options& options);
 
 /// A point off the SMAS, with the nearest place of it.
 FibrePoint unbound(const Carrier& smas, const Vec3& position);

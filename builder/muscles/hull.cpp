@@ -13,27 +13,6 @@ namespace {
 
 double cross(const Vec2& a, const Vec2& b) { return a[0] * b[1] - a[1] * b[0]; }
 
-/// Indices of the planar hull's corners, counter-clockwise (Andrew's monotone chain); collinear points go.
-std::vector<int> planar_hull(const std::vector<Vec2>& points) {
-  std::vector<int> order(points.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](int a, int b) {
-    return std::make_pair(points[a][0], points[a][1]) < std::make_pair(points[b][0], points[b][1]);
-  });
-  std::vector<int> hull;
-  const auto sweep = [&](int i, size_t base) {
-    while (hull.size() >= base + 2 &&
-           cross(points[hull.back()] - points[hull[hull.size() - 2]], points[i] - points[hull.back()]) <= 0.0)
-      hull.pop_back();
-    hull.push_back(i);
-  };
-  for (int i : order) sweep(i, 0);
-  const size_t base = hull.size() - 1;
-  for (size_t k = order.size() - 1; k-- > 0;) sweep(order[k], base);
-  hull.pop_back();
-  return hull;
-}
-
 /// Geodesic polar coordinates of `points` about `middle`, laid out in the plane of its triangle.
 std::vector<Vec2> polar_layout(Carrier& carrier, const SurfacePoint& middle, const std::vector<SurfacePoint>& points) {
   const Vec3 normal = triangle_normal(carrier.surface.mesh, middle.triangle);
@@ -103,6 +82,26 @@ std::vector<SurfacePoint> distinct(Carrier& carrier, const std::vector<SurfacePo
 }
 
 }  // namespace
+
+std::vector<int> planar_hull(const std::vector<Vec2>& points) {
+  std::vector<int> order(points.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](int a, int b) {
+    return std::make_pair(points[a][0], points[a][1]) < std::make_pair(points[b][0], points[b][1]);
+  });
+  std::vector<int> hull;
+  const auto sweep = [&](int i, size_t base) {
+    while (hull.size() >= base + 2 &&
+           cross(points[hull.back()] - points[hull[hull.size() - 2]], points[i] - points[hull.back()]) <= 0.0)
+      hull.pop_back();
+    hull.push_back(i);
+  };
+  for (int i : order) sweep(i, 0);
+  const size_t base = hull.size() - 1;
+  for (size_t k = order.size() - 1; k-- > 0;) sweep(order[k], base);
+  hull.pop_back();
+  return hull;
+}
 
 const geodesics::Path& Carrier::connect(const SurfacePoint& from, const SurfacePoint& to) {
   geodesics::connect_into(surface, from, to, {}, workspace, path);

@@ -38,26 +38,76 @@ void check(const Inputs& inputs, const Options& options) {
     if (!muscle.band && (muscle.origin.polygon.empty() || muscle.insertion.polygon.empty()))
       throw Error(muscle.name + ": neither regions nor a band around an orifice; give it one");
   }
-  for (const RegionEdit& edit : options.regions)
-    if (!names.count(edit.muscle)) throw Error("region for " + edit.muscle + ": there is no muscle of that name");
+  for (const auto& [name, edit] : options.edits) {
+    if (!names.count(name)) throw Error("edit of " + name + ": there is no muscle of that name");
+    if (!(edit.strength >= 0.0 && edit.strength <= 100.0)) throw Error(name + ": the strength is a factor from 0 to 100");
+    if (!(edit.width > 0.0 && edit.width <= 10.0)) throw Error(name + ": the width is a factor above 0 and up to 10");
+    if (edit.spacing && !(*edit.spacing > 0.0)) throw Error(name + ": the spacing of fibres must be above 0");
+    if (edit.bundles && *edit.bundles < 1) throw Error(name + ": a muscle has one bundle or more");
+    if (edit.peak_shortening && !(*edit.peak_shortening > 0.0 && *edit.peak_shortening <= 0.5))
+      throw Error(name + ": the peak shortening lies above 0 and up to 0.5");
+  }
+}
+
+const Edit& edit_of(const std::string& name, const Options& options) {
+  static const Edit none;
+  const auto found = options.edits.find(name);
+  return found == options.edits.end() ? none : found->second;
 }
 
 std::vector<Vec3> carried(const Inputs& inputs, const std::vector<Vec3>& generic) {
   return inputs.warp ? (*inputs.warp)(std::span<const Vec3>(generic)) : generic;
 }
 
-Place make_place(const Inputs& inputs, const Options& options, const anatomy::Muscle& muscle, bool origin) {
+/// `region` of this head, `width` times as wide across the course from `from` to `to`.
+void widen(std::vector<Vec3>& region, const Vec3& from, const Vec3& to, double width) {
+  if (width == 1.0 || region.empty()) return;
+  Vec3 middle = Vec3::Zero();
+  for (const Vec3& p : region) middle += p / double(region.size());
+  const Vec3 axis = (to - from).normalized();
+  for (Vec3& p : region) {
+    const Vec3 off = p - middle;
+    p += (width - 1.0) * (off - axis * axis.dot(off));
+  }
+}
+
+Place make_place(const Inputs& inputs, const Edit& edit, const spatial::SurfaceQuery& smas, const anatomy::Muscle& muscle,
+                 bool origin) {
   const anatomy::Region& region = origin ? muscle.origin : muscle.insertion;
   Place place;
   place.on = region.on;
   if (region.on == Attachment::cranium) place.bone = inputs.cranium;
   if (region.on == Attachment::mandible) place.bone = inputs.mandible;
-  place.polygon = carried(inputs, region.polygon);
-  for (const RegionEdit& edit : options.regions)
-    if (edit.muscle == muscle.name && edit.origin == origin) place.polygon = edit.polygon;
+  const std::optional<Sketch>& sketch = origin ? edit.origin : edit.insertion;
+  place.is_sketched = sketch.has_value();
+  place.polygon = sketch ? sketched_region(*sketch, place, inputs, smas, muscle.name + (origin ? ": origin" : ": insertion"))
+                         : carried(inputs, region.polygon);
   for (const Vec3& p : place.polygon)
     if (!p.allFinite()) throw Error(muscle.name + ": a region has a point that is not finite; check landmarks and warp");
   return place;
+}
+
+Course make_course(const Inputs& inputs, const Options& options, const spatial::SurfaceQuery& smas,
+                   const anatomy::Muscle& muscle) {
+  const Edit& edit = edit_of(muscle.name, options);
+  Course course{muscle, make_place(inputs, edit, smas, muscle, true), make_place(inputs, edit, smas, muscle, false), {}};
+  for (Vec3& p : course.insertion.polygon) p += edit.insertion_offset;
+  const Vec3 from = course.origin.centre(), to = course.insertion.centre();
+  widen(course.origin.polygon, from, to, edit.width);
+  widen(course.insertion.polygon, from, to, edit.width);
+  course.waypoints = edit.waypoints ? *edit.waypoints : carried(inputs, muscle.waypoints);
+  return course;
+}
+
+/// The muscle with the user's changes that are not about places on this head.
+anatomy::Muscle edited(anatomy::Muscle muscle, const Options& options) {
+  const Edit& edit = edit_of(muscle.name, options);
+  if (muscle.band && (edit.origin || edit.insertion || edit.waypoints))
+    throw Error(muscle.name + ": it runs around an orifice and has no regions; change its width or its strength");
+  muscle.bundles = edit.bundles.value_or(muscle.bundles);
+  muscle.peak_shortening = edit.peak_shortening.value_or(muscle.peak_shortening);
+  if (muscle.band) muscle.band->outer = muscle.band->inner + edit.width * (muscle.band->outer - muscle.band->inner);
+  return muscle;
 }
 
 /// True when the muscle lies too deep or too far away to follow the SMAS.
@@ -69,10 +119,10 @@ bool runs_through_space(const Carrier& smas, const Course& course) {
 }
 
 /// How far around each orifice the bands reach.
-std::map<std::string, double> orifice_reach(std::span<const anatomy::Muscle> muscles, const Options& options) {
+std::map<std::string, double> orifice_reach(const std::vector<anatomy::Muscle>& muscles) {
   std::map<std::string, double> reach;
   for (const anatomy::Muscle& muscle : muscles)
-    if (muscle.band && is_wanted(muscle, options))
+    if (muscle.band)
       reach[muscle.band->orifice] = std::max(reach[muscle.band->orifice], muscle.band->outer);
   return reach;
 }
@@ -89,8 +139,7 @@ Muscle described(const anatomy::Muscle& from, const Options& options) {
   muscle.bundles = from.bundles;
   muscle.peak_shortening = from.peak_shortening;
   muscle.cross_section = from.cross_section;
-  const auto scale = options.strength_scale.find(from.name);
-  muscle.strength = from.cross_section * options.stress * (scale == options.strength_scale.end() ? 1.0 : scale->second);
+  muscle.strength = from.cross_section * options.stress * edit_of(from.name, options).strength;
   if (!from.band) {
     muscle.origin_on = from.origin.on;
     muscle.insertion_on = from.insertion.on;
@@ -98,40 +147,60 @@ Muscle described(const anatomy::Muscle& from, const Options& options) {
   return muscle;
 }
 
-}  // namespace
-
-void measure(Muscle& muscle) {
-  muscle.mean_length = muscle.longest = muscle.area = 0.0;
-  muscle.shortest = muscle.fibres.empty() ? 0.0 : 1e300;
-  for (Fibre& fibre : muscle.fibres) {
-    fibre.rest_length = 0.0;
-    for (size_t k = 0; k + 1 < fibre.points.size(); ++k)
-      fibre.rest_length += (fibre.points[k + 1].position - fibre.points[k].position).norm();
-    muscle.mean_length += fibre.rest_length / double(muscle.fibres.size());
-    muscle.shortest = std::min(muscle.shortest, fibre.rest_length);
-    muscle.longest = std::max(muscle.longest, fibre.rest_length);
+/// Farthest end of a fibre from the surface it is fastened to.
+double attachment_distance(const Inputs& inputs, const Muscle& muscle, bool origin) {
+  Attachment on = origin ? muscle.origin_on : muscle.insertion_on;
+  // A compressor runs from the skin to the mucosa, which is no surface of its own.
+  if (muscle.kind == MuscleKind::compressor) on = origin ? Attachment::skin : Attachment::fascia;
+  const spatial::SurfaceQuery* surface = nullptr;
+  if (on == Attachment::cranium) surface = inputs.cranium;
+  if (on == Attachment::mandible) surface = inputs.mandible;
+  if (on == Attachment::skin) surface = inputs.skin;
+  const bool on_smas = on == Attachment::smas || on == Attachment::modiolus;
+  double farthest = 0.0;
+  for (const Fibre& fibre : muscle.fibres) {
+    const FibrePoint& end = origin ? fibre.points.front() : fibre.points.back();
+    if (surface) farthest = std::max(farthest, surface->closest(end.position).distance);
+    else if (on_smas) farthest = std::max(farthest, std::abs(end.offset));
   }
-  // Strips between neighbouring fibres; half a strip more on either edge, as fibres stand for a width.
-  for (size_t i = 0; i + 1 < muscle.fibres.size(); ++i) {
-    const auto &a = muscle.fibres[i].points, &b = muscle.fibres[i + 1].points;
-    double width = 0.0;
-    const int samples = 9;
-    for (int k = 0; k < samples; ++k) {
-      const double share = double(k) / (samples - 1);
-      const auto at = [&](const std::vector<FibrePoint>& points) {
-        const double place = share * double(points.size() - 1);
-        const size_t n = std::min(static_cast<size_t>(place), points.size() - 2);
-        return Vec3(points[n].position + (place - double(n)) * (points[n + 1].position - points[n].position));
-      };
-      width += (at(a) - at(b)).norm() / samples;
-    }
-    const double length = 0.5 * (muscle.fibres[i].rest_length + muscle.fibres[i + 1].rest_length);
-    muscle.area += width * length;
-  }
-  if (muscle.fibres.size() > 1) muscle.area *= double(muscle.fibres.size()) / double(muscle.fibres.size() - 1);
-  muscle.volume = muscle.cross_section * muscle.mean_length;
-  muscle.thickness = muscle.area > 0.0 ? muscle.volume / muscle.area : 0.0;
+  return farthest;
 }
+
+/// Farthest end of a fibre in the node from its centre, along the SMAS.
+double measured_radius(const Modiolus& node, const std::vector<Muscle>& muscles, const spatial::SurfaceQuery& smas) {
+  const Vec3 normal = smas.smooth_normal(smas.closest(node.centre).surface);
+  double farthest = 0.0;
+  for (const Muscle& muscle : muscles) {
+    if (std::find(node.muscles.begin(), node.muscles.end(), muscle.name) == node.muscles.end()) continue;
+    for (const Fibre& fibre : muscle.fibres) {
+      double nearer = 1e300;  // of the two ends: the other lies elsewhere
+      for (const FibrePoint* end : {&fibre.points.front(), &fibre.points.back()}) {
+        const Vec3 off = end->position - node.centre;
+        nearer = std::min(nearer, (off - normal * normal.dot(off)).norm());
+      }
+      farthest = std::max(farthest, nearer);
+    }
+  }
+  return farthest;
+}
+
+/// Notes a ring that ends in the nodes on either side.
+void join_modioli(std::vector<Modiolus>& modioli, Muscle& ring) {
+  for (Modiolus& node : modioli) {
+    const auto ends_in = [&](bool first) {
+      return std::all_of(ring.fibres.begin(), ring.fibres.end(), [&](const Fibre& fibre) {
+        const Vec3& end = first ? fibre.points.front().position : fibre.points.back().position;
+        return (end - node.centre).norm() < 3.0 * node.radius;
+      });
+    };
+    const bool begins = ends_in(true), ends = ends_in(false);
+    if (begins) ring.origin_on = Attachment::modiolus;
+    if (ends) ring.insertion_on = Attachment::modiolus;
+    if (begins || ends) node.muscles.push_back(ring.name);
+  }
+}
+
+}  // namespace
 
 Result build(const Inputs& inputs, const Options& options) {
   check(inputs, options);
@@ -144,32 +213,46 @@ Result build(const Inputs& inputs, const Options& options) {
   std::vector<const spatial::SurfaceQuery*> floors = bones;
   if (inputs.teeth) floors.push_back(inputs.teeth);
   const Depths depths(smas, *inputs.skin, floors);
+  std::vector<anatomy::Muscle> wanted;
+  for (const anatomy::Muscle& muscle : inputs.muscles)
+    if (is_wanted(muscle, options)) wanted.push_back(edited(muscle, options));
   std::map<std::string, OrificeNet> nets;
-  for (const auto& [orifice, reach] : orifice_reach(inputs.muscles, options))
+  for (const auto& [orifice, reach] : orifice_reach(wanted))
     nets[orifice] = orifice_net(smas, inputs.landmarks, orifice, reach);
+  std::vector<Course> courses;
+  for (const anatomy::Muscle& muscle : wanted)
+    if (!muscle.band) courses.push_back(make_course(inputs, options, query, muscle));
 
   Result result;
-  for (const anatomy::Muscle& from : inputs.muscles) {
-    if (!is_wanted(from, options)) continue;
+  result.modioli = gather_modioli(smas, courses, options);
+  size_t next = 0;
+  for (const anatomy::Muscle& from : wanted) {
     Muscle muscle = described(from, options);
     if (from.band) {
       const OrificeNet& net = nets.at(from.band->orifice);
       muscle.fibres = from.kind == MuscleKind::compressor ? lay_compressors(depths, net, from, options)
-                                                          : lay_rings(depths, net, from, options);
+                                                          : lay_rings(depths, net, from, result.modioli, options);
       if (from.band->medial_on_bone) muscle.origin_on = Attachment::cranium;
+      if (from.kind == MuscleKind::sphincter_ring) join_modioli(result.modioli, muscle);
     } else {
-      const Course course{from, make_place(inputs, options, from, true), make_place(inputs, options, from, false),
-                          carried(inputs, from.waypoints)};
+      const Course& course = courses[next++];
       muscle.origin = course.origin.polygon;
       muscle.insertion = course.insertion.polygon;
-      muscle.fibres = runs_through_space(smas, course) ? lay_through_space(smas, course, bones, options)
-                                                       : lay_on_smas(smas, depths, course, options);
+      if (!runs_through_space(smas, course)) muscle.fibres = lay_on_smas(smas, depths, course, options);
+      if (muscle.fibres.empty()) muscle.fibres = lay_through_space(smas, course, bones, options);
     }
     measure(muscle);
+    muscle.crossings = crossings(muscle.fibres, query);
+    muscle.origin_distance = attachment_distance(inputs, muscle, true);
+    muscle.insertion_distance = attachment_distance(inputs, muscle, false);
     if (muscle.shortest < 1e-3)
       result.warnings.push_back(muscle.name + ": a fibre is shorter than 1 mm; its regions lie on each other");
+    if (muscle.crossings > 0)
+      result.warnings.push_back(muscle.name + ": its fibres cross in " + std::to_string(muscle.crossings) +
+                                " places; its regions or landmarks near it may be misplaced");
     result.muscles.push_back(std::move(muscle));
   }
+  for (Modiolus& node : result.modioli) node.radius = measured_radius(node, result.muscles, query);
   return result;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -45,6 +46,10 @@ struct Muscle {
   double area = 0.0;       ///< of the sheet the fibres span, square metres
   double volume = 0.0;     ///< cross-section times mean length, cubic metres
   double thickness = 0.0;  ///< volume over area, metres; 0 without an area
+  /// Farthest fibre end from what the muscle is fastened to there (bone, skin, or the SMAS, as the modiolus is in it),
+  /// metres; 0 where that is no surface of this head (hyoid, fascia, galea, tarsus).
+  double origin_distance = 0.0, insertion_distance = 0.0;
+  int crossings = 0;  ///< places where two of its fibres cross; see crossings()
 };
 
 /// What the muscles are laid on. Meshes and landmarks in metres, in this head's frame: face along +Z, +Y up.
@@ -62,14 +67,26 @@ struct Inputs {
 };
 
 /// A region drawn on this head that stands for the generic one.
-struct RegionEdit {
-  std::string muscle;  ///< name with side
-  bool origin = true;  ///< else the insertion
-  std::vector<Vec3> polygon;  ///< metres, on or near the surface, in order
+struct Sketch {
+  std::vector<Vec3> points;   ///< metres, on the head: its skin, its SMAS or its bones
+  bool is_curve = false;      ///< they go round the region in order; else they lie anywhere in it
+};
+
+/// What a user changed of one muscle.
+struct Edit {
+  double strength = 1.0;       ///< times the generic strength
+  double width = 1.0;          ///< times the width of both regions across the course, or of a ring's band
+  Vec3 insertion_offset = Vec3::Zero();  ///< moves the insertion, metres
+  std::optional<double> peak_shortening;
+  std::optional<int> bundles;
+  std::optional<double> spacing;         ///< between fibres, metres
+  std::optional<Sketch> origin, insertion;
+  std::optional<std::vector<Vec3>> waypoints;  ///< metres, on this head; empty: the straight course
 };
 
 struct Options {
   double spacing = 0.002;  ///< between fibres, metres on an adult face
+  /// Fibres a muscle has at least and, at the spacing above, at most; a denser spacing allows as many more.
   int fewest_fibres = 3, most_fibres = 9;
   double point_spacing = 0.004;  ///< between the points of a fibre, metres
   int fewest_points = 5, most_points = 25;
@@ -78,12 +95,24 @@ struct Options {
   double stress = 3.0e5;           ///< of muscle at full activation, pascal
   double least_prevalence = 0.0;   ///< leave out muscles that fewer people have
   std::vector<std::string> absent; ///< names or wholes to leave out
-  std::map<std::string, double> strength_scale;  ///< by name
-  std::vector<RegionEdit> regions;
+  std::map<std::string, Edit> edits;  ///< by name
+  /// Half the width of the node lateral to each corner of the mouth where the muscles meet that insert on the modiolus,
+  /// and the rings of the mouth with them, metres; 0 leaves each at its own place.
+  double modiolus_radius = 0.005;
+};
+
+/// The node lateral to a corner of the mouth in which muscles are interwoven; what one of them pulls, the others feel.
+struct Modiolus {
+  std::string name;                  ///< modiolus_left or modiolus_right
+  anatomy::Side side = anatomy::Side::left;
+  Vec3 centre = Vec3::Zero();        ///< metres, on the SMAS
+  double radius = 0.0;               ///< farthest end of a fibre from the centre along the SMAS, metres
+  std::vector<std::string> muscles;  ///< that end in it, in the order of the input
 };
 
 struct Result {
   std::vector<Muscle> muscles;  ///< in the order of the input
+  std::vector<Modiolus> modioli;
   std::vector<std::string> warnings;
 };
 
@@ -91,11 +120,18 @@ struct Result {
 /// by the warp, their geodesic hulls on the SMAS joined by mutual tangents, and fibres drawn between the
 /// facing arcs as boundary-value geodesics, each point at its depth between skin and bone. Sphincters are
 /// rings at constant distance from the orifice, compressors run across them. Muscles that lie deep or
-/// away from the SMAS (chewing, tongue base, orbit) run from bone to bone through their waypoints.
-/// Throws `Error` naming the muscle when inputs are missing or a region makes no sense.
+/// away from the SMAS (chewing, tongue base, orbit), or whose way an opening of it bars (depressor septi), run from region
+/// to region through their waypoints. Fibres of one muscle that would cross are put in order.
+/// Throws `Error` naming the muscle when inputs are missing, an edit names no muscle, or a region makes no sense: a sketch
+/// with fewer than three points, off the head, of no extent, or whose curve crosses itself.
 Result build(const Inputs& inputs, const Options& options = {});
 
 /// Sets lengths, area, volume and thickness of `muscle` from its fibres.
 void measure(Muscle& muscle);
+
+/// How many times two fibres of one muscle cross, seen along the SMAS' normals, or, where none of their points is bound
+/// to the SMAS, along the normal of the sheet they span. Ends that touch do not count. Each fibre is held against the four
+/// that follow it, as fibres lie side by side in their order.
+int crossings(const std::vector<Fibre>& fibres, const spatial::SurfaceQuery& smas);
 
 }  // namespace fascia::muscles

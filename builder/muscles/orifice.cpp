@@ -3,7 +3,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "builder/muscles/order.h"
 #include "builder/muscles/parts.h"
 #include "geometry/error.h"
 
@@ -108,24 +110,23 @@ std::vector<Vec3> walk(const Carrier& smas, const Start& start, double step, int
   return ray;
 }
 
-/// Points of a net put at their depth: on the SMAS, or between skin and lining where it has its opening.
+/// Points of a net put at their depth: on the SMAS, or, in its opening, where it would be if it went straight on.
 FibrePoint at_depth(const Depths& depths, const Vec3& point, double fraction) {
   const Carrier& smas = depths.smas();
   const spatial::ClosestPoint closest = smas.query.closest(point);
   const Vec3 normal = smas.query.smooth_normal(closest.surface);
-  const Vec3 gap = point - closest.position;
-  if ((gap - normal * normal.dot(gap)).norm() < 5e-4) return depths.at(closest.surface, fraction);
-  const spatial::ClosestPoint skin = depths.skin().closest(point);
-  const Vec3 inward = -depths.skin().smooth_normal(skin.surface);
-  return unbound(smas, skin.position + fraction * depths.thickness(closest.surface) * inward);
+  const Vec3 gap = point - closest.position, beside = gap - normal * normal.dot(gap);
+  const FibrePoint bound = depths.at(closest.surface, fraction);
+  return beside.norm() < 5e-4 ? bound : unbound(smas, bound.position + beside);
 }
 
 /// Ray coordinates of `count` points evenly spaced along the ring at `distance` between two angles.
 std::vector<double> along_ring(const OrificeNet& net, double distance, double begin, double end, int count) {
   const int fine = 96;
+  const OrificeNet::Ring ring = net.ring(distance);
   std::vector<double> rays, lengths = {0.0};
   for (int i = 0; i <= fine; ++i) {
-    rays.push_back(net.ray_at(begin + (end - begin) * i / fine, distance));
+    rays.push_back(net.ray_at(begin + (end - begin) * i / fine, ring));
     if (i == 0) continue;
     // Coordinates are cyclic: go on from the last one.
     const double around = double(net.rays.size());
@@ -145,10 +146,15 @@ std::vector<double> along_ring(const OrificeNet& net, double distance, double be
 }
 
 double ring_length(const OrificeNet& net, double distance, double begin, double end) {
+  const OrificeNet::Ring ring = net.ring(distance);
+  const auto at = [&](int i) { return net.point(net.ray_at(begin + (end - begin) * i / 24, ring), distance); };
   double sum = 0.0;
-  for (int i = 0; i < 24; ++i)
-    sum += (net.point(net.ray_at(begin + (end - begin) * (i + 1) / 24, distance), distance) -
-            net.point(net.ray_at(begin + (end - begin) * i / 24, distance), distance)).norm();
+  Vec3 last = at(0);
+  for (int i = 1; i <= 24; ++i) {
+    const Vec3 next = at(i);
+    sum += (next - last).norm();
+    last = next;
+  }
   return sum;
 }
 
@@ -166,19 +172,41 @@ Vec3 OrificeNet::point(double at, double distance) const {
          share * ((1 - rest) * rays[j][k] + rest * rays[j][k + 1]);
 }
 
-double OrificeNet::ray_at(double angle, double distance) const {
-  const int count = static_cast<int>(rays.size());
-  const auto offset = [&](int i) {  // of ray i's point from the angle asked for, in (−π, π]
-    const Vec3 p = point(i, distance) - centre;
-    return std::remainder(std::atan2(p[1], p[0]) - angle, 2 * kPi);
+OrificeNet::Ring OrificeNet::ring(double distance) const {
+  Ring ring;
+  for (size_t i = 0; i < rays.size(); ++i) {
+    ring.points.push_back(point(double(i), distance));
+    const Vec3 p = ring.points.back() - centre;
+    ring.angles.push_back(std::atan2(p[1], p[0]));
+  }
+  return ring;
+}
+
+double OrificeNet::ray_at(double angle, const Ring& ring) const {
+  const size_t count = rays.size();
+  const auto offset = [&](size_t i) {  // of ray i's point from the angle asked for, in (−π, π]
+    double off = ring.angles[i] - angle;
+    while (off > kPi) off -= 2 * kPi;
+    while (off <= -kPi) off += 2 * kPi;
+    return off;
   };
-  double before = offset(0);
-  for (int i = 0; i < count; ++i) {
-    const double after = offset((i + 1) % count);
-    if (before <= 0.0 && after > 0.0 && after - before < kPi) return i + before / (before - after);
+  // Close to the rim the rays of a curved lip may be seen at the angle twice: the ring's place is the outermost.
+  double before = offset(0), best = 0.0, farthest = -1.0;
+  for (size_t i = 0; i < count; ++i) {
+    const size_t next = (i + 1) % count;
+    const double after = offset(next);
+    if (before <= 0.0 && after > 0.0 && after - before < kPi) {
+      const double share = before / (before - after);
+      const Vec3 off = (1.0 - share) * ring.points[i] + share * ring.points[next] - centre;
+      const double out = off.head<2>().norm();
+      if (out > farthest) {
+        farthest = out;
+        best = double(i) + share;
+      }
+    }
     before = after;
   }
-  return 0.0;
+  return best;
 }
 
 OrificeNet orifice_net(const Carrier& smas, const std::map<std::string, Vec3>& landmarks, const std::string& orifice,
@@ -189,8 +217,11 @@ OrificeNet orifice_net(const Carrier& smas, const std::map<std::string, Vec3>& l
   net.step = reach / steps;
   for (const Start& start : starts) net.rays.push_back(walk(smas, start, net.step, steps));
   for (const Start& start : starts) net.centre += start.place / double(starts.size());
-  if (orifice == "mouth")
+  // Between the corners, but as high as the lips meet in the middle: so rings close to the lips pass it on their own side.
+  if (orifice == "mouth") {
     net.centre = 0.5 * (landmarks.at("cheilion_left") + landmarks.at("cheilion_right"));
+    net.centre[1] = landmarks.at("stomion")[1];
+  }
   return net;
 }
 
@@ -204,6 +235,43 @@ double kept_distance(double share) {
   return at_ligament + (1.0 - at_ligament) * t * t * (3.0 - 2.0 * t);
 }
 
+/// Where the node of a modiolus lies on the net.
+struct NodeOnNet {
+  double ray = 0.0, distance = 0.0, radius = 0.0;
+};
+
+NodeOnNet node_on_net(const OrificeNet& net, const Modiolus& modiolus) {
+  NodeOnNet node;
+  double nearest = 1e300;
+  for (size_t ray = 0; ray < net.rays.size(); ++ray)
+    for (size_t k = 0; k < net.rays[ray].size(); ++k) {
+      const double off = (net.rays[ray][k] - modiolus.centre).squaredNorm();
+      if (off < nearest) {
+        nearest = off;
+        node = {double(ray), double(k) * net.step, modiolus.radius};
+      }
+    }
+  return node;
+}
+
+/// The node that a band of the mouth ends in at `angle`; none away from the corners.
+std::optional<NodeOnNet> node_at(const OrificeNet& net, const std::vector<Modiolus>& modioli, double angle) {
+  if (std::abs(std::cos(angle)) < 0.9) return std::nullopt;
+  for (const Modiolus& modiolus : modioli)
+    if ((modiolus.side == anatomy::Side::left) == (std::cos(angle) > 0.0)) return node_on_net(net, modiolus);
+  return std::nullopt;
+}
+
+/// Moves a ring's place on the net (`ray`, `reach` from the rim) towards the node at its end, `share` of the ring away.
+/// Rings keep their order: at the corner of the mouth they lie side by side across the node.
+void draw_to_node(const OrificeNet& net, const NodeOnNet& node, double share, double& ray, double& reach) {
+  constexpr double way = 0.35, widest_band = 0.022;  // of the ring; metres
+  const double t = std::clamp(1.0 - share / way, 0.0, 1.0), drawn = t * t * (3.0 - 2.0 * t);
+  const double at_node = node.distance + std::min(1.0, node.radius / widest_band) * (reach - 0.5 * widest_band);
+  ray += drawn * std::remainder(node.ray - ray, double(net.rays.size()));
+  reach += drawn * (std::max(0.0005, at_node) - reach);
+}
+
 /// Whether the band's first angle is its end nearer the median plane.
 bool begins_medially(const anatomy::OrificeBand& band) {
   const double medial = band.orifice == "eye_left" ? kPi : 0.0;
@@ -214,9 +282,15 @@ bool begins_medially(const anatomy::OrificeBand& band) {
 }  // namespace
 
 std::vector<Fibre> lay_rings(const Depths& depths, const OrificeNet& net, const anatomy::Muscle& muscle,
-                             const Options& options) {
+                             const std::vector<Modiolus>& modioli, const Options& options) {
   const anatomy::OrificeBand& band = *muscle.band;
-  const int count = fibre_count(band.outer - band.inner, muscle.bundles, options);
+  const int count = fibre_count(band.outer - band.inner, muscle, options);
+  const bool medial_first = begins_medially(band);
+  std::optional<NodeOnNet> first, last;
+  if (band.orifice == "mouth") {
+    first = node_at(net, modioli, band.begin_angle);
+    last = node_at(net, modioli, band.end_angle);
+  }
   std::vector<Fibre> fibres;
   for (int i = 0; i < count; ++i) {
     const double distance = band.inner + (band.outer - band.inner) * (i + 0.5) / count;
@@ -224,15 +298,20 @@ std::vector<Fibre> lay_rings(const Depths& depths, const OrificeNet& net, const 
     Fibre fibre;
     fibre.bundle = i * muscle.bundles / count;
     const std::vector<double> rays = along_ring(net, distance, band.begin_angle, band.end_angle, points);
-    const bool medial_first = begins_medially(band);
     for (int k = 0; k < points; ++k) {
       const double share = double(k) / (points - 1);
-      const double kept = band.medial_on_bone ? kept_distance(medial_first ? share : 1.0 - share) : 1.0;
-      fibre.points.push_back(at_depth(depths, net.point(rays[k], kept * distance), sampled(muscle.depth_fraction, share)));
+      double ray = rays[k], reach = distance;
+      if (band.medial_on_bone) reach *= kept_distance(medial_first ? share : 1.0 - share);
+      if (first) draw_to_node(net, *first, share, ray, reach);
+      if (last) draw_to_node(net, *last, 1.0 - share, ray, reach);
+      fibre.points.push_back(at_depth(depths, net.point(ray, reach), sampled(muscle.depth_fraction, share)));
     }
     if (band.medial_on_bone && !medial_first) std::reverse(fibre.points.begin(), fibre.points.end());
     fibres.push_back(std::move(fibre));
   }
+  put_in_order(fibres, depths.smas().query, [&](const Vec3& position, double share) {
+    return depths.near(position, sampled(muscle.depth_fraction, share));
+  }, false);
   return fibres;
 }
 
@@ -240,7 +319,7 @@ std::vector<Fibre> lay_compressors(const Depths& depths, const OrificeNet& net, 
                                    const Options& options) {
   const anatomy::OrificeBand& band = *muscle.band;
   const int count =
-      fibre_count(ring_length(net, band.outer, band.begin_angle, band.end_angle), muscle.bundles, options);
+      fibre_count(ring_length(net, band.outer, band.begin_angle, band.end_angle), muscle, options);
   std::vector<double> rays = along_ring(net, band.outer, band.begin_angle, band.end_angle, 2 * count + 1);
   std::vector<Fibre> fibres;
   for (int i = 0; i < count; ++i) {
@@ -255,6 +334,9 @@ std::vector<Fibre> lay_compressors(const Depths& depths, const OrificeNet& net, 
     }
     fibres.push_back(std::move(fibre));
   }
+  put_in_order(fibres, depths.smas().query, [&](const Vec3& position, double share) {
+    return depths.near(position, sampled(muscle.depth_fraction, share));
+  }, false);
   return fibres;
 }
 

@@ -19,9 +19,15 @@ struct OrificeNet {
   /// Point at `distance` from the rim on ray `at`, which counts rays and shares between two; cyclic.
   Vec3 point(double at, double distance) const;
 
-  /// The ray coordinate whose point at `distance` is seen at `angle` about the centre (0 to the subject's
-  /// left, π/2 upward).
-  double ray_at(double angle, double distance) const;
+  /// The points of all rays at a distance from the rim.
+  struct Ring {
+    std::vector<double> angles;  ///< at which they are seen about the centre: 0 to the subject's left, π/2 upward
+    std::vector<Vec3> points;
+  };
+  Ring ring(double distance) const;
+
+  /// The ray coordinate whose point on `ring` is seen at `angle`.
+  double ray_at(double angle, const Ring& ring) const;
 };
 
 /// The net of `orifice` (mouth, eye_left or eye_right) out to `reach` metres. Throws `Error` naming the

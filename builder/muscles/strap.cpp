@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "builder/muscles/order.h"
 #include "builder/muscles/parts.h"
 #include "builder/muscles/tangents.h"
 
@@ -18,26 +19,40 @@ struct Ends {
   std::vector<Vec3> origin, insertion;
 };
 
+Vec3 middle(const Hull& hull) {
+  Vec3 sum = Vec3::Zero();
+  for (const Vec3& p : hull.positions) sum += p / hull.size();
+  return sum;
+}
+
 /// Between two hulls: from arc to arc, both run from the right tangent to the left one.
-Ends ends_between(const Hull& origin, const Hull& insertion, const FacingArcs& arcs, int bundles, const Options& options) {
+Ends ends_between(const Hull& origin, const Hull& insertion, const FacingArcs& arcs, const anatomy::Muscle& muscle,
+                  const Options& options) {
   const double width = 0.5 * (std::max(arc_length(origin, arcs.first_near), arc_length(origin, arcs.first_far)) +
                               std::max(arc_length(insertion, arcs.second_near), arc_length(insertion, arcs.second_far)));
-  const int count = fibre_count(0.7 * width, bundles, options);
-  Ends ends;
-  for (int i = 0; i < count; ++i) {
-    const double s = (i + 0.5) / count;
-    const auto between = [&](const Hull& hull, const Arc& near, const Arc& far) {
-      return Vec3((1.0 - options.region_share) * along_arc(hull, near, s) +
-                  options.region_share * along_arc(hull, far, s));
-    };
-    ends.origin.push_back(between(origin, arcs.first_near, arcs.first_far));
-    ends.insertion.push_back(between(insertion, arcs.second_near, arcs.second_far));
-  }
+  const int count = fibre_count(0.7 * width, muscle, options);
+  const auto at_share = [&](double region_share) {
+    Ends ends;
+    for (int i = 0; i < count; ++i) {
+      const double s = (i + 0.5) / count;
+      const auto between = [&](const Hull& hull, const Arc& near, const Arc& far) {
+        return Vec3((1.0 - region_share) * along_arc(hull, near, s) + region_share * along_arc(hull, far, s));
+      };
+      ends.origin.push_back(between(origin, arcs.first_near, arcs.first_far));
+      ends.insertion.push_back(between(insertion, arcs.second_near, arcs.second_far));
+    }
+    return ends;
+  };
+  Ends ends = at_share(options.region_share);
+  // Where the regions overlap their facing sides lie behind each other: then the fibres run across both.
+  const Vec3 onward = middle(insertion) - middle(origin);
+  for (int i = 0; i < count; ++i)
+    if ((ends.insertion[i] - ends.origin[i]).dot(onward) <= 0.0) return at_share(1.0);
   return ends;
 }
 
 /// One region inside the other: fibres from the inner outline straight out to the outer one.
-Ends ends_radial(const Hull& origin, const Hull& insertion, int bundles, const Options& options) {
+Ends ends_radial(const Hull& origin, const Hull& insertion, const anatomy::Muscle& muscle, const Options& options) {
   const auto around = [](const Hull& hull, const Vec3& centre, const Vec3& direction) {
     int best = 0;
     for (int i = 1; i < hull.size(); ++i)
@@ -53,10 +68,9 @@ Ends ends_radial(const Hull& origin, const Hull& insertion, int bundles, const O
   };
   const bool origin_larger = arc_length(origin, outline(origin)) > arc_length(insertion, outline(insertion));
   const Hull &outer = origin_larger ? origin : insertion, &inner = origin_larger ? insertion : origin;
-  Vec3 centre = Vec3::Zero();
-  for (const Vec3& p : inner.positions) centre += p / inner.size();
+  const Vec3 centre = middle(inner);
   const Arc ring = outline(outer);
-  const int count = fibre_count(arc_length(outer, ring), bundles, options);
+  const int count = fibre_count(arc_length(outer, ring), muscle, options);
   Ends ends;
   for (int i = 0; i < count; ++i) {
     const Vec3 out = along_arc(outer, ring, double(i) / count);
@@ -73,8 +87,8 @@ Ends find_ends(Carrier& smas, const Course& course, const Options& options) {
   const Hull insertion = geodesic_hull(smas, projected(smas, course.insertion.polygon), name + ": insertion");
   const auto left = mutual_tangent(smas, origin, insertion, HullSide::right, HullSide::right);
   const auto right = mutual_tangent(smas, origin, insertion, HullSide::left, HullSide::left);
-  if (!left || !right) return ends_radial(origin, insertion, course.muscle.bundles, options);
-  return ends_between(origin, insertion, facing_arcs(origin, insertion, *left, *right), course.muscle.bundles, options);
+  if (!left || !right) return ends_radial(origin, insertion, course.muscle, options);
+  return ends_between(origin, insertion, facing_arcs(origin, insertion, *left, *right), course.muscle, options);
 }
 
 /// The carrier's polyline from `from` over `through` to `to`, geodesic leg by leg.
@@ -101,6 +115,16 @@ void smooth(std::vector<Vec3>& line, int rounds) {
   }
 }
 
+/// Whether an opening of the SMAS lies in the way, so that a line over it goes a long way round.
+bool goes_round(const std::vector<Vec3>& line, const Vec3& from, const std::vector<Vec3>& through, const Vec3& to) {
+  std::vector<Vec3> direct = {from};
+  direct.insert(direct.end(), through.begin(), through.end());
+  direct.push_back(to);
+  constexpr double most = 1.5, least = 0.004;  // metres
+  const double length = polyline_length(direct);
+  return polyline_length(line) > most * length + least;
+}
+
 }  // namespace
 
 std::vector<Fibre> lay_on_smas(Carrier& smas, const Depths& depths, const Course& course, const Options& options) {
@@ -117,6 +141,7 @@ std::vector<Fibre> lay_on_smas(Carrier& smas, const Depths& depths, const Course
                         share * (ends.insertion[i] - middle_insertion));
     }
     std::vector<Vec3> line = geodesic_course(smas, ends.origin[i], through, ends.insertion[i]);
+    if (goes_round(line, ends.origin[i], through, ends.insertion[i])) return {};
     const int points = point_count(polyline_length(line), options);
     line = resampled(line, points);
     if (!through.empty()) {
@@ -135,6 +160,10 @@ std::vector<Fibre> lay_on_smas(Carrier& smas, const Depths& depths, const Course
     fasten(course.insertion, fibre.points.back());
     fibres.push_back(std::move(fibre));
   }
+  const int left = put_in_order(fibres, smas.query, [&](const Vec3& position, double share) {
+    return depths.near(position, sampled(course.muscle.depth_fraction, share));
+  });
+  if (left > 0) fibres.clear();
   return fibres;
 }
 

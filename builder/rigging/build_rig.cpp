@@ -79,14 +79,31 @@ void report_skull(const skull::FitResult& skull, BuildReport& report) {
   }
 }
 
+/// The given landmarks with the user's own in their place, all in the head file's units.
+formats::LandmarkFile with_edited_landmarks(const formats::Scene& scene, const formats::LandmarkFile& given, const Edits& edits,
+                                            const anatomy::GenericAnatomy& anatomy) {
+  if (edits.landmarks.empty()) return given;
+  for (const auto& [name, point] : edits.landmarks)
+    if (!anatomy.landmark(name))
+      throw Error("'" + edits.file + "': there is no landmark '" + name + "'; 'fascia export --part landmarks' lists them");
+  formats::LandmarkFile all = prepare::in_file_units(scene, given);
+  const formats::LandmarkFile own = prepare::in_file_units(scene, {edits.units, edits.landmarks});
+  for (const auto& [name, point] : own.points) all.points[name] = point;
+  all.units = prepare::head_units;
+  return all;
+}
+
 }  // namespace
 
 BuildResult build_rig(const formats::Scene& scene, const formats::LandmarkFile& given,
-                      const anatomy::GenericAnatomy& anatomy, const BuildOptions& options) {
+                      const anatomy::GenericAnatomy& generic, const BuildOptions& options) {
+  const anatomy::GenericAnatomy anatomy = with_new_muscles(generic, options.edits);
+  muscle_options(options.edits, anatomy, Mat4::Identity());  // wrong names are refused before the work begins
+  const formats::LandmarkFile by_hand = with_edited_landmarks(scene, given, options.edits, anatomy);
   BuildResult result;
   BuildReport& report = result.report;
   Stages stages(options, report);
-  const FoundLandmarks found = stages.run("landmarks", [&] { return find_landmarks(scene, given, anatomy, options.prepare); });
+  const FoundLandmarks found = stages.run("landmarks", [&] { return find_landmarks(scene, by_hand, anatomy, options.prepare); });
   const prepare::PreparedHead& head = found.head;
   const SkinLandmarks& all_landmarks = found.landmarks;
   // One stage of three parts: the head's place tells units and parts, which tell where the landmarks are.
@@ -115,7 +132,7 @@ BuildResult build_rig(const formats::Scene& scene, const formats::LandmarkFile& 
   report.smas_outside_layers = smas.outside_layers;
   report.smas_min_angle_deg = smas.quality.min_angle;
 
-  result.rig.muscles = stages.run("muscles", [&] { return build_muscles(anatomy, head, skull, smas, points, report); });
+  result.rig.muscles = stages.run("muscles", [&] { return build_muscles(anatomy, head, skull, smas, points, options.edits, report); });
   result.rig.skull = rig_skull(skull, head, all_landmarks);
   result.rig.smas = rig_smas(smas, skull, anatomy);
   result.rig.actuation = rig_actuation(anatomy, result.rig.muscles);

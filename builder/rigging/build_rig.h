@@ -6,6 +6,7 @@
 
 #include "anatomy/anatomy.h"
 #include "builder/prepare/prepare.h"
+#include "builder/rigging/edits.h"
 #include "builder/smas/smas.h"
 #include "formats/landmark_file.h"
 #include "formats/scene.h"
@@ -19,6 +20,7 @@ struct BuildOptions {
   double tissue_scale = 1.0;      ///< scales every tissue depth: children, stylised heads
   smas::Options smas;             ///< how far it reaches, how fine it is
   std::string detail = "medium";  ///< finest level of the lattice: low, medium or high
+  Edits edits;                    ///< the user's changes to landmarks and muscles
   /// Called as each stage begins, with its name; may be empty.
   std::function<void(const std::string& stage)> progress;
 };
@@ -53,10 +55,25 @@ struct BuildReport {
   double smas_min_angle_deg = 0.0;
   struct MuscleFigures {
     std::string name, whole;  ///< the muscle, and what it is a part of (its own name when it has no parts)
-    int fibres = 0;
-    double length_mm = 0.0;
+    int fibres = 0, crossings = 0;
+    double length_mm = 0.0, shortest_mm = 0.0, longest_mm = 0.0;  ///< mean of the fibres, and the extremes
+    double area_mm2 = 0.0, thickness_mm = 0.0, volume_mm3 = 0.0, strength_n = 0.0;
+    double origin_distance_mm = 0.0, insertion_distance_mm = 0.0;  ///< farthest fibre end from what it is fastened to
   };
   std::vector<MuscleFigures> muscles;
+  struct ModiolusFigures {
+    std::string name;
+    Vec3 centre = Vec3::Zero();  ///< metres, rig frame
+    double radius_mm = 0.0;
+    std::vector<std::string> muscles;
+  };
+  std::vector<ModiolusFigures> modioli;
+  /// Muscles that the edits change, add or leave out, and how many landmarks they give.
+  struct EditFigures {
+    int landmarks = 0;
+    std::vector<std::string> changed, added, absent;
+  };
+  EditFigures edits;
   struct LevelFigures {
     std::string name;
     int nodes = 0, springs = 0;

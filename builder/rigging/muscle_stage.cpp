@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "builder/muscles/muscles.h"
 #include "builder/rigging/stages.h"
 #include "builder/spatial/surface_query.h"
@@ -54,6 +56,35 @@ rig::Muscle rig_muscle(const muscles::Muscle& muscle) {
   return out;
 }
 
+BuildReport::MuscleFigures figures(const muscles::Muscle& muscle) {
+  BuildReport::MuscleFigures out;
+  out.name = muscle.name;
+  out.whole = muscle.whole;
+  out.fibres = static_cast<int>(muscle.fibres.size());
+  out.crossings = muscle.crossings;
+  out.length_mm = 1e3 * muscle.mean_length;
+  out.shortest_mm = 1e3 * muscle.shortest;
+  out.longest_mm = 1e3 * muscle.longest;
+  out.area_mm2 = 1e6 * muscle.area;
+  out.thickness_mm = 1e3 * muscle.thickness;
+  out.volume_mm3 = 1e9 * muscle.volume;
+  out.strength_n = muscle.strength;
+  out.origin_distance_mm = 1e3 * muscle.origin_distance;
+  out.insertion_distance_mm = 1e3 * muscle.insertion_distance;
+  return out;
+}
+
+void report_edits(const Edits& edits, const muscles::Options& options, BuildReport& report) {
+  report.edits.landmarks = static_cast<int>(edits.landmarks.size());
+  report.edits.absent = options.absent;
+  for (const anatomy::Muscle& muscle : edits.new_muscles) report.edits.added.push_back(muscle.name);
+  const auto listed = [](const std::vector<std::string>& list, const std::string& name) {
+    return std::find(list.begin(), list.end(), name) != list.end();
+  };
+  for (const auto& [name, edit] : options.edits)
+    if (!listed(report.edits.absent, name) && !listed(report.edits.added, name)) report.edits.changed.push_back(name);
+}
+
 /// Upper and lower teeth as one surface.
 TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b) {
   TriangleMesh all = a;
@@ -67,7 +98,7 @@ TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b) {
 
 std::vector<rig::Muscle> build_muscles(const anatomy::GenericAnatomy& anatomy, const prepare::PreparedHead& head,
                                        const skull::FitResult& skull, const smas::Result& smas, const Points& landmarks,
-                                       BuildReport& report) {
+                                       const Edits& edits, BuildReport& report) {
   const spatial::SurfaceQuery skin(head.skin), cranium(skull.cranium), mandible(skull.mandible);
   const TriangleMesh all_teeth = joined(skull.teeth_upper, skull.teeth_lower);
   const std::optional<spatial::SurfaceQuery> teeth =
@@ -81,11 +112,15 @@ std::vector<rig::Muscle> build_muscles(const anatomy::GenericAnatomy& anatomy, c
   inputs.warp = &skull.warp;
   inputs.landmarks = landmarks;
   inputs.muscles = anatomy.muscles;
-  const muscles::Result built = muscles::build(inputs);
+  const muscles::Options options = muscle_options(edits, anatomy, head.input_to_metres);
+  const muscles::Result built = muscles::build(inputs, options);
+  report_edits(edits, options, report);
+  for (const muscles::Modiolus& node : built.modioli)
+    report.modioli.push_back({node.name, node.centre, 1e3 * node.radius, node.muscles});
   report.warnings.insert(report.warnings.end(), built.warnings.begin(), built.warnings.end());
   std::vector<rig::Muscle> all;
   for (const muscles::Muscle& muscle : built.muscles) {
-    report.muscles.push_back({muscle.name, muscle.whole, static_cast<int>(muscle.fibres.size()), 1e3 * muscle.mean_length});
+    report.muscles.push_back(figures(muscle));
     all.push_back(rig_muscle(muscle));
   }
   return all;

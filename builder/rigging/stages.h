@@ -22,10 +22,10 @@ using Points = std::map<std::string, Vec3>;
 skull::FitResult fit_skull(const anatomy::GenericAnatomy& anatomy, const prepare::PreparedHead& head,
                            const SkinLandmarks& landmarks, double tissue_scale);
 
-/// Lays all muscles and adds their figures and warnings to `report`.
+/// Lays all muscles of `anatomy` as `edits` ask and adds their figures and warnings to `report`.
 std::vector<rig::Muscle> build_muscles(const anatomy::GenericAnatomy& anatomy, const prepare::PreparedHead& head,
                                        const skull::FitResult& skull, const smas::Result& smas, const Points& landmarks,
-                                       BuildReport& report);
+                                       const Edits& edits, BuildReport& report);
 
 rig::Skull rig_skull(const skull::FitResult& skull, const prepare::PreparedHead& head, const SkinLandmarks& landmarks);
 

@@ -36,6 +36,8 @@ PosedFace* EmbeddedHead::face_ = nullptr;
 
 TEST_F(EmbeddedHead, MovesAsAnatomySays) { expect_face_moves_as_anatomy_says(*face_); }
 
+TEST_F(EmbeddedHead, HasSoundMuscles) { expect_muscles_are_sound(face_->report()); }
+
 TEST_F(EmbeddedHead, MirrorsItself) {
   const auto mirrored = [](Vec3 v) { return Vec3(-v[0], v[1], v[2]); };
   for (const char* muscle : {"zygomaticus_major", "frontalis", "depressor_anguli_oris"}) {

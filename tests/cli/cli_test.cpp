@@ -1,6 +1,5 @@
 // The tool as a user runs it: exit codes, messages, outputs.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <cstdio>
 #include <fstream>
@@ -8,22 +7,13 @@
 
 #include "cli/demo_curves.h"
 #include "formats/scene.h"
+#include "tests/cli/tool.h"
 
 namespace fascia::cli {
 namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-struct Outcome {
-  int code = -1;
-  std::string out, err;
-};
-
-std::string text_of(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 class Tool : public ::testing::Test {
  protected:
@@ -43,9 +33,7 @@ class Tool : public ::testing::Test {
   static std::string at(const std::string& name) { return (*folder / name).string(); }
 
   static Outcome run(const std::string& arguments) {
-    const std::string out = at("stdout.txt"), err = at("stderr.txt");
-    const int status = std::system((std::string(FASCIA_TOOL) + " " + arguments + " >" + out + " 2>" + err + " </dev/null").c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(out), text_of(err)};
+    return run_tool(*folder, arguments);
   }
 
   static void expect_input_error(const std::string& arguments, const std::string& says) {
