@@ -1,5 +1,5 @@
 // Landmarks found on heads whose landmarks are known: error in millimetres and time, person by person and variant by
-// variant (--quick: two of the people). Given files, it prints where the landmarks of those were found instead;
+// variant (--quick: two of the people; --variant N: one kind alone). Given files, it prints where the landmarks of those were found instead;
 // --sheet FILE.png draws every kind of head with its landmarks.
 #include <Eigen/Geometry>
 #include <chrono>
@@ -148,12 +148,13 @@ int main(int argc, char** argv) {
     draw_sheet(argv[2], anatomy);
     return 0;
   }
-  if (argc > 1 && std::strcmp(argv[1], "--quick") != 0) {
+  const bool is_one_variant = argc > 2 && std::strcmp(argv[1], "--variant") == 0;
+  if (argc > 1 && std::strcmp(argv[1], "--quick") != 0 && !is_one_variant) {
     for (int a = 1; a < argc; ++a) print_file(argv[a], anatomy);
     return 0;
   }
   using testing::MeasuredHead;
-  const bool is_quick = argc > 1;
+  const bool is_quick = argc > 1 && !is_one_variant;
   const auto turn = [](double x, double y, double z) {
     const double degree = EIGEN_PI / 180;
     return Mat3(Eigen::AngleAxisd(y * degree, Vec3::UnitY()) * Eigen::AngleAxisd(x * degree, Vec3::UnitX()) * Eigen::AngleAxisd(z * degree, Vec3::UnitZ()));
@@ -167,9 +168,14 @@ int main(int argc, char** argv) {
       [](MeasuredHead h) { return testing::noisy(std::move(h), 1.0, 7); },
       [](MeasuredHead h) { return testing::skin_only(std::move(h)); },
       [](MeasuredHead h) { return testing::without_lining(std::move(h)); },
-      [](MeasuredHead h) { return testing::with_holes(testing::without_lining(std::move(h)), 9, 14, 3); }};
+      [](MeasuredHead h) { return testing::with_holes(testing::without_lining(std::move(h)), 9, 14, 3); },
+      [&](MeasuredHead h) { return testing::in_units(testing::moved(testing::face_alone(std::move(h), 95), turn(-30, 130, 70)), 1000); },
+      [](MeasuredHead h) { return testing::face_alone(std::move(h), 85); },
+      [&](MeasuredHead h) { return testing::in_units(testing::moved(testing::cut_above_brows(std::move(h)), turn(80, -60, 10)), 100); }};
   std::map<std::string, Sums> by_landmark;
-  for (const auto& variant : variants) {
+  for (size_t v = 0; v < variants.size(); ++v) {
+    if (is_one_variant && v != static_cast<size_t>(std::atoi(argv[2]))) continue;
+    const auto& variant = variants[v];
     Sums all;
     for (const char* name : {"neutral", "person_0", "person_1", "person_2", "person_3", "person_4", "person_5"}) {
       if (is_quick && std::string(name) != "person_1" && std::string(name) != "person_3") continue;

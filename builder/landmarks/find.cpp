@@ -93,10 +93,11 @@ std::vector<Anchor> anchors_of(const std::map<std::string, Vec3>& points, const 
 
 }  // namespace
 
-std::map<std::string, Vec3> rough_landmarks(const anatomy::GenericAnatomy& anatomy, const FoundHead& found) {
+std::map<std::string, Vec3> rough_landmarks(const GenericFace& face, const anatomy::GenericAnatomy& anatomy, const FoundHead& found) {
   std::map<std::string, Vec3> rough;
   for (const anatomy::Landmark& landmark : anatomy.landmarks)
-    if (landmark.skin && landmark.required) rough[landmark.name] = found.fit(*landmark.skin);
+    if (landmark.skin && landmark.required && overhang_at(face, found.fit, *landmark.skin) < beyond_edge)
+      rough[landmark.name] = found.fit(*landmark.skin);
   return rough;
 }
 
@@ -134,9 +135,11 @@ FoundFace find(const GenericFace& face, const anatomy::GenericAnatomy& anatomy, 
     const Vec3 carried = eye != seen.end() ? eye->second : found.fit(*landmark.skin);
     const auto place = facing_point(skin, carried, carried_normal(found.fit, *landmark.skin, landmark.normal));
     if (!place) continue;
-    const double off = std::exp(-place->distance / placement.scale / 0.015);
+    const double distance = place->distance / placement.scale;
+    const double off = std::exp(-distance / 0.015);
     const double confidence = std::max(eye != seen.end() ? confidence_of_openings : 0.0, confidence_at(face, found.fit, *landmark.skin));
-    found.landmarks[landmark.name] = {place->position, off * confidence, false};
+    // A face alone has no ears: such a landmark stays where the bent head has it, beside the mesh.
+    found.landmarks[landmark.name] = {distance < beyond_edge ? place->position : carried, off * confidence, false};
   }
   return found;
 }

@@ -12,15 +12,27 @@ namespace fascia::landmarks {
 
 namespace {
 
-/// Measured: faces fit by 0.52 and more (0.7 as a rule); spheres, cubes, limbs, lumps and the backs of heads by 0.49 and less.
+/// Measured: whole faces fit by 0.52 and more (0.7 as a rule); spheres, cubes, limbs, lumps and the backs of heads by 0.49 and less.
 constexpr double least_likeness = 0.51;
 constexpr double sure_likeness = 0.62;
+
+/// Of a face that is cut off somewhere less fits in all, but what there is fits better than anything else does.
+constexpr double least_on_mesh = 0.6;
+constexpr double least_coverage = 0.85;
+
+bool is_face(const Likeness& likeness) {
+  return likeness.coverage >= least_coverage && std::max(likeness.share - least_likeness, likeness.on_mesh - least_on_mesh) >= 0.0;
+}
+
+bool is_better(const Likeness& a, const Likeness& b) {
+  return a.on_mesh * std::min(a.coverage, least_coverage) > b.on_mesh * std::min(b.coverage, least_coverage);
+}
 
 struct Candidate {
   Placement placement;
   size_t lump = 0;
   double residual = 1.0;  ///< metres of the generic head
-  double likeness = 0.0;
+  Likeness likeness;
   Registration fit;
 };
 
@@ -63,6 +75,28 @@ class LumpSamples {
   std::map<size_t, std::optional<Neighbours>> samples_;
 };
 
+/// Draws all of `candidates` near, bends the generic head onto the best of them; the one most like a face, or null.
+const Candidate* fit_best(const GenericFace& face, LumpSamples& near, std::vector<Candidate>& candidates) {
+  for (Candidate& candidate : candidates) {
+    if (near(candidate.lump).samples().size() < 50) continue;
+    const double guessed = candidate.placement.scale;
+    candidate.placement = refine_placement(face, near(candidate.lump), candidate.placement, 8, 6, &candidate.residual);
+    // A head shrunk to nothing fits anywhere.
+    if (std::abs(std::log(candidate.placement.scale / guessed)) > std::log(1.8)) candidate.residual = 1.0;
+  }
+  sort_and_keep(candidates, face, 8);
+  const Candidate* best = nullptr;
+  for (Candidate& candidate : candidates) {
+    if (candidate.residual >= 1.0) continue;
+    candidate.placement = refine_placement(face, near(candidate.lump), candidate.placement, 12, 2, &candidate.residual);
+    candidate.fit = register_face(face, near(candidate.lump).samples(), candidate.placement, {}, coarse_fit());
+    candidate.likeness = likeness(face, candidate.fit);
+    if (!best || is_better(candidate.likeness, best->likeness)) best = &candidate;
+    if (best->likeness.share > sure_likeness && is_face(best->likeness)) break;
+  }
+  return best;
+}
+
 TriangleMesh turned_over(TriangleMesh mesh) {
   for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
   return mesh;
@@ -98,25 +132,22 @@ FoundHead find_head(const GenericFace& face, const TriangleMesh& input, const st
       }
   }
   LumpSamples near(mesh, surface, lumps);
-  for (Candidate& candidate : candidates)
-    if (near(candidate.lump).samples().size() >= 50)
-      candidate.placement = refine_placement(face, near(candidate.lump), candidate.placement, 8, 6, &candidate.residual);
-  sort_and_keep(candidates, face, 8);
-  const Candidate* best = nullptr;
-  for (Candidate& candidate : candidates) {
-    if (candidate.residual >= 1.0) continue;
-    candidate.placement = refine_placement(face, near(candidate.lump), candidate.placement, 12, 2, &candidate.residual);
-    candidate.fit = register_face(face, near(candidate.lump).samples(), candidate.placement, {}, coarse_fit());
-    candidate.likeness = fitted_share(face, candidate.fit);
-    if (!best || candidate.likeness > best->likeness) best = &candidate;
-    if (best->likeness > sure_likeness) break;
+  const Candidate* best = fit_best(face, near, candidates);
+  std::vector<Candidate> partial;
+  if (!hint && (!best || !is_face(best->likeness)) && !lumps.empty()) {
+    for (const Guess& guess : guess_by_nose(face, near(lumps.size() - 1), 48)) {
+      partial.emplace_back();
+      partial.back().placement = guess.placement;
+      partial.back().lump = lumps.size() - 1;
+    }
+    best = fit_best(face, near, partial);
   }
-  if (!best || best->likeness < least_likeness)
+  if (!best || !is_face(best->likeness))
     throw Error("'" + path + "': no face was found in it. If there is one, give --landmarks FILE with at least four points on the "
                 "skin that are not in one plane, such as pronasale, menton, exocanthion_left and exocanthion_right; "
                 "if it is one mesh among many, name it with --skin");
   found.fit = best->fit;
-  found.likeness = best->likeness;
+  found.likeness = best->likeness.share;
   return found;
 }
 

@@ -103,6 +103,7 @@ GenericFace generic_face(const anatomy::GenericAnatomy& anatomy) {
   face.skin = object->mesh;
   face.eye_left = eyeball(anatomy, "eye_left");
   face.eye_right = eyeball(anatomy, "eye_right");
+  face.nose_tip = place(anatomy, "pronasale");
   read_regions(face);
   const std::vector<Vec3> features = feature_points(anatomy);
   size_t landmark_count = 0;
@@ -134,6 +135,7 @@ GenericFace generic_face(const anatomy::GenericAnatomy& anatomy) {
       face.points.add(is_right ? mirrored(p) : p, is_right ? mirrored(n) : n);
       face.weights.push_back(weight);
       face.is_face.push_back(is_face);
+      face.is_feature.push_back(is_face && spacing_at(p, features) < 0.0055);
     }
   }
   // Found as it will be found on other meshes, so that the two are alike.

@@ -23,6 +23,10 @@ struct Guess {
 };
 std::vector<Guess> guess_placements(const GenericFace& face, const spatial::SurfaceQuery& surface, const Ball& lump, int count);
 
+/// Places of the generic head with its nose on what stands out of `samples`, best first, at most `count`: for meshes that are
+/// a face alone or a part of a head, on which no sphere tells where the head is.
+std::vector<Guess> guess_by_nose(const GenericFace& face, const Neighbours& samples, int count);
+
 /// Brings `start` closer: robust iterative closest points with scale, points to planes, on every `stride`-th point of
 /// the face. Besl and McKay 1992; Chen and Medioni 1992. `residual` receives the trimmed mean distance, metres of
 /// the generic head.

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -44,6 +45,16 @@ Foot foot_of(const Neighbours& target, const Vec3& p, const Vec3& n, double reac
   const double ratio = std::sqrt(first) / reach;
   foot.weight = (1 - ratio * ratio) * (1 - ratio * ratio) * std::clamp(foot.normal.dot(n), 0.05, 1.0);
   return foot;
+}
+
+/// How far along the plane of `n` the nearest sample lies from `p`.
+double overhang(const Neighbours& target, const Vec3& p, const Vec3& n) {
+  static thread_local std::vector<size_t> near;
+  static thread_local std::vector<double> squared;
+  target.nearest(p, 1, near, squared);
+  if (near.empty()) return std::numeric_limits<double>::infinity();
+  const Vec3 off = target.samples().points[near.front()] - p;
+  return (off - n.dot(off) * n).norm();
 }
 
 /// The points of one stage, where they are now, and which way the surface faces there.
@@ -129,19 +140,40 @@ Registration register_face(const GenericFace& face, const Samples& target_sample
     fit.residuals.push_back(foot.weight > 0.0 ? std::abs(foot.normal.dot(foot.point - front.at[i])) + 0.3 * (foot.point - front.at[i]).norm()
                                               : std::numeric_limits<double>::infinity());
     fit.agreements.push_back(foot.weight > 0.0 ? foot.normal.dot(front.normals[i - pinned]) : -1.0);
+    fit.overhangs.push_back(overhang(target, front.at[i], front.normals[i - pinned]));
   }
   return fit;
 }
 
-double fitted_share(const GenericFace& face, const Registration& fit) {
-  double good = 0.0, total = 0.0;
+double overhang_at(const GenericFace& face, const Registration& fit, const Vec3& generic) {
+  std::array<std::pair<double, double>, 3> nearest;  // squared distance, overhang
+  nearest.fill({std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()});
   for (size_t i = 0; i < fit.used.size(); ++i) {
-    if (!face.is_face[static_cast<size_t>(fit.used[i])]) continue;
-    total += 1.0;
-    const double near = std::exp(-std::pow(fit.residuals[i] / 0.003, 2));
-    good += near * std::clamp((fit.agreements[i] - 0.5) / 0.4, 0.0, 1.0);
+    const std::pair one((face.points.points[static_cast<size_t>(fit.used[i])] - generic).squaredNorm(), fit.overhangs[i]);
+    if (one < nearest.back()) nearest.back() = one;
+    std::sort(nearest.begin(), nearest.end());
   }
-  return total > 0.0 ? good / total : 0.0;
+  std::sort(nearest.begin(), nearest.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  return nearest[1].second;
+}
+
+Likeness likeness(const GenericFace& face, const Registration& fit) {
+  double good = 0.0, good_here = 0.0, total = 0.0, here = 0.0, features = 0.0, features_here = 0.0;
+  for (size_t i = 0; i < fit.used.size(); ++i) {
+    const auto point = static_cast<size_t>(fit.used[i]);
+    if (!face.is_face[point]) continue;
+    const bool is_on_mesh = fit.overhangs[i] < beyond_edge;
+    total += 1.0;
+    here += is_on_mesh;
+    features += face.is_feature[point];
+    features_here += face.is_feature[point] && is_on_mesh;
+    const double near = std::exp(-std::pow(fit.residuals[i] / 0.003, 2));
+    const double fits = near * std::clamp((fit.agreements[i] - 0.5) / 0.4, 0.0, 1.0);
+    good += fits;
+    good_here += is_on_mesh ? fits : 0.0;
+  }
+  if (total == 0.0) return {};
+  return {good / total, here > 0.0 ? good_here / here : 0.0, features > 0.0 ? features_here / features : 0.0};
 }
 
 }  // namespace fascia::landmarks

@@ -35,6 +35,7 @@ struct Registration {
   std::vector<int> used;           ///< indices into GenericFace::points
   std::vector<double> residuals;   ///< of those, to the plane of the surface there, metres of the generic head; infinite: none found
   std::vector<double> agreements;  ///< cosine between the normals there
+  std::vector<double> overhangs;   ///< how far along the generic surface the nearest place of the mesh is: large beyond the mesh's edge
   Vec3 operator()(const Vec3& generic) const { return placement(warp(generic)); }
 };
 
@@ -45,7 +46,18 @@ Registration register_face(const GenericFace& face, const Samples& target, const
                            const std::vector<Anchor>& anchors = {}, const RegistrationOptions& options = coarse_fit(),
                            const splines::Warp& start = {});
 
-/// How face-like the fit is: the share of the face's points whose surface is near and faces as it should.
-double fitted_share(const GenericFace& face, const Registration& fit);
+/// Metres along the surface from which on a point is beyond the mesh's edge: samples are some 4 mm apart.
+inline constexpr double beyond_edge = 0.008;
+
+/// The overhang about a place on the generic head: that of the nearest of the fit's points, median of three.
+double overhang_at(const GenericFace& face, const Registration& fit, const Vec3& generic);
+
+/// How face-like a fit is.
+struct Likeness {
+  double share = 0.0;     ///< of the face's points: their surface is near and faces as it should
+  double on_mesh = 0.0;   ///< the same among the points that do not hang over the mesh's edge
+  double coverage = 0.0;  ///< share of the points of eyes, nose and mouth that do not hang over it
+};
+Likeness likeness(const GenericFace& face, const Registration& fit);
 
 }  // namespace fascia::landmarks

@@ -105,4 +105,12 @@ void Neighbours::nearest(const Vec3& point, int count, std::vector<size_t>& indi
   squared_distances.resize(found.size());
 }
 
+void Neighbours::within(const Vec3& point, double radius, std::vector<size_t>& indices) const {
+  static thread_local std::vector<std::pair<uint32_t, double>> found;
+  found.clear();
+  state_->tree->radiusSearch(point.data(), radius * radius, found, nanoflann::SearchParams());
+  indices.clear();
+  for (const auto& [index, squared] : found) indices.push_back(index);
+}
+
 }  // namespace fascia::landmarks

@@ -45,6 +45,9 @@ class Neighbours {
   /// Indices of the `count` nearest samples, nearest first; `squared_distances` alike.
   void nearest(const Vec3& point, int count, std::vector<size_t>& indices, std::vector<double>& squared_distances) const;
 
+  /// Indices of the samples within `radius` of `point`, in no order of note.
+  void within(const Vec3& point, double radius, std::vector<size_t>& indices) const;
+
  private:
   struct State;
   std::shared_ptr<const State> state_;

@@ -9,7 +9,7 @@ namespace fascia::landmarks {
 
 /// A landmark on the skin of this head.
 struct SkinLandmark {
-  Vec3 position = Vec3::Zero();  ///< metres, on the skin
+  Vec3 position = Vec3::Zero();  ///< metres, on the skin; beside it where the mesh ends before
   double confidence = 1.0;       ///< 1: given by hand; less: found, or carried over from the generic head
   bool is_given = true;
 };

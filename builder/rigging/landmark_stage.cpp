@@ -1,5 +1,6 @@
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
+#include <algorithm>
 #include <chrono>
 #include <optional>
 
@@ -70,7 +71,7 @@ LocatedHead locate_head(const formats::Scene& scene, const formats::LandmarkFile
   located.generic = landmarks::generic_face(anatomy);
   const TriangleMesh mesh = prepare::joined_meshes(scene, options.skin);
   located.found = landmarks::find_head(*located.generic, mesh, scene.path.string(), placement_of(located.landmarks, anatomy));
-  for (const auto& [name, p] : landmarks::rough_landmarks(anatomy, *located.found))
+  for (const auto& [name, p] : landmarks::rough_landmarks(*located.generic, anatomy, *located.found))
     located.landmarks.points.emplace(name, p);
   return located;
 }
@@ -129,6 +130,12 @@ FoundLandmarks find_landmarks(const formats::Scene& scene, const formats::Landma
   const Points reference = reference_points(anatomy);
   result.head = result.is_inside_out ? prepare::prepare(turned_over(scene), located.landmarks, reference, options)
                                      : prepare::prepare(scene, located.landmarks, reference, options);
+  // What prepare says of places that were only roughly found is no news: they are found anew.
+  std::erase_if(result.head.warnings, [&](const std::string& warning) {
+    return std::any_of(located.landmarks.points.begin(), located.landmarks.points.end(), [&](const auto& point) {
+      return !given.points.count(point.first) && warning.rfind("landmark '" + point.first + "'", 0) == 0;
+    });
+  });
   const double prepared_at = now();
   place_landmarks(result, located, given, anatomy, with_regions);
   result.seconds = {located_at - started, prepared_at - located_at, now() - prepared_at};

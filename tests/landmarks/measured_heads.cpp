@@ -2,6 +2,7 @@
 
 #include <meshoptimizer.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <fstream>
 #include <map>
@@ -200,6 +201,63 @@ MeasuredHead without_lining(MeasuredHead head) {
   head.scene.meshes[0].triangles = std::move(kept);
   head.name += " without lining";
   return head;
+}
+
+namespace {
+
+/// Middle of eyes and mouth, and the directions of a face as its landmarks tell them.
+struct FaceAxes {
+  Vec3 middle, left, up, forward;
+};
+
+FaceAxes face_axes(const MeasuredHead& head) {
+  const auto at = [&](const char* name) { return head.truth.at(name); };
+  const Vec3 eyes = 0.5 * (at("exocanthion_left") + at("exocanthion_right")), mouth = 0.5 * (at("cheilion_left") + at("cheilion_right"));
+  FaceAxes axes;
+  axes.middle = 0.5 * (eyes + mouth);
+  axes.left = (at("exocanthion_left") - at("exocanthion_right")).normalized();
+  axes.forward = axes.left.cross(eyes - mouth).normalized();
+  axes.up = axes.forward.cross(axes.left);
+  return axes;
+}
+
+template <class Keeps>
+MeasuredHead kept(MeasuredHead head, const std::string& how, Keeps keeps) {
+  formats::SceneMesh& mesh = head.scene.meshes[0];
+  std::erase_if(mesh.triangles, [&](const Triangle& t) { return !keeps(mesh.positions[static_cast<size_t>(t[0])]); });
+  // Points that no triangle uses are not part of what was scanned.
+  std::vector<int> place(mesh.positions.size(), -1);
+  std::vector<Vec3> used;
+  for (Triangle& t : mesh.triangles)
+    for (int& v : t) {
+      int& at = place[static_cast<size_t>(v)];
+      if (at < 0) {
+        at = static_cast<int>(used.size());
+        used.push_back(mesh.positions[static_cast<size_t>(v)]);
+      }
+      v = at;
+    }
+  mesh.positions = std::move(used);
+  mesh.uvs.clear();
+  head.name += how;
+  return head;
+}
+
+}  // namespace
+
+MeasuredHead face_alone(MeasuredHead head, double radius_mm) {
+  const FaceAxes axes = face_axes(head);
+  const double unit = 1.0 / head.millimetres;
+  const Vec3 centre = axes.middle - 25 * unit * axes.forward;
+  return kept(without_lining(std::move(head)), " face alone", [&](const Vec3& p) {
+    return (p - centre).norm() < radius_mm * unit && (p - centre).dot(axes.forward) > -25 * unit;
+  });
+}
+
+MeasuredHead cut_above_brows(MeasuredHead head) {
+  const FaceAxes axes = face_axes(head);
+  const double unit = 1.0 / head.millimetres;
+  return kept(without_lining(std::move(head)), " cut above the brows", [&](const Vec3& p) { return (p - axes.middle).dot(axes.up) < 62 * unit; });
 }
 
 MeasuredHead with_holes(MeasuredHead head, double radius_mm, int count, unsigned seed) {

@@ -40,6 +40,8 @@ MeasuredHead decimated(MeasuredHead head, int triangles);
 MeasuredHead subdivided(MeasuredHead head, int rounds);  ///< every triangle in four, so often, of the `head` mesh
 MeasuredHead skin_only(MeasuredHead head);               ///< the `head` mesh alone, with the lining of mouth and sockets
 MeasuredHead without_lining(MeasuredHead head);          ///< the `head` mesh alone; mouth and eyes are holes
+MeasuredHead face_alone(MeasuredHead head, double radius_mm);  ///< the `head` mesh without lining, cut by a ball about the face
+MeasuredHead cut_above_brows(MeasuredHead head);         ///< the `head` mesh without lining, cut by a plane as scans of the lower face are
 MeasuredHead with_holes(MeasuredHead head, double radius_mm, int count, unsigned seed);
 
 }  // namespace fascia::testing

@@ -69,6 +69,25 @@ TEST_F(MeasuredPeople, WithoutEyesAndMouthLiningAndWithHoles) {
   expect_found(with_holes(without_lining(ict_head("person_1")), 9.0, 10, 5));
 }
 
+TEST_F(MeasuredPeople, AFaceAloneInAnyPose) {
+  const Mat3 turned = (Eigen::AngleAxisd(2.2, Vec3::UnitY()) * Eigen::AngleAxisd(-0.7, Vec3::UnitX())).toRotationMatrix();
+  expect_found(in_units(moved(face_alone(ict_head("person_2"), 95.0), turned, Vec3(1, 0, 2)), 1000));
+  expect_found(face_alone(ict_head("person_4"), 85.0));
+}
+
+TEST_F(MeasuredPeople, CutAboveTheBrows) {
+  const Mat3 turned = (Eigen::AngleAxisd(-1.0, Vec3::UnitY()) * Eigen::AngleAxisd(1.4, Vec3::UnitX())).toRotationMatrix();
+  expect_found(in_units(moved(cut_above_brows(ict_head("person_0")), turned), 100));
+}
+
+TEST_F(MeasuredPeople, WhatAFaceAloneLacksHasLittleConfidence) {
+  const rigging::FoundLandmarks found = rigging::find_landmarks(face_alone(ict_head("person_2"), 85.0).scene, {}, generic_anatomy());
+  EXPECT_LT(found.landmarks.at("tragion_left").confidence, 0.5);
+  EXPECT_GT(found.landmarks.at("exocanthion_left").confidence, 0.5);
+  // Beside the mesh where the ear would be, not drawn to the mesh's edge.
+  EXPECT_GT(found.landmarks.at("tragion_left").position[0], found.landmarks.at("exocanthion_left").position[0] + 0.015);
+}
+
 TEST_F(MeasuredPeople, TheHeadOfAWholeBody) { expect_found(makehuman(), false); }
 
 /// Whether regions `a` and `b` are the two lips, or the two lids of one eye, or skin of the face and lining.

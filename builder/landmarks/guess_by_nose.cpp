@@ -1,0 +1,106 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "builder/landmarks/placement.h"
+
+namespace fascia::landmarks {
+
+namespace {
+
+/// A place that stands out of its surroundings, and which way.
+struct Protrusion {
+  Vec3 tip, direction;
+  double height = 0.0;  ///< above the middle of what is around, as a share of the radius looked at; 0 for hollows and rims
+};
+
+Protrusion protrusion_at(const Neighbours& samples, const Vec3& tip, double radius) {
+  std::vector<size_t> near;
+  samples.within(tip, radius, near);
+  Protrusion found{tip, Vec3::UnitZ(), 0.0};
+  if (near.size() < 8) return found;
+  Vec3 middle = Vec3::Zero(), normal = Vec3::Zero();
+  for (size_t i : near) {
+    middle += samples.samples().points[i] / static_cast<double>(near.size());
+    normal += samples.samples().normals[i];
+  }
+  const Vec3 out = tip - middle;
+  if (!(out.norm() > 0.0) || !(normal.norm() > 0.0)) return found;
+  found.direction = out.normalized();
+  // On the rim of an open mesh what is around lies aside of the place, not below it.
+  if (found.direction.dot(normal.normalized()) > 0.8) found.height = out.norm() / radius;
+  return found;
+}
+
+/// What stands out most, no two close together.
+std::vector<Protrusion> protrusions(const Neighbours& samples, double radius, size_t count) {
+  std::vector<Protrusion> all;
+  for (size_t i = 0; i < samples.samples().size(); ++i) {
+    const Protrusion p = protrusion_at(samples, samples.samples().points[i], radius);
+    if (p.height > 0.0) all.push_back(p);
+  }
+  std::stable_sort(all.begin(), all.end(), [](const Protrusion& a, const Protrusion& b) { return a.height > b.height; });
+  std::vector<Protrusion> chosen;
+  for (const Protrusion& p : all) {
+    if (chosen.size() == count) break;
+    if (std::none_of(chosen.begin(), chosen.end(), [&](const Protrusion& c) { return (c.tip - p.tip).norm() < 0.7 * radius; })) chosen.push_back(p);
+  }
+  return chosen;
+}
+
+/// Mean distance of the face's points from the samples that face as they do, in metres of the generic head, none counting
+/// more than 12 mm.
+double distance_from(const GenericFace& face, const std::vector<size_t>& points, const Neighbours& samples, const Placement& placement) {
+  const double most = 0.012;
+  std::vector<size_t> near;
+  std::vector<double> squared;
+  double sum = 0.0;
+  for (size_t i : points) {
+    samples.nearest(placement(face.points.points[i]), 1, near, squared);
+    const bool faces_so = samples.samples().normals[near.front()].dot(placement.rotation * face.points.normals[i]) > 0.3;
+    sum += faces_so ? std::min(most, std::sqrt(squared.front()) / placement.scale) : most;
+  }
+  return sum / static_cast<double>(points.size());
+}
+
+}  // namespace
+
+std::vector<Guess> guess_by_nose(const GenericFace& face, const Neighbours& samples, int count) {
+  const double extent = bounds(samples.samples().points).size().norm();
+  std::vector<size_t> face_points;
+  for (size_t i = 0; i < face.points.size(); ++i)
+    if (face.is_face[i]) face_points.push_back(i);
+  std::vector<size_t> few;
+  for (size_t i = 0; i < face_points.size(); i += 5) few.push_back(face_points[i]);
+  const Neighbours generic(face.points);
+  const double nose_radius = 0.025;
+  const Protrusion nose = protrusion_at(generic, face.nose_tip, nose_radius);
+  std::vector<Guess> all;
+  // A face alone measures some 0.22 m from corner to corner, a head without its vault or with its neck up to twice that.
+  for (double size : {0.17, 0.20, 0.24, 0.28, 0.33, 0.39, 0.46}) {
+    const double scale = extent / size;
+    for (const Protrusion& tip : protrusions(samples, nose_radius * scale, 6)) {
+      const Mat3 onto = Eigen::Quaterniond::FromTwoVectors(nose.direction, tip.direction).toRotationMatrix();
+      std::vector<Guess> here;
+      const int turns = 24;
+      for (int turn = 0; turn < turns; ++turn)
+        for (double nod : {0.0, -0.3, 0.3}) {
+          Guess guess;
+          guess.placement.scale = scale;
+          guess.placement.rotation = Eigen::AngleAxisd(2.0 * EIGEN_PI * turn / turns, tip.direction).toRotationMatrix() * onto *
+                                     Eigen::AngleAxisd(nod, Vec3::UnitX()).toRotationMatrix();
+          guess.placement.shift = tip.tip - scale * (guess.placement.rotation * face.nose_tip);
+          guess.cost = distance_from(face, few, samples, guess.placement);
+          here.push_back(guess);
+        }
+      const size_t kept = 3;
+      std::partial_sort(here.begin(), here.begin() + kept, here.end(), [](const Guess& a, const Guess& b) { return a.cost < b.cost; });
+      all.insert(all.end(), here.begin(), here.begin() + kept);
+    }
+  }
+  std::stable_sort(all.begin(), all.end(), [](const Guess& a, const Guess& b) { return a.cost < b.cost; });
+  if (static_cast<int>(all.size()) > count) all.resize(static_cast<size_t>(count));
+  return all;
+}
+
+}  // namespace fascia::landmarks
