@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <map>
 #include <memory>
 
 #include "builder/rigging/build_rig.h"
@@ -59,6 +60,10 @@ Json muscles_json(const rigging::BuildReport& report) {
   return list;
 }
 
+Json eye_json(const prepare::Eyeball& eye) {
+  return {{"centre", {eye.centre[0], eye.centre[1], eye.centre[2]}}, {"radius_mm", 1e3 * eye.radius}, {"gaze", {eye.gaze[0], eye.gaze[1], eye.gaze[2]}}};
+}
+
 Json report_json(const rigging::BuildReport& report) {
   Json json;
   Json matrix = Json::array();
@@ -67,7 +72,11 @@ Json report_json(const rigging::BuildReport& report) {
     for (int column = 0; column < 4; ++column) line.push_back(report.input_to_metres(row, column));
     matrix.push_back(line);
   }
-  json["input"] = {{"units", report.units}, {"input_to_metres", matrix}};
+  json["input"] = {{"units", report.units}, {"input_to_metres", matrix}, {"parts", Json::array()}, {"eyes", Json::object()}};
+  for (const auto& part : report.parts)
+    json["input"]["parts"].push_back({{"mesh", part.mesh}, {"part", part.part}, {"vertices", part.vertices}});
+  for (const auto& [side, eye] : {std::pair("left", &report.eye_left), std::pair("right", &report.eye_right)})
+    if (*eye) json["input"]["eyes"][side] = eye_json(**eye);
   json["stages"] = Json::array();
   for (const rigging::StageTime& stage : report.stages)
     json["stages"].push_back({{"name", stage.name}, {"seconds", stage.seconds}});
@@ -107,6 +116,11 @@ void say_report(const Common& common, const rigging::BuildReport& report, const 
   }
   size_t fibres = 0;
   for (const auto& muscle : report.muscles) fibres += static_cast<size_t>(muscle.fibres);
+  std::map<std::string, int> parts;
+  for (const auto& part : report.parts) parts[part.part] += part.vertices;
+  std::string known;
+  for (const auto& [part, vertices] : parts) known += (known.empty() ? "" : ", ") + part + " " + std::to_string(vertices);
+  common.say("parts (vertices): " + known);
   common.say("units " + report.units + "; " + std::to_string(report.landmarks_found) + " landmarks found, " + std::to_string(report.landmarks_given) + " given; skull fitted to " +
              fixed(report.landmark_rms_mm, 1) + " mm; SMAS of " + std::to_string(report.smas_triangles) + " triangles; " +
              std::to_string(report.muscles.size()) + " muscles, " + std::to_string(fibres) + " fibres");

@@ -1,11 +1,11 @@
 #include "builder/prepare/parts.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <set>
 
+#include "builder/prepare/eyeballs.h"
+#include "builder/prepare/part_names.h"
 #include "builder/spatial/surface_query.h"
 #include "geometry/connectivity.h"
 #include "geometry/error.h"
@@ -38,33 +38,10 @@ std::vector<Component> gather(const WeldedScene& welded) {
   return all;
 }
 
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
-bool contains_any(const std::string& text, std::initializer_list<const char*> words) {
-  return std::any_of(words.begin(), words.end(), [&](const char* word) { return text.find(word) != std::string::npos; });
-}
-
-/// What the names of a component's meshes and materials say, or nothing.
-std::optional<Part> part_by_name(const std::string& name) {
-  if (contains_any(name, {"eyelash", "lash"})) return Part::lashes;
-  if (contains_any(name, {"eyebrow", "brow"})) return Part::brows;
-  if (contains_any(name, {"lacrimal", "tearline", "tear_line", "eye_occlusion", "eyeocclusion", "eye_blend", "eyeblend",
-                          "eyeshadow", "eye_shadow", "eyewet", "cartilage"}))
-    return Part::eye_surround;
-  if (contains_any(name, {"tongue"}) && !contains_any(name, {"gum"})) return Part::tongue;
-  if (contains_any(name, {"gum", "palate", "mouth_inner", "mouthbag", "mouth_bag", "mouth_lining"})) return Part::mouth_interior;
-  if (contains_any(name, {"teeth", "tooth", "dent"})) return Part::teeth_upper;  // which jaw is told by place
-  if (contains_any(name, {"hair", "scalp_card", "beard", "mustache"})) return Part::hair;
-  return std::nullopt;
-}
-
 std::string names_of(const formats::Scene& scene, const Component& component) {
   std::string names;
   for (int m : component.meshes)
-    names += " " + lower(scene.meshes[static_cast<size_t>(m)].name) + " " + lower(scene.meshes[static_cast<size_t>(m)].material);
+    names += " " + scene.meshes[static_cast<size_t>(m)].name + " " + scene.meshes[static_cast<size_t>(m)].material;
   return names;
 }
 
@@ -94,24 +71,6 @@ int skin_component(const formats::Scene& scene, const WeldedScene& welded, const
   return static_cast<int>(std::max_element(score.begin(), score.end()) - score.begin());
 }
 
-/// An eyeball is round, about 12 mm in radius, and lies behind the lids.
-std::optional<Eyeball> as_eyeball(const Component& component, const std::optional<Vec3>& outer,
-                                  const std::optional<Vec3>& inner, const std::string& names) {
-  if (component.points.size() < 20) return std::nullopt;
-  double rms = 0.0;
-  Eyeball eye = fit_sphere(component.points, &rms);
-  const Vec3 size = component.box.size();
-  const bool is_round = rms < 0.12 * eye.radius && size.minCoeff() > 0.6 * size.maxCoeff();
-  if (!is_round || eye.radius < 0.006 || eye.radius > 0.025) return std::nullopt;
-  if (outer && inner) {
-    const Vec3 lids = 0.5 * (*outer + *inner);
-    if ((eye.centre - lids).norm() > 0.03) return std::nullopt;
-  } else if (names.find("eye") == std::string::npos) {
-    return std::nullopt;
-  }
-  return eye;
-}
-
 /// Rows of teeth run around an empty middle; a tongue does not.
 bool is_arch(const Component& component) {
   const Vec3 centre = component.box.centre(), size = component.box.size();
@@ -124,45 +83,101 @@ bool is_arch(const Component& component) {
   return front > back && front - back < 0.6 * size[2];
 }
 
-/// Parts of the mouth and lids by where they lie, when names do not tell.
-Part part_by_place(const Component& component, const std::map<std::string, Vec3>& landmarks) {
+/// Where a part lies; what it can be follows from it.
+enum class Zone { mouth, lids, about_head, unknown };
+
+struct Placed {
+  Zone zone = Zone::unknown;
+  Part likely = Part::other;
+};
+
+std::optional<Placed> in_mouth(const Component& component, const std::map<std::string, Vec3>& landmarks) {
   const auto left = landmark(landmarks, "cheilion_left"), right = landmark(landmarks, "cheilion_right");
-  const Vec3 centre = component.box.centre();
-  if (left && right) {
-    const Vec3 mouth = 0.5 * (*left + *right);
-    const Vec3 from = centre - mouth;
-    const bool is_inside = std::abs(from[0]) < 0.04 && from[1] > -0.045 && from[1] < 0.035 && from[2] > -0.07 &&
-                           component.box.upper[2] < mouth[2] + 0.02;
-    if (is_inside) {
-      const Vec3 size = component.box.size();
-      const bool is_tongue = std::abs(from[0]) < 0.004 && size[0] > 0.02 && size[0] < 0.06 && size[1] < 0.048 && size[2] > 0.03 &&
-                             from[1] < 0.003 && from[2] < -0.02 && !is_arch(component);
-      if (is_tongue) return Part::tongue;
-      if (size[1] > 0.035 || size.maxCoeff() > 0.07) return Part::mouth_interior;
-      return from[1] > -0.003 ? Part::teeth_upper : Part::teeth_lower;
-    }
-  }
+  if (!left || !right) return std::nullopt;
+  const Vec3 mouth = 0.5 * (*left + *right), from = component.box.centre() - mouth, size = component.box.size();
+  const bool is_inside = std::abs(from[0]) < 0.04 && from[1] > -0.045 && from[1] < 0.035 && from[2] > -0.07 &&
+                         component.box.upper[2] < mouth[2] + 0.02;
+  if (!is_inside) return std::nullopt;
+  const bool is_tongue = std::abs(from[0]) < 0.004 && size[0] > 0.02 && size[0] < 0.06 && size[1] < 0.048 && size[2] > 0.03 &&
+                         from[1] < 0.003 && from[2] < -0.02 && !is_arch(component);
+  if (is_tongue) return Placed{Zone::mouth, Part::tongue};
+  if (size[1] > 0.035 || size.maxCoeff() > 0.07) return Placed{Zone::mouth, Part::mouth_interior};
+  return Placed{Zone::mouth, from[1] > -0.003 ? Part::teeth_upper : Part::teeth_lower};
+}
+
+std::optional<Placed> at_lids(const Component& component, const std::map<std::string, Vec3>& landmarks) {
   for (const char* side : {"left", "right"}) {
     const auto outer = landmark(landmarks, ("exocanthion_" + std::string(side)).c_str());
     const auto inner = landmark(landmarks, ("endocanthion_" + std::string(side)).c_str());
     if (!outer || !inner) continue;
-    const Vec3 from = centre - 0.5 * (*outer + *inner), size = component.box.size();
+    const Vec3 from = component.box.centre() - 0.5 * (*outer + *inner), size = component.box.size();
     const double width = (*outer - *inner).norm();
     // A brow lies above the lids and is longer than high; lashes stand out in front of the lids.
     const bool is_brow = from[1] > 0.35 * width && from[1] < 1.3 * width && std::abs(from[0]) < 0.6 * width && size[0] > 0.8 * width &&
                          size[0] < 2.2 * width && size[1] < 0.8 * width && size[2] < 1.5 * width;
-    if (is_brow) return Part::brows;
-    if (from.norm() < 0.022 && size.maxCoeff() < 0.05) return from[2] > 0.2 * width ? Part::lashes : Part::eye_surround;
+    if (is_brow) return Placed{Zone::lids, Part::brows};
+    if (from.norm() < 0.022 && size.maxCoeff() < 0.05) return Placed{Zone::lids, from[2] > 0.2 * width ? Part::lashes : Part::eye_surround};
   }
-  // Hair goes over the crown and is about as wide as the head.
-  const auto glabella = landmark(landmarks, "glabella"), menton = landmark(landmarks, "menton");
+  return std::nullopt;
+}
+
+/// Hair goes over the crown and is about as wide as the head; glasses sit before the eyes and reach from ear to ear; clothes begin
+/// below the chin.
+std::optional<Placed> about_head(const Component& component, const std::map<std::string, Vec3>& landmarks) {
+  const auto glabella = landmark(landmarks, "glabella"), menton = landmark(landmarks, "menton"), nasion = landmark(landmarks, "nasion");
   const auto ear_left = landmark(landmarks, "tragion_left"), ear_right = landmark(landmarks, "tragion_right");
-  if (glabella && menton && ear_left && ear_right) {
-    const double height = (*glabella - *menton).norm(), width = (*ear_left - *ear_right).norm();
-    const bool is_over_crown = component.box.upper[1] > (*glabella)[1] + 0.45 * height && component.box.upper[1] < (*glabella)[1] + 1.6 * height;
-    if (is_over_crown && component.box.size()[0] > 0.7 * width && component.box.size()[0] < 3.0 * width) return Part::hair;
+  if (!glabella || !menton || !nasion || !ear_left || !ear_right) return std::nullopt;
+  const double height = (*glabella - *menton).norm(), width = (*ear_left - *ear_right).norm();
+  const Bounds& box = component.box;
+  const Vec3 size = box.size();
+  const bool is_over_crown = box.upper[1] > (*glabella)[1] + 0.45 * height && box.upper[1] < (*glabella)[1] + 1.6 * height;
+  if (is_over_crown && size[0] > 0.7 * width && size[0] < 3.0 * width) return Placed{Zone::about_head, Part::hair};
+  const bool is_at_eyes = box.centre()[1] < (*glabella)[1] + 0.1 * height && box.centre()[1] > (*nasion)[1] - 0.35 * height;
+  const bool is_before_eyes = box.upper[2] > (*nasion)[2] - 0.005 && box.upper[2] < (*nasion)[2] + 0.06;
+  if (is_at_eyes && is_before_eyes && size[0] > 0.7 * width && size[0] < 1.5 * width && size[1] < 0.7 * height)
+    return Placed{Zone::about_head, Part::glasses};
+  if (box.upper[1] < (*menton)[1] + 0.1 * height && size.maxCoeff() > 0.5 * width) return Placed{Zone::about_head, Part::clothes};
+  return Placed{Zone::about_head, Part::other};
+}
+
+Placed place_of(const Component& component, const std::map<std::string, Vec3>& landmarks) {
+  if (const auto placed = in_mouth(component, landmarks)) return *placed;
+  if (const auto placed = at_lids(component, landmarks)) return *placed;
+  return about_head(component, landmarks).value_or(Placed{});
+}
+
+Zone zone_of(Part part) {
+  switch (part) {
+    case Part::teeth_upper: case Part::teeth_lower: case Part::gums_upper: case Part::gums_lower: case Part::mouth_interior: case Part::tongue:
+      return Zone::mouth;
+    case Part::lashes: case Part::brows: case Part::eye_surround:
+      return Zone::lids;
+    default:
+      return Zone::about_head;
   }
-  return Part::other;
+}
+
+/// Which jaw teeth or gums belong to: by their name, else by lying below the mouth's line.
+Part of_jaw(Part upper, const NamedPart& named, const Component& component, const std::map<std::string, Vec3>& landmarks) {
+  const Part lower = upper == Part::teeth_upper ? Part::teeth_lower : Part::gums_lower;
+  if (named.jaw != NamedPart::Jaw::unsaid) return named.jaw == NamedPart::Jaw::lower ? lower : upper;
+  const auto mouth = landmark(landmarks, "stomion");
+  if (!mouth) return upper;
+  if (upper == Part::gums_upper && component.box.upper[1] > (*mouth)[1] + 0.004 && component.box.lower[1] < (*mouth)[1] - 0.012)
+    return Part::mouth_interior;  // of both jaws in one
+  return component.box.centre()[1] < (*mouth)[1] - 0.003 ? lower : upper;
+}
+
+/// Place says what a part can be; among that the name decides, and where place says nothing, the name alone.
+Part part_of(const Component& component, const NamedPart& named, const std::map<std::string, Vec3>& landmarks, bool& is_by_place) {
+  const Placed placed = place_of(component, landmarks);
+  // Brows and lashes of both eyes are often one mesh, which lies between the eyes; cards of hair lie anywhere about the head.
+  const bool may_be = named.part && (placed.zone == Zone::unknown || zone_of(*named.part) == placed.zone ||
+                                     (zone_of(*named.part) != Zone::mouth && placed.zone != Zone::mouth));
+  is_by_place = !may_be;
+  if (!may_be) return placed.likely;
+  if (*named.part == Part::teeth_upper || *named.part == Part::gums_upper) return of_jaw(*named.part, named, component, landmarks);
+  return *named.part;
 }
 
 /// x of the plane between the two sides.
@@ -196,31 +211,59 @@ void tell_rows_apart(const std::vector<Component>& components, const std::vector
 
 const char* part_name(Part part) {
   static constexpr const char* names[] = {"skin",        "eye_left",       "eye_right", "eye_surround",
-                                          "teeth_upper", "teeth_lower",    "mouth_interior", "tongue",
-                                          "lashes",      "brows",          "hair",      "other"};
+                                          "teeth_upper", "teeth_lower",    "gums_upper", "gums_lower", "mouth_interior", "tongue",
+                                          "lashes",      "brows",          "hair",      "glasses", "clothes", "other"};
   return names[static_cast<int>(part)];
 }
 
-Eyeball fit_sphere(const std::vector<Vec3>& points, double* rms) {
-  // |p|^2 = 2 c.p + (r^2 - |c|^2) is linear in c and the bracket; centred for conditioning.
-  Vec3 mean = Vec3::Zero();
-  for (const Vec3& p : points) mean += p / static_cast<double>(points.size());
-  Eigen::MatrixX4d rows(points.size(), 4);
-  Eigen::VectorXd squares(points.size());
-  for (size_t i = 0; i < points.size(); ++i) {
-    const Vec3 p = points[i] - mean;
-    rows.row(static_cast<Eigen::Index>(i)) << 2 * p[0], 2 * p[1], 2 * p[2], 1.0;
-    squares[static_cast<Eigen::Index>(i)] = p.squaredNorm();
-  }
-  const Eigen::Vector4d solution = rows.colPivHouseholderQr().solve(squares);
-  Eyeball sphere;
-  sphere.centre = solution.head<3>() + mean;
-  sphere.radius = std::sqrt(std::max(0.0, solution[3] + solution.head<3>().squaredNorm()));
-  double sum = 0.0;
-  for (const Vec3& p : points) sum += std::pow((p - sphere.centre).norm() - sphere.radius, 2);
-  if (rms) *rms = std::sqrt(sum / static_cast<double>(points.size()));
-  return sphere;
+namespace {
+
+std::optional<Vec3> middle_of_lids(const std::map<std::string, Vec3>& landmarks, bool is_left) {
+  const auto outer = landmark(landmarks, is_left ? "exocanthion_left" : "exocanthion_right");
+  const auto inner = landmark(landmarks, is_left ? "endocanthion_left" : "endocanthion_right");
+  if (!outer || !inner) return std::nullopt;
+  return Vec3(0.5 * (*outer + *inner));
 }
+
+/// The triangles of one component, with its own vertices.
+TriangleMesh component_mesh(const WeldedScene& welded, size_t component) {
+  std::vector<bool> is_kept(welded.surface.triangles.size());
+  for (size_t t = 0; t < is_kept.size(); ++t) is_kept[t] = welded.component[t] == static_cast<int>(component);
+  return submesh(welded.surface, is_kept, nullptr);
+}
+
+/// Marks the eyeball of one side and shells over it. An eyeball is what is round behind the lids and covers the most directions.
+std::optional<Eyeball> find_eye(const WeldedScene& welded, const std::vector<Component>& components, const std::vector<NamedPart>& names,
+                                const std::map<std::string, Vec3>& landmarks, bool is_left, int skin, std::vector<std::optional<Part>>& known) {
+  const auto lids = middle_of_lids(landmarks, is_left);
+  std::vector<std::pair<size_t, RoundPart>> round;
+  double most = 0.0;
+  for (size_t c = 0; c < components.size(); ++c) {
+    if (static_cast<int>(c) == skin || (components[c].box.centre()[0] > middle_of_face(landmarks)) != is_left) continue;
+    if (!lids && !names[c].says_eye) continue;
+    const Vec3 size = components[c].box.size();
+    if (!(size.minCoeff() > 0.25 * size.maxCoeff())) continue;
+    const auto part = round_part(components[c].points, lids ? *lids : components[c].box.centre());
+    if (!part) continue;
+    round.emplace_back(c, *part);
+    most = std::max(most, part->coverage);
+  }
+  std::optional<Eyeball> eye;
+  size_t of = 0;
+  for (const auto& [c, part] : round) {
+    const bool is_shell = part.coverage < 0.75 * most || (part.coverage < 0.6 && names[c].part);
+    known[c] = is_shell ? names[c].part.value_or(Part::eye_surround) : is_left ? Part::eye_left : Part::eye_right;
+    if (is_shell || (eye && part.ball.radius <= eye->radius)) continue;
+    eye = part.ball;
+    of = c;
+  }
+  if (!eye) return std::nullopt;
+  const TriangleMesh mesh = component_mesh(welded, of);
+  eye->gaze = gaze_axis(*eye, mesh.vertices, mesh.triangles);
+  return eye;
+}
+
+}  // namespace
 
 Parts recognise_parts(const formats::Scene& scene, const WeldedScene& welded,
                       const std::map<std::string, Vec3>& landmarks, const PrepareOptions& options) {
@@ -228,37 +271,17 @@ Parts recognise_parts(const formats::Scene& scene, const WeldedScene& welded,
   Parts parts;
   parts.component_parts.assign(components.size(), Part::other);
   const int skin = skin_component(scene, welded, components, landmarks, options);
-  const auto mouth = landmark(landmarks, "stomion");
+  std::vector<NamedPart> names;
+  for (const Component& component : components) names.push_back(part_by_name(names_of(scene, component)));
+  std::vector<std::optional<Part>> known(components.size());
+  known[static_cast<size_t>(skin)] = Part::skin;
+  parts.eye_left = find_eye(welded, components, names, landmarks, true, skin, known);
+  parts.eye_right = find_eye(welded, components, names, landmarks, false, skin, known);
   std::vector<bool> is_by_place(components.size(), false);
   for (size_t c = 0; c < components.size(); ++c) {
-    if (static_cast<int>(c) == skin) {
-      parts.component_parts[c] = Part::skin;
-      continue;
-    }
-    const std::string names = names_of(scene, components[c]);
-    const std::optional<Part> named = part_by_name(names);
-    bool is_eye = false;
-    const double midline = middle_of_face(landmarks);
-    for (const bool is_left : {true, false}) {
-      const auto outer = landmark(landmarks, is_left ? "exocanthion_left" : "exocanthion_right");
-      const auto inner = landmark(landmarks, is_left ? "endocanthion_left" : "endocanthion_right");
-      if (named || (components[c].box.centre()[0] > midline) != is_left) continue;
-      if (const auto eye = as_eyeball(components[c], outer, inner, names)) {
-        std::optional<Eyeball>& best = is_left ? parts.eye_left : parts.eye_right;
-        if (!best || eye->radius > best->radius) best = eye;
-        parts.component_parts[c] = is_left ? Part::eye_left : Part::eye_right;
-        is_eye = true;
-      }
-    }
-    if (is_eye) continue;
-    parts.component_parts[c] = named ? *named : part_by_place(components[c], landmarks);
-    is_by_place[c] = !named;
-    if (named == Part::teeth_upper) {
-      const bool says_lower = contains_any(names, {"lower", "bottom", "mandib"});
-      const bool says_upper = contains_any(names, {"upper", "top", "maxill"});
-      const bool is_below = mouth && components[c].box.centre()[1] < (*mouth)[1] - 0.003;
-      if (says_lower || (!says_upper && is_below)) parts.component_parts[c] = Part::teeth_lower;
-    }
+    bool by_place = false;
+    parts.component_parts[c] = known[c] ? *known[c] : part_of(components[c], names[c], landmarks, by_place);
+    is_by_place[c] = by_place;
   }
   tell_rows_apart(components, is_by_place, parts.component_parts);
   return parts;

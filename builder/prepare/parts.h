@@ -17,7 +17,8 @@ struct WeldedScene {
 /// objects of an OBJ: texture seams close, lips and lids that merely touch stay two.
 WeldedScene weld_scene(const formats::Scene& scene, const Mat4& input_to_metres);
 
-/// What every connected component of `welded` is, and the eyeballs among them.
+/// What every connected component of `welded` is, and the eyeballs among them: by shape and place first, by name where
+/// those leave a choice.
 ///
 /// `landmarks` in the rig frame may be empty: the largest component is then the skin and only names tell
 /// the rest apart. Throws fascia::Error when `options.skin` names no mesh.
@@ -27,8 +28,5 @@ struct Parts {
 };
 Parts recognise_parts(const formats::Scene& scene, const WeldedScene& welded,
                       const std::map<std::string, Vec3>& landmarks, const PrepareOptions& options);
-
-/// Least-squares sphere through `points`; `rms` receives the radial residual, metres.
-Eyeball fit_sphere(const std::vector<Vec3>& points, double* rms);
 
 }  // namespace fascia::prepare

@@ -20,12 +20,16 @@ enum class Part {
   eye_surround,  ///< lacrimal, tear line, occlusion and blend meshes that lie on the lids
   teeth_upper,
   teeth_lower,
-  mouth_interior,  ///< gums, palate, floor of the mouth: between cranium and mandible
+  gums_upper,
+  gums_lower,
+  mouth_interior,  ///< gums of both jaws in one, palate, floor of the mouth: between cranium and mandible
   tongue,
   lashes,
   brows,
   hair,
-  other  ///< rest of a body, clothes, glasses: stays where it is
+  glasses,  ///< sit on the skull
+  clothes,  ///< stay where they are
+  other     ///< rest of a body: stays where it is, but for what clings to the face
 };
 
 /// Name as it stands in files: skin, eye_left, teeth_upper, ...
@@ -44,7 +48,7 @@ struct PreparedMesh {
 struct Eyeball {
   Vec3 centre = Vec3::Zero();
   double radius = 0.0;  ///< metres
-  Vec3 gaze = Vec3::UnitZ();
+  Vec3 gaze = Vec3::UnitZ();  ///< unit vector: through cornea or pole of the mesh, straight ahead where neither shows
 };
 
 struct PreparedHead {

@@ -93,6 +93,16 @@ formats::LandmarkFile with_edited_landmarks(const formats::Scene& scene, const f
   return all;
 }
 
+void report_parts(const prepare::PreparedHead& head, BuildReport& report) {
+  for (const prepare::PreparedMesh& mesh : head.meshes) {
+    std::map<prepare::Part, int> counts;
+    for (prepare::Part part : mesh.parts) ++counts[part];
+    for (const auto& [part, vertices] : counts) report.parts.push_back({mesh.name, prepare::part_name(part), vertices});
+  }
+  report.eye_left = head.eye_left;
+  report.eye_right = head.eye_right;
+}
+
 }  // namespace
 
 BuildResult build_rig(const formats::Scene& scene, const formats::LandmarkFile& given,
@@ -112,6 +122,7 @@ BuildResult build_rig(const formats::Scene& scene, const formats::LandmarkFile& 
   report.input_to_metres = head.input_to_metres;
   report.warnings = head.warnings;
   report.warnings.insert(report.warnings.end(), found.warnings.begin(), found.warnings.end());
+  report_parts(head, report);
   report_landmarks(all_landmarks, anatomy, report);
   const std::map<std::string, Vec3> points = places(all_landmarks);
 

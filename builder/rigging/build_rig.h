@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,12 @@ struct StageTime {
 struct BuildReport {
   std::string units;
   Mat4 input_to_metres = Mat4::Identity();
+  struct PartFigures {
+    std::string mesh, part;  ///< name in the file; what it, or some connected piece of it, was taken for
+    int vertices = 0;
+  };
+  std::vector<PartFigures> parts;  ///< in the file's order of meshes
+  std::optional<prepare::Eyeball> eye_left, eye_right;  ///< metres, rig frame
   std::vector<StageTime> stages;
   int landmarks_given = 0, landmarks_found = 0;
   std::vector<std::string> low_confidence;

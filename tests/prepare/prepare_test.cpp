@@ -5,6 +5,8 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "builder/prepare/eyeballs.h"
+#include "builder/prepare/part_names.h"
 #include "builder/prepare/parts.h"
 #include "geometry/connectivity.h"
 #include "geometry/error.h"
@@ -144,6 +146,86 @@ TEST(FitSphere, RecoversASphereExactly) {
   EXPECT_NEAR((sphere.centre - Vec3(1, 2, 3)).norm(), 0, 1e-12);
   EXPECT_NEAR(sphere.radius, 0.5, 1e-12);
   EXPECT_LT(rms, 1e-12);
+}
+
+TEST(PartNames, AreReadByTheirWords) {
+  const auto part = [](const char* name) { return part_by_name(name).part; };
+  EXPECT_EQ(part("Eyelashes_L"), Part::lashes);
+  EXPECT_EQ(part("maleEyebrow001"), Part::brows);
+  EXPECT_EQ(part("CC_Base_EyeOcclusion"), Part::eye_surround);
+  EXPECT_EQ(part("upper-teeth"), Part::teeth_upper);
+  EXPECT_EQ(part("gums_tongue"), Part::mouth_interior);
+  EXPECT_EQ(part("gums_lower"), Part::gums_upper);  // which jaw is said beside
+  EXPECT_EQ(part_by_name("gums_lower").jaw, NamedPart::Jaw::lower);
+  EXPECT_EQ(part("Hair_Brown"), Part::hair);
+  EXPECT_EQ(part("SunGlasses 02"), Part::glasses);
+  EXPECT_EQ(part("T_Shirt"), Part::clothes);
+  for (const char* nothing : {"brown_leather", "student", "accident", "splash", "chair", "flash", "gumboot", "head", ""}) EXPECT_FALSE(part(nothing)) << nothing;
+  EXPECT_TRUE(part_by_name("l-eye").says_eye);
+  EXPECT_FALSE(part_by_name("eye_blend").says_eye);
+}
+
+/// Landmarks of an ordinary face, rig frame.
+std::map<std::string, Vec3> face_landmarks() {
+  return {{"exocanthion_left", Vec3(0.045, 0.035, 0.08)},   {"exocanthion_right", Vec3(-0.045, 0.035, 0.08)},
+          {"endocanthion_left", Vec3(0.017, 0.034, 0.09)},  {"endocanthion_right", Vec3(-0.017, 0.034, 0.09)},
+          {"cheilion_left", Vec3(0.025, -0.035, 0.095)},    {"cheilion_right", Vec3(-0.025, -0.035, 0.095)},
+          {"stomion", Vec3(0, -0.035, 0.11)},               {"glabella", Vec3(0, 0.055, 0.105)},
+          {"nasion", Vec3(0, 0.04, 0.10)},                  {"menton", Vec3(0, -0.085, 0.09)},
+          {"tragion_left", Vec3(0.072, 0.02, 0.0)},         {"tragion_right", Vec3(-0.072, 0.02, 0.0)}};
+}
+
+/// What a stretched ball of this name, middle and half sizes is taken for beside a head.
+Part taken_for(const std::string& name, const Vec3& centre, const Vec3& half_size) {
+  formats::Scene scene;
+  scene.kind = formats::FileKind::obj;
+  scene.path = "parts.obj";
+  scene.meshes = {seamed_sphere("head", Vec3::Zero(), 0.11), seamed_sphere(name, Vec3::Zero(), 1.0)};
+  for (Vec3& p : scene.meshes[1].positions) p = centre + half_size.cwiseProduct(p);
+  const WeldedScene welded = weld_scene(scene, Mat4::Identity());
+  const Parts parts = recognise_parts(scene, welded, face_landmarks(), {});
+  for (size_t t = 0; t < welded.component.size(); ++t)
+    if (welded.triangle_mesh[t] == 1) return parts.component_parts[static_cast<size_t>(welded.component[t])];
+  return Part::skin;
+}
+
+TEST(Parts, ShapeAndPlaceGoBeforeNames) {
+  const Vec3 in_socket(0.031, 0.034, 0.072), ball = Vec3::Constant(0.012);
+  EXPECT_EQ(taken_for("Object_1", in_socket, ball), Part::eye_left);
+  EXPECT_EQ(taken_for("teeth", in_socket, ball), Part::eye_left);
+  // Names choose among what place allows.
+  const Vec3 in_mouth(0, -0.02, 0.07), row(0.025, 0.008, 0.02);
+  EXPECT_EQ(taken_for("hair", in_mouth, row), Part::teeth_upper);
+  EXPECT_EQ(taken_for("gums", in_mouth, row), Part::gums_upper);
+  EXPECT_EQ(taken_for("gums", in_mouth - Vec3(0, 0.03, 0), row), Part::gums_lower);
+  EXPECT_EQ(taken_for("teeth", Vec3(0, -0.4, 0), Vec3(0.2, 0.15, 0.1)), Part::clothes);
+}
+
+TEST(Parts, GlassesClothesAndHairByShapeAndPlace) {
+  EXPECT_EQ(taken_for("a", Vec3(0, 0.035, 0.055), Vec3(0.072, 0.02, 0.06)), Part::glasses);
+  EXPECT_EQ(taken_for("a", Vec3(0, 0.1, 0), Vec3(0.09, 0.06, 0.1)), Part::hair);
+  EXPECT_EQ(taken_for("a", Vec3(0, -0.35, 0), Vec3(0.2, 0.2, 0.12)), Part::clothes);
+}
+
+TEST(Eyeballs, LookThroughTheirCornea) {
+  formats::SceneMesh eye = seamed_sphere("e", Vec3::Zero(), 0.012);
+  const Vec3 gaze = Vec3(0.2, -0.1, 1).normalized();
+  for (Vec3& p : eye.positions) p *= 1.0 + 0.1 * std::exp(-std::pow(std::acos(std::clamp(p.normalized().dot(gaze), -1.0, 1.0)) / 0.3, 2));
+  const Eyeball ball = fit_sphere(eye.positions, nullptr);
+  EXPECT_GT(gaze_axis(ball, eye.positions, eye.triangles).dot(gaze), std::cos(0.1));
+}
+
+TEST(Eyeballs, LookThroughTheirPole) {
+  formats::SceneMesh eye = seamed_sphere("e", Vec3::Zero(), 0.012);
+  const Mat3 turn = (Eigen::AngleAxisd(0.3, Vec3::UnitY()) * Eigen::AngleAxisd(EIGEN_PI / 2, Vec3::UnitX())).toRotationMatrix();
+  TriangleMesh mesh;
+  std::vector<int> map;
+  mesh.vertices = eye.positions;
+  mesh.triangles = eye.triangles;
+  for (Vec3& p : mesh.vertices) p = turn * p;
+  mesh = weld(mesh, 1e-9, &map);
+  EXPECT_GT(gaze_axis({Vec3::Zero(), 0.012}, mesh.vertices, mesh.triangles).dot(turn * Vec3::UnitY()), 0.999);
+  EXPECT_EQ(gaze_axis({Vec3::Zero(), 0.012}, {}, {}), Vec3::UnitZ());
 }
 
 }  // namespace
