@@ -11,6 +11,7 @@ namespace fascia {
 
 namespace {
 
+<<<<<<< HEAD
 struct HalfEdge {
   int low, high;
   int triangle, edge;
@@ -44,6 +45,8 @@ std::vector<HalfEdge> sorted_half_edges(const TriangleMesh& mesh) {
   return edges;
 }
 
+=======
+>>>>>>> c8da019 (Landmarks: --up steers the search; normals of large meshes by counting, made only where a side is asked for; heads page)
 int find_root(std::vector<int>& parent, int i) {
   while (parent[i] != i) i = parent[i] = parent[parent[i]];
   return i;
@@ -51,10 +54,30 @@ int find_root(std::vector<int>& parent, int i) {
 
 }  // namespace
 
+std::vector<HalfEdge> sorted_half_edges(const std::vector<Triangle>& triangles, size_t vertex_count) {
+  // By counting on the lower vertex, then each vertex's few edges.
+  std::vector<size_t> begin(vertex_count + 1, 0);
+  const auto low_of = [](const Triangle& t, size_t e) { return static_cast<size_t>(std::min(t[e], t[(e + 1) % 3])); };
+  for (const Triangle& t : triangles)
+    for (size_t e = 0; e < 3; ++e) ++begin[low_of(t, e) + 1];
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  std::vector<HalfEdge> edges(triangles.size() * 3);
+  std::vector<size_t> cursor(begin.begin(), begin.end() - 1);
+  for (size_t t = 0; t < triangles.size(); ++t)
+    for (size_t e = 0; e < 3; ++e) {
+      const int a = triangles[t][e], b = triangles[t][(e + 1) % 3];
+      edges[cursor[low_of(triangles[t], e)]++] = {std::min(a, b), std::max(a, b), static_cast<int>(t), static_cast<int>(e), a < b};
+    }
+  for (size_t v = 0; v < vertex_count; ++v)
+    std::sort(edges.begin() + static_cast<std::ptrdiff_t>(begin[v]), edges.begin() + static_cast<std::ptrdiff_t>(begin[v + 1]),
+              [](const HalfEdge& p, const HalfEdge& q) { return std::tie(p.high, p.triangle, p.edge) < std::tie(q.high, q.triangle, q.edge); });
+  return edges;
+}
+
 Connectivity connectivity(const TriangleMesh& mesh) {
   Connectivity links;
   links.neighbours.assign(mesh.triangles.size(), {-1, -1, -1});
-  const std::vector<HalfEdge> edges = sorted_half_edges(mesh);
+  const std::vector<HalfEdge> edges = sorted_half_edges(mesh.triangles, mesh.vertices.size());
   for (size_t i = 0; i < edges.size();) {
     size_t j = i + 1;
     while (j < edges.size() && edges[j].low == edges[i].low && edges[j].high == edges[i].high) ++j;

@@ -20,7 +20,18 @@ struct Connectivity {
   int irregular_edges = 0;
 };
 
-/// Builds the connectivity of `mesh` in O(n log n); any triangle list is accepted.
+/// One side of a triangle, from corner `edge` to the next.
+struct HalfEdge {
+  int low, high;       ///< its vertices
+  int triangle, edge;
+  bool forward;        ///< runs from low to high
+};
+
+/// All sides of `triangles`, whose corners are below `vertex_count`, sorted by (low, high, triangle, edge): those of one edge follow
+/// each other. Linear in their number but for vertices of very many edges.
+std::vector<HalfEdge> sorted_half_edges(const std::vector<Triangle>& triangles, size_t vertex_count);
+
+/// Builds the connectivity of `mesh`; any triangle list is accepted.
 Connectivity connectivity(const TriangleMesh& mesh);
 
 /// Boundary loops as closed vertex sequences (first vertex not repeated), following the triangles'

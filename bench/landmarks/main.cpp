@@ -118,6 +118,8 @@ void draw_sheet(const std::string& path, const anatomy::GenericAnatomy& anatomy)
   heads.push_back(named(noisy(ict_head("person_4"), 1.0, 7), "1 mm of noise"));
   heads.push_back(named(skin_only(ict_head("person_2")), "no eyes, no teeth"));
   heads.push_back(named(without_lining(ict_head("person_3")), "no lining"));
+  heads.push_back(named(in_units(moved(face_alone(ict_head("person_2"), 95), away), 1000), "a face alone"));
+  heads.push_back(named(cut_above_brows(ict_head("person_4")), "cut above the brows"));
   heads.push_back(named(with_holes(without_lining(ict_head("person_0")), 9, 14, 3), "holes"));
   heads.push_back(stretched(ict_head("person_0"), "as a child", child));
   heads.push_back(stretched(ict_head("person_0"), "large eyes", large_eyes));

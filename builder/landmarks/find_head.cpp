@@ -97,6 +97,15 @@ const Candidate* fit_best(const GenericFace& face, LumpSamples& near, std::vecto
   return best;
 }
 
+void add_candidates(std::vector<Candidate>& candidates, const std::vector<Guess>& guesses, size_t lump, const std::optional<Vec3>& up) {
+  for (const Guess& guess : guesses) {
+    if (up && guess.placement.rotation.col(1).dot(*up) < 0.5) continue;
+    candidates.emplace_back();
+    candidates.back().placement = guess.placement;
+    candidates.back().lump = lump;
+  }
+}
+
 TriangleMesh turned_over(TriangleMesh mesh) {
   for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
   return mesh;
@@ -104,7 +113,8 @@ TriangleMesh turned_over(TriangleMesh mesh) {
 
 }  // namespace
 
-FoundHead find_head(const GenericFace& face, const TriangleMesh& input, const std::string& path, const std::optional<Placement>& hint) {
+FoundHead find_head(const GenericFace& face, const TriangleMesh& input, const std::string& path, const std::optional<Placement>& hint,
+                    const std::optional<Vec3>& up) {
   const int sample_count = 8000;
   FoundHead found;
   TriangleMesh mesh = input;
@@ -124,22 +134,14 @@ FoundHead find_head(const GenericFace& face, const TriangleMesh& input, const st
     candidates.front().placement = *hint;
   } else {
     lumps = round_lumps(open_samples(even, surface), 7);
-    for (size_t l = 0; l < lumps.size(); ++l)
-      for (const Guess& guess : guess_placements(face, surface, lumps[l], 16)) {
-        candidates.emplace_back();
-        candidates.back().placement = guess.placement;
-        candidates.back().lump = l;
-      }
+    for (size_t l = 0; l < lumps.size(); ++l) add_candidates(candidates, guess_placements(face, surface, lumps[l], 16), l, up);
   }
   LumpSamples near(mesh, surface, lumps);
   const Candidate* best = fit_best(face, near, candidates);
   std::vector<Candidate> partial;
   if (!hint && (!best || !is_face(best->likeness)) && !lumps.empty()) {
-    for (const Guess& guess : guess_by_nose(face, near(lumps.size() - 1), 48)) {
-      partial.emplace_back();
-      partial.back().placement = guess.placement;
-      partial.back().lump = lumps.size() - 1;
-    }
+    const size_t whole = lumps.size() - 1;
+    add_candidates(partial, guess_by_nose(face, near(whole), 48), whole, up);
     best = fit_best(face, near, partial);
   }
   if (!best || !is_face(best->likeness))

@@ -104,10 +104,17 @@ std::vector<Guess> guess_placements(const GenericFace& face, const spatial::Surf
   const std::vector<Direction> generic = generic_directions(face);
   const std::vector<Mat3>& turns = rotations();
   std::vector<double> cost(turns.size()), scratch;
-  for (size_t i = 0; i < turns.size(); ++i) cost[i] = mismatch(map, generic, turns[i], scratch);
   std::vector<size_t> order(turns.size());
   std::iota(order.begin(), order.end(), size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return cost[a] < cost[b]; });
+  const auto sort_by_cost = [&] { std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return cost[a] < cost[b]; }); };
+  // A third of the directions tells most turns to be wrong.
+  std::vector<Direction> few;
+  for (size_t i = 0; i < generic.size(); i += 3) few.push_back(generic[i]);
+  for (size_t i : order) cost[i] = mismatch(map, few, turns[i], scratch);
+  sort_by_cost();
+  order.resize(turns.size() / 4);
+  for (size_t i : order) cost[i] = mismatch(map, generic, turns[i], scratch);
+  sort_by_cost();
   std::vector<Guess> guesses;
   for (size_t i : order) {
     if (static_cast<int>(guesses.size()) == count) break;

@@ -165,7 +165,7 @@ formats::LandmarkFile in_file_units(const formats::Scene& scene, const formats::
   double best = 1e300, ratio = 1.0;
   for (double candidate : {1.0, 1e-3, 1e3, 1e-2, 1e2, 1e-1, 1e1}) {
     double sum = 0.0;
-    for (const auto& [name, p] : given.points) sum += surface.closest(candidate * p).distance;
+    for (const auto& [name, p] : given.points) sum += surface.nearest_place(candidate * p).distance;
     if (sum < 0.5 * best) {
       best = sum;
       ratio = candidate;

@@ -64,7 +64,7 @@ int skin_component(const formats::Scene& scene, const WeldedScene& welded, const
   if (!landmarks.empty()) {
     const spatial::SurfaceQuery surface(welded.surface);
     for (const auto& [name, p] : landmarks) {
-      const spatial::ClosestPoint hit = surface.closest(p);
+      const spatial::ClosestPoint hit = surface.nearest_place(p);
       if (hit.found()) score[static_cast<size_t>(welded.component[static_cast<size_t>(hit.surface.triangle)])] += 1.0;
     }
   }

@@ -11,12 +11,11 @@ namespace fascia::prepare {
 namespace {
 
 /// Landmarks drawn by hand lie a little off the surface; far off, they belong to another mesh.
-std::map<std::string, Vec3> onto_skin(const formats::Scene& scene, const TriangleMesh& skin,
+std::map<std::string, Vec3> onto_skin(const formats::Scene& scene, const spatial::SurfaceQuery& surface,
                                       const std::map<std::string, Vec3>& landmarks, std::vector<std::string>& warnings) {
-  const spatial::SurfaceQuery surface(skin);
   std::map<std::string, Vec3> projected;
   for (const auto& [name, p] : landmarks) {
-    const spatial::ClosestPoint hit = surface.closest(p);
+    const spatial::ClosestPoint hit = surface.nearest_place(p);
     const double off_mm = 1e3 * hit.distance;
     const std::string where = "landmark '" + name + "' lies " + std::to_string(static_cast<int>(off_mm + 0.5)) +
                               " mm from the skin of '" + scene.path.string() + "'";
@@ -66,7 +65,8 @@ PreparedHead prepare(const formats::Scene& scene, const formats::LandmarkFile& g
     }
     head.meshes.push_back(std::move(mesh));
   }
-  head.landmarks = onto_skin(scene, head.skin, landmarks, head.warnings);
+  head.surface.emplace(head.skin);
+  head.landmarks = onto_skin(scene, *head.surface, landmarks, head.warnings);
   return head;
 }
 

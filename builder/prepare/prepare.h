@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "builder/spatial/surface_query.h"
 #include "formats/landmark_file.h"
 #include "formats/scene.h"
 #include "geometry/mesh.h"
@@ -54,6 +55,7 @@ struct Eyeball {
 struct PreparedHead {
   std::vector<PreparedMesh> meshes;       ///< one for each mesh of the scene, same order
   TriangleMesh skin;                      ///< welded, metres, rig frame
+  std::optional<spatial::SurfaceQuery> surface;  ///< of `skin`; there once prepared, shared by its copies
   std::map<std::string, Vec3> landmarks;  ///< the given ones, on the skin, metres, rig frame
   std::optional<Eyeball> eye_left, eye_right;
   Mat4 input_to_metres = Mat4::Identity();  ///< from file coordinates to the rig frame

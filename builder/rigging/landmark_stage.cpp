@@ -44,6 +44,12 @@ std::optional<landmarks::Placement> placement_of(const formats::LandmarkFile& gi
   return placement;
 }
 
+std::optional<Vec3> declared_up(const std::string& up) {
+  if (up == "y") return Vec3::UnitY();
+  if (up == "z") return Vec3::UnitZ();
+  return std::nullopt;
+}
+
 /// `placement` in the file's axes and units, in those that `map` (a similarity) leads to.
 landmarks::Placement mapped(const landmarks::Placement& placement, const Mat4& map) {
   landmarks::Placement result;
@@ -70,7 +76,7 @@ LocatedHead locate_head(const formats::Scene& scene, const formats::LandmarkFile
   located.landmarks.units = prepare::head_units;
   located.generic = landmarks::generic_face(anatomy);
   const TriangleMesh mesh = prepare::joined_meshes(scene, options.skin);
-  located.found = landmarks::find_head(*located.generic, mesh, scene.path.string(), placement_of(located.landmarks, anatomy));
+  located.found = landmarks::find_head(*located.generic, mesh, scene.path.string(), placement_of(located.landmarks, anatomy), declared_up(options.up));
   for (const auto& [name, p] : landmarks::rough_landmarks(*located.generic, anatomy, *located.found))
     located.landmarks.points.emplace(name, p);
   return located;
@@ -83,7 +89,7 @@ void place_landmarks(FoundLandmarks& result, const LocatedHead& located, const f
   for (const auto& [name, p] : head.landmarks)
     if (given.points.count(name)) by_hand[name] = p;
   std::vector<std::string> unknown;
-  const spatial::SurfaceQuery skin(head.skin);
+  const spatial::SurfaceQuery& skin = *head.surface;
   if (located.found) {
     landmarks::KnownEyes eyes;
     if (head.eye_left) eyes.left = {head.eye_left->centre, head.eye_left->radius};

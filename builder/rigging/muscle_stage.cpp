@@ -99,7 +99,7 @@ TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b) {
 std::vector<rig::Muscle> build_muscles(const anatomy::GenericAnatomy& anatomy, const prepare::PreparedHead& head,
                                        const skull::FitResult& skull, const smas::Result& smas, const Points& landmarks,
                                        const Edits& edits, BuildReport& report) {
-  const spatial::SurfaceQuery skin(head.skin), cranium(skull.cranium), mandible(skull.mandible);
+  const spatial::SurfaceQuery &skin = *head.surface, cranium(skull.cranium), mandible(skull.mandible);
   const TriangleMesh all_teeth = joined(skull.teeth_upper, skull.teeth_lower);
   const std::optional<spatial::SurfaceQuery> teeth =
       all_teeth.empty() ? std::nullopt : std::optional<spatial::SurfaceQuery>(all_teeth);

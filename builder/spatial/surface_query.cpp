@@ -9,9 +9,9 @@
 #include <numbers>
 #include <numeric>
 #include <string>
-#include <tuple>
 
 #include "builder/spatial/triangle.h"
+#include "geometry/connectivity.h"
 #include "geometry/error.h"
 
 namespace fascia::spatial {
@@ -127,26 +127,17 @@ void SurfaceQuery::State::build_normals() const {
 }
 
 void SurfaceQuery::State::sum_edge_normals(const std::vector<int>& representative) const {
-  struct Edge {
-    int from, to, triangle, side;
-  };
-  std::vector<Edge> edges;
-  edges.reserve(3 * mesh.triangles.size());
-  for (int t = 0; t < mesh.triangle_count(); ++t)
-    for (int k = 0; k < 3; ++k) {
-      const int a = representative[mesh.triangles[t][k]], b = representative[mesh.triangles[t][(k + 1) % 3]];
-      edges.push_back({std::min(a, b), std::max(a, b), t, k});
-    }
-  std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
-    return std::tie(a.from, a.to, a.triangle, a.side) < std::tie(b.from, b.to, b.triangle, b.side);
-  });
+  std::vector<Triangle> joined = mesh.triangles;
+  for (Triangle& t : joined)
+    for (int& v : t) v = representative[v];
+  const std::vector<HalfEdge> edges = sorted_half_edges(joined, mesh.vertices.size());
   edge_normals.resize(mesh.triangles.size());
   for (size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
     Vec3 sum = Vec3::Zero();
-    while (end < edges.size() && edges[end].from == edges[begin].from && edges[end].to == edges[begin].to)
+    while (end < edges.size() && edges[end].low == edges[begin].low && edges[end].high == edges[begin].high)
       sum += face_normals[edges[end++].triangle];
     for (size_t i = begin; i < end; ++i)
-      edge_normals[edges[i].triangle][edges[i].side] = sum.normalized();
+      edge_normals[edges[i].triangle][edges[i].edge] = sum.normalized();
   }
 }
 
@@ -178,6 +169,15 @@ const TriangleMesh& SurfaceQuery::mesh() const {
 }
 
 ClosestPoint SurfaceQuery::closest(const Vec3& point, double range) const {
+  ClosestPoint out = nearest_place(point, range);
+  if (!out.found()) return out;
+  state_->need_normals();
+  out.pseudonormal = state_->pseudonormal(out.surface.triangle, out.surface.barycentric);
+  out.signed_distance = (point - out.position).dot(out.pseudonormal) < 0 ? -out.distance : out.distance;
+  return out;
+}
+
+ClosestPoint SurfaceQuery::nearest_place(const Vec3& point, double range) const {
   struct Search {
     const State* state;
     Vec3 point;
@@ -224,9 +224,6 @@ ClosestPoint SurfaceQuery::closest(const Vec3& point, double range) const {
   out.surface = {search.triangle, search.barycentric};
   out.position = fascia::position(s.mesh, out.surface);
   out.distance = std::sqrt(search.best);
-  s.need_normals();
-  out.pseudonormal = s.pseudonormal(search.triangle, search.barycentric);
-  out.signed_distance = (point - out.position).dot(out.pseudonormal) < 0 ? -out.distance : out.distance;
   return out;
 }
 

@@ -180,6 +180,18 @@ TEST(FindLandmarks, KeepsGivenOnesAndBendsTheRestTowardThem) {
   EXPECT_LT((steered.landmarks.at("exocanthion_right").position - free.landmarks.at("exocanthion_right").position).norm(), 0.002);
 }
 
+TEST(FindHead, LooksOnlyWhereTheCrownMayBe) {
+  const auto crown = [](const std::optional<Vec3>& up) -> Vec3 { return find_head(face(), face().skin, "head.obj", std::nullopt, up).placement().rotation.col(1); };
+  EXPECT_GT(crown(Vec3::UnitY()).dot(Vec3::UnitY()), 0.98);
+  // Told wrongly it must not be found the right way up.
+  try {
+    EXPECT_GT(crown(-Vec3::UnitY())[1], -1.0);
+    EXPECT_LT(crown(-Vec3::UnitY())[1], 0.0);
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("no face was found"), std::string::npos);
+  }
+}
+
 TEST(FindHead, RefusesWhatIsNoFace) {
   const auto refused = [](const TriangleMesh& mesh) {
     try {
