@@ -42,6 +42,12 @@ bool are_alike(const GenericFace& face, const Placement& a, const Placement& b) 
          (a.rotation.transpose() * b.rotation).trace() > 1.0 + 2.0 * std::cos(12.0 * EIGEN_PI / 180.0);
 }
 
+/// A small face on a patch of a face alone: nothing of a true one's size is half as large again as a bust and yet no body.
+bool may_be_patch(const Candidate& best, double extent) {
+  const double metres = extent / best.placement.scale;
+  return best.likeness.on_mesh < 0.74 && metres > 0.5 && metres < 1.4;
+}
+
 void sort_and_keep(std::vector<Candidate>& all, const GenericFace& face, size_t count) {
   std::stable_sort(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) { return a.residual < b.residual; });
   std::vector<Candidate> kept;
@@ -139,10 +145,12 @@ FoundHead find_head(const GenericFace& face, const TriangleMesh& input, const st
   LumpSamples near(mesh, surface, lumps);
   const Candidate* best = fit_best(face, near, candidates);
   std::vector<Candidate> partial;
-  if (!hint && (!best || !is_face(best->likeness)) && !lumps.empty()) {
+  const double extent = bounds(even.points).size().norm();
+  if (!hint && !lumps.empty() && (!best || !is_face(best->likeness) || may_be_patch(*best, extent))) {
     const size_t whole = lumps.size() - 1;
     add_candidates(partial, guess_by_nose(face, near(whole), 48), whole, up);
-    best = fit_best(face, near, partial);
+    const Candidate* by_nose = fit_best(face, near, partial);
+    if (by_nose && (!best || is_better(by_nose->likeness, best->likeness))) best = by_nose;
   }
   if (!best || !is_face(best->likeness))
     throw Error("'" + path + "': no face was found in it. If there is one, give --landmarks FILE with at least four points on the "

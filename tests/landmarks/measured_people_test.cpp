@@ -73,6 +73,9 @@ TEST_F(MeasuredPeople, AFaceAloneInAnyPose) {
   const Mat3 turned = (Eigen::AngleAxisd(2.2, Vec3::UnitY()) * Eigen::AngleAxisd(-0.7, Vec3::UnitX())).toRotationMatrix();
   expect_found(in_units(moved(face_alone(ict_head("person_2"), 95.0), turned, Vec3(1, 0, 2)), 1000));
   expect_found(face_alone(ict_head("person_4"), 85.0));
+  // Here a small face fits a patch of the cheek fairly well.
+  const Mat3 away = Eigen::AngleAxisd(2.8, Vec3(0.2, 1, 0.1).normalized()).toRotationMatrix();
+  expect_found(in_units(moved(face_alone(ict_head("person_1"), 95.0), away), 1000));
 }
 
 TEST_F(MeasuredPeople, CutAboveTheBrows) {
