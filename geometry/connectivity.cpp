@@ -11,24 +11,24 @@ namespace fascia {
 
 namespace {
 
-<<<<<<< HEAD
-struct HalfEdge {
-  int low, high;
-  int triangle, edge;
-  bool forward;
-};
+int find_root(std::vector<int>& parent, int i) {
+  while (parent[i] != i) i = parent[i] = parent[parent[i]];
+  return i;
+}
+
+}  // namespace
 
 // By ends, then by triangle: buckets by the lower end, each short enough to sort by insertion.
-std::vector<HalfEdge> sorted_half_edges(const TriangleMesh& mesh) {
-  std::vector<int> offsets(mesh.vertices.size() + 1, 0);
-  for (const Triangle& triangle : mesh.triangles)
+std::vector<HalfEdge> sorted_half_edges(const std::vector<Triangle>& triangles, size_t vertex_count) {
+  std::vector<int> offsets(vertex_count + 1, 0);
+  for (const Triangle& triangle : triangles)
     for (int e = 0; e < 3; ++e) ++offsets[std::min(triangle[e], triangle[(e + 1) % 3]) + 1];
   std::partial_sum(offsets.begin(), offsets.end(), offsets.begin());
-  std::vector<HalfEdge> edges(mesh.triangles.size() * 3);
+  std::vector<HalfEdge> edges(triangles.size() * 3);
   std::vector<int> filled(offsets.begin(), offsets.end() - 1);
-  for (int t = 0; t < mesh.triangle_count(); ++t)
+  for (int t = 0; t < static_cast<int>(triangles.size()); ++t)
     for (int e = 0; e < 3; ++e) {
-      const int a = mesh.triangles[t][e], b = mesh.triangles[t][(e + 1) % 3];
+      const int a = triangles[t][e], b = triangles[t][(e + 1) % 3];
       edges[filled[std::min(a, b)]++] = {std::min(a, b), std::max(a, b), t, e, a < b};
     }
   const auto by_high = [](const HalfEdge& p, const HalfEdge& q) { return p.high < q.high; };
@@ -42,35 +42,6 @@ std::vector<HalfEdge> sorted_half_edges(const TriangleMesh& mesh) {
     for (auto next = first; next != last; ++next)
       std::rotate(std::upper_bound(first, next, *next, by_high), next, next + 1);
   }
-  return edges;
-}
-
-=======
->>>>>>> c8da019 (Landmarks: --up steers the search; normals of large meshes by counting, made only where a side is asked for; heads page)
-int find_root(std::vector<int>& parent, int i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
-
-}  // namespace
-
-std::vector<HalfEdge> sorted_half_edges(const std::vector<Triangle>& triangles, size_t vertex_count) {
-  // By counting on the lower vertex, then each vertex's few edges.
-  std::vector<size_t> begin(vertex_count + 1, 0);
-  const auto low_of = [](const Triangle& t, size_t e) { return static_cast<size_t>(std::min(t[e], t[(e + 1) % 3])); };
-  for (const Triangle& t : triangles)
-    for (size_t e = 0; e < 3; ++e) ++begin[low_of(t, e) + 1];
-  std::partial_sum(begin.begin(), begin.end(), begin.begin());
-  std::vector<HalfEdge> edges(triangles.size() * 3);
-  std::vector<size_t> cursor(begin.begin(), begin.end() - 1);
-  for (size_t t = 0; t < triangles.size(); ++t)
-    for (size_t e = 0; e < 3; ++e) {
-      const int a = triangles[t][e], b = triangles[t][(e + 1) % 3];
-      edges[cursor[low_of(triangles[t], e)]++] = {std::min(a, b), std::max(a, b), static_cast<int>(t), static_cast<int>(e), a < b};
-    }
-  for (size_t v = 0; v < vertex_count; ++v)
-    std::sort(edges.begin() + static_cast<std::ptrdiff_t>(begin[v]), edges.begin() + static_cast<std::ptrdiff_t>(begin[v + 1]),
-              [](const HalfEdge& p, const HalfEdge& q) { return std::tie(p.high, p.triangle, p.edge) < std::tie(q.high, q.triangle, q.edge); });
   return edges;
 }
 
