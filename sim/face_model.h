@@ -1,7 +1,10 @@
 #pragma once
 
 #include <Eigen/SparseCore>
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -32,6 +35,14 @@ struct Drive {
   JawPose jaw;
   Vec3 acceleration = Vec3::Zero();    ///< of free tissue in the head's frame, m/s^2 (gravity change, inertia)
   std::span<const NodeForce> touches = {};  ///< must outlive the solve
+
+  /// What channel `c` is driven by; 0 beyond the end, and where it is no number.
+  float activation(size_t c) const { return c < activations.size() && std::isfinite(activations[c]) ? activations[c] : 0.0F; }
+  /// True when the acceleration and the first `channels` activations are numbers.
+  bool is_finite(size_t channels) const {
+    const auto known = activations.first(std::min(channels, activations.size()));
+    return acceleration.allFinite() && std::all_of(known.begin(), known.end(), [](float value) { return std::isfinite(value); });
+  }
 };
 
 /// Where bones and carriers stand for a drive; made once a solve.

@@ -301,8 +301,7 @@ void Face::reset(const Drive& drive) {
 MinimiseResult Face::settle(const Drive& drive, const PoseOptions& options) {
   const MinimiseResult result = static_pose(drive, options, {});
   reset(drive);
-  for (size_t c = 0; c < activations_.size(); ++c)
-    activations_[c] = c < drive.activations.size() && std::isfinite(drive.activations[c]) ? drive.activations[c] : 0.0F;
+  for (size_t c = 0; c < activations_.size(); ++c) activations_[c] = drive.activation(c);
   last_excitations_ = activations_;
   last_acceleration_ = drive.acceleration;
   model_->loops().add(1.0F, pose_offset_.data(), position_.data(), model_->places());
@@ -390,10 +389,7 @@ bool Face::sound(const float* carried, double largest) const {
 
 StepResult Face::step(double seconds, const Drive& drive, const StepOptions& options) {
   StepResult result;
-  bool finite = std::isfinite(seconds) && drive.acceleration.allFinite();
-  for (size_t c = 0; c < activations_.size() && c < drive.activations.size(); ++c)
-    finite = finite && std::isfinite(drive.activations[c]);
-  if (!finite) {
+  if (!std::isfinite(seconds) || !drive.is_finite(activations_.size())) {
     reset({{}, drive.jaw, Vec3::Zero()});
     result.status = StepStatus::reset;
     return result;
@@ -416,8 +412,7 @@ StepResult Face::step(double seconds, const Drive& drive, const StepOptions& opt
     return result;
   }
   left_over_ = std::clamp(due - substeps * h, 0.0, h);
-  for (size_t c = 0; c < last_excitations_.size(); ++c)
-    last_excitations_[c] = c < drive.activations.size() ? drive.activations[c] : 0.0F;
+  for (size_t c = 0; c < last_excitations_.size(); ++c) last_excitations_[c] = drive.activation(c);
   last_jaw_ = clamped(drive.jaw);
   last_acceleration_ = drive.acceleration;
   return result;

@@ -19,14 +19,7 @@ struct Patch {
     testing::add_fibre(level, options, 1, 2, 7, 3, 0.2F);
     for (uint32_t i = 2; i < 6; ++i) {
       const uint32_t column = testing::column_at(options, i, 6);
-      level.carrier_channel.push_back(2);
-      level.carrier_node.push_back(column);
-      level.carrier_origin.push_back(rig::Vec3f(0, 0.02F, -0.02F));
-      level.carrier_axis.push_back(rig::Vec3f(1, 0, 0));
-      level.carrier_angle.push_back(0.2F);
-      level.carrier_reverse.push_back(-0.1F);
-      level.carrier_stiffness.push_back(2.0F);
-      level.carrier_drive.push_back(2.0F);
+      testing::add_carrier(level, 2, column, rig::Vec3f(0, 0.02F, -0.02F), 0.2F, -0.1F);
     }
     for (uint32_t c = 0; c < level.columns; ++c)
       if (level.kinds[level.columns + c] == rig::NodeKind::free) level.kinds[2 * level.columns + c] = rig::NodeKind::mucosa;

@@ -127,14 +127,7 @@ struct Everything {
     testing::add_fibre(level, options, 0, 4, 1, 6, 0.3F);
     for (uint32_t i = 2; i < 6; ++i) {
       const uint32_t column = testing::column_at(options, i, 6);
-      level.carrier_channel.push_back(1);
-      level.carrier_node.push_back(column);
-      level.carrier_origin.push_back(rig::Vec3f(0, 0, -0.02F));
-      level.carrier_axis.push_back(rig::Vec3f(1, 0, 0));
-      level.carrier_angle.push_back(0.3F);
-      level.carrier_reverse.push_back(-0.3F);
-      level.carrier_stiffness.push_back(2.0F);
-      level.carrier_drive.push_back(2.0F);
+      testing::add_carrier(level, 1, column, rig::Vec3f(0, 0, -0.02F), 0.3F, -0.3F);
       level.globe_contact_node.push_back(column);
       level.globe_contact_globe.push_back(0);
     }

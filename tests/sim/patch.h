@@ -116,4 +116,16 @@ inline void add_fibre(rig::TissueLevel& level, const PatchOptions& o, uint32_t c
   level.fibre_offsets.push_back(static_cast<uint32_t>(level.fibre_nodes.size()));
 }
 
+/// Adds a carrier of skin node `column` that turns about the x axis through `origin`.
+inline void add_carrier(rig::TissueLevel& level, uint32_t channel, uint32_t column, const rig::Vec3f& origin, float angle, float reverse) {
+  level.carrier_channel.push_back(channel);
+  level.carrier_node.push_back(column);
+  level.carrier_origin.push_back(origin);
+  level.carrier_axis.push_back(rig::Vec3f(1, 0, 0));
+  level.carrier_angle.push_back(angle);
+  level.carrier_reverse.push_back(reverse);
+  level.carrier_stiffness.push_back(2.0F);
+  level.carrier_drive.push_back(2.0F);
+}
+
 }  // namespace fascia::testing
