@@ -1,8 +1,8 @@
 #include "builder/tissue/elements.h"
 
 #include <algorithm>
-#include <limits>
-#include <set>
+#include <cmath>
+#include <map>
 
 #include "geometry/connectivity.h"
 
@@ -52,7 +52,100 @@ double lip_share(const Columns& c, size_t v) {
   return 0.3 + 0.7 * smoothstep(0.006, 0.022, c.opening_distance[static_cast<size_t>(Opening::mouth)][v]);
 }
 
-void add_membranes(const Columns& c, const TissueMaterial& m, rig::TissueLevel& level) {
+/// An edge of the lattice's triangles.
+struct Edge {
+  size_t a, b;
+  double length;
+  std::vector<size_t> triangles;
+};
+
+std::vector<Edge> edges_of(const Columns& c) {
+  std::map<std::pair<size_t, size_t>, std::vector<size_t>> triangles;
+  for (size_t t = 0; t < c.mesh.triangles.size(); ++t)
+    for (size_t e = 0; e < 3; ++e) {
+      const auto a = static_cast<size_t>(c.mesh.triangles[t][e]), b = static_cast<size_t>(c.mesh.triangles[t][(e + 1) % 3]);
+      triangles[{std::min(a, b), std::max(a, b)}].push_back(t);
+    }
+  std::vector<Edge> edges;
+  for (const auto& [ends, both] : triangles)
+    edges.push_back({ends.first, ends.second, (c.mesh.vertices[ends.first] - c.mesh.vertices[ends.second]).norm(), both});
+  return edges;
+}
+
+/// What the crossing springs of one layer do besides carrying its shear, which depends on how long the edges are and is taken
+/// off elsewhere.
+struct Crossing {
+  std::vector<double> stretch;  ///< #triangles, newton per metre: as a membrane's Young's modulus times thickness
+  std::vector<double> squeeze;  ///< #columns, newton per metre: as a spring straight through the column
+};
+
+struct SpringAdder {
+  rig::TissueLevel& level;
+  void operator()(size_t a, size_t b, double stiffness, double limit = 0.4) const {
+    level.spring_nodes.push_back({static_cast<uint32_t>(a), static_cast<uint32_t>(b)});
+    level.spring_stiffness.push_back(static_cast<float>(stiffness));
+    level.spring_limit_strain.push_back(static_cast<float>(limit));  // retinacula are wavy: straight at some 40 %, then stiff
+    level.spring_second_stiffness.push_back(static_cast<float>(4.0 * stiffness));
+    level.spring_one_sided.push_back(0);
+  }
+};
+
+double mean(const std::vector<double>& values, size_t a, size_t b) { return 0.5 * (values[a] + values[b]); }
+
+/// Two springs across the layer under each edge, which carry its shear: of stiffness k each, inclined by the angle whose cosine is
+/// edge over diagonal. `outer` and `inner` are the layer's first nodes, `is_free` tells whose inner nodes may move.
+template <class IsFree>
+Crossing add_crossing(const Columns& c, const std::vector<Edge>& edges, const std::vector<double>& thickness, const std::vector<double>& shear,
+                      size_t outer, size_t inner, const IsFree& is_free, rig::TissueLevel& level) {
+  const SpringAdder spring{level};
+  Crossing crossing{std::vector<double>(c.mesh.triangles.size(), 0.0), std::vector<double>(thickness.size(), 0.0)};
+  for (const Edge& edge : edges) {
+    const double t = std::max(mean(thickness, edge.a, edge.b), 0.001), e = edge.length, diagonal = std::hypot(e, t);
+    const double area = (c.area[edge.a] + c.area[edge.b]) / 6.0;  // an edge's share of its two columns
+    const double along = mean(shear, edge.a, edge.b) * area / t;  // of each spring: its stiffness times the cosine squared
+    // However steep a spring is, it is taut when the layer is sheared by its own thickness.
+    const double limit = std::max(0.4, std::hypot(e + t, t) / diagonal - 1.0);
+    const double stiffness = along * diagonal * diagonal / (e * e);
+    int springs = 0;
+    for (const auto& [a, b] : {std::pair(edge.a, edge.b), std::pair(edge.b, edge.a)})
+      if (is_free(b)) {
+        spring(outer + a, inner + b, stiffness, limit);
+        ++springs;
+      }
+    for (const size_t t0 : edge.triangles)  // Young's modulus of a net of equilateral triangles is 2/3 of the sum over its edges
+      crossing.stretch[t0] += springs / 3.0 * along * e * e / (static_cast<double>(edge.triangles.size()) * triangle_area(c.mesh, static_cast<int>(t0)));
+    for (const size_t v : {edge.a, edge.b}) crossing.squeeze[v] += 0.5 * springs * along * t * t / (e * e);
+  }
+  return crossing;
+}
+
+/// Retinacula and fat: one spring straight through each column, two across under each edge; what the crossing ones resist of
+/// thickening is taken off the straight ones. Returns what they resist of stretching.
+std::vector<double> add_retinacula(const Columns& c, const Attachments& attachments, const TissueMaterial& m, rig::TissueLevel& level) {
+  const auto n = static_cast<size_t>(c.count());
+  const SpringAdder spring{level};
+  const std::vector<Edge> edges = edges_of(c);
+  std::vector<double> thickness = c.smas_depth, shear(n), deep(n), deep_shear(n, 0.5 * m.fat_shear);
+  for (size_t v = 0; v < n; ++v) {
+    shear[v] = m.fat_shear * attachments.skin[v] * lid_share(c, v);
+    deep[v] = c.inner_depth[v] - c.smas_depth[v];
+  }
+  const auto inner_free = [&](size_t v) { return !c.rim[v] && !c.bone[v]; };
+  const Crossing outer = add_crossing(c, edges, thickness, shear, 0, n, [](size_t) { return true; }, level);
+  const Crossing inner = add_crossing(c, edges, deep, deep_shear, n, 2 * n, inner_free, level);
+  for (size_t v = 0; v < n; ++v) {
+    const auto straight = [&](double modulus, double depth, double carried) {
+      const double wanted = modulus * c.area[v] / std::max(depth, 0.001);
+      return std::max(wanted - carried, 0.2 * wanted);
+    };
+    spring(v, n + v, straight(m.fat_modulus, thickness[v], outer.squeeze[v]));
+    if (inner_free(v)) spring(n + v, 2 * n + v, straight(0.4 * m.fat_modulus, deep[v], inner.squeeze[v]));
+  }
+  return outer.stretch;
+}
+
+/// Skin and SMAS; `carried` is what the springs between them resist of stretching, each triangle's.
+void add_membranes(const Columns& c, const TissueMaterial& m, const std::vector<double>& carried, rig::TissueLevel& level) {
   const auto plate = [&](double modulus, double thickness) {
     const double nu = static_cast<double>(level.poisson_ratio);
     return static_cast<float>(m.bending_factor * modulus * thickness * thickness * thickness / (12.0 * (1.0 - nu * nu)));
@@ -60,71 +153,30 @@ void add_membranes(const Columns& c, const TissueMaterial& m, rig::TissueLevel& 
   const auto n = static_cast<size_t>(c.count());
   level.skin_bending.assign(n, plate(m.skin_modulus, m.skin_thickness));
   level.smas_bending.assign(n, plate(m.smas_modulus, m.smas_thickness));
-  for (const fascia::Triangle& t : c.mesh.triangles) {
-    bool outer = false, bone = true;
-    double soft = 1.0;
-    for (const int v : t) {
-      soft = std::min({soft, lid_share(c, static_cast<size_t>(v)), lip_share(c, static_cast<size_t>(v))});
-      outer = outer || c.outer[static_cast<size_t>(v)];
-      bone = bone && c.bone[static_cast<size_t>(v)];
+  for (size_t t = 0; t < c.mesh.triangles.size(); ++t) {
+    const fascia::Triangle& corners = c.mesh.triangles[t];
+    double outer = 0.0, bone = 1.0, soft = 0.0, fat = 0.0;
+    for (const int i : corners) {
+      const auto v = static_cast<size_t>(i);
+      soft += std::min(lid_share(c, v), lip_share(c, v)) / 3.0;
+      fat += 3.0 * m.fat_shear * c.smas_depth[v] / 3.0;
+      outer = c.outer[v] ? 1.0 : outer;
+      bone = c.bone[v] ? bone : 0.0;
     }
-    level.triangles.push_back({static_cast<uint32_t>(t[0]), static_cast<uint32_t>(t[1]), static_cast<uint32_t>(t[2])});
+    // Fat is stretched with them: half of it with each. What crossing springs resist of that is not resisted twice.
+    const double own = 0.5 * (soft * fat - carried[t]);
+    const auto membrane = [&](double wanted) { return static_cast<float>(std::max(wanted + own, 0.25 * wanted)); };
+    level.triangles.push_back({static_cast<uint32_t>(corners[0]), static_cast<uint32_t>(corners[1]), static_cast<uint32_t>(corners[2])});
     // Mucosa is thinner and softer than skin; it has no SMAS, only submucosa.
-    level.skin_membrane.push_back(static_cast<float>(m.skin_modulus * m.skin_thickness * soft * (outer ? 1.0 : 0.35)));
-    level.smas_membrane.push_back(static_cast<float>(m.smas_modulus * m.smas_thickness * soft * (outer ? 1.0 : 0.25)));
-    level.volume_stiffness.push_back(static_cast<float>(outer ? m.volume_modulus : 0.2 * m.volume_modulus));
-    level.inner_volume_stiffness.push_back(static_cast<float>(bone ? 0.0 : m.inner_volume_modulus));
+    level.skin_membrane.push_back(membrane(m.skin_modulus * m.skin_thickness * soft * (outer > 0.0 ? 1.0 : 0.35)));
+    level.smas_membrane.push_back(membrane(m.smas_modulus * m.smas_thickness * soft * (outer > 0.0 ? 1.0 : 0.25)));
+    level.volume_stiffness.push_back(static_cast<float>(outer > 0.0 ? m.volume_modulus : 0.2 * m.volume_modulus));
+    level.inner_volume_stiffness.push_back(static_cast<float>(bone > 0.0 ? 0.0 : m.inner_volume_modulus));
   }
   for (size_t v = 0; v < n; ++v) {
     const auto lid = static_cast<float>(lid_share(c, v));
     level.skin_bending[v] *= lid * (c.outer[v] ? 1.0F : 0.3F);
     level.smas_bending[v] *= lid * (c.outer[v] ? 1.0F : 0.2F);
-  }
-}
-
-struct SpringAdder {
-  rig::TissueLevel& level;
-  void operator()(size_t a, size_t b, double stiffness) const {
-    level.spring_nodes.push_back({static_cast<uint32_t>(a), static_cast<uint32_t>(b)});
-    level.spring_stiffness.push_back(static_cast<float>(stiffness));
-    level.spring_limit_strain.push_back(0.4F);  // retinacula are wavy: straight at some 40 %, then stiff
-    level.spring_second_stiffness.push_back(static_cast<float>(4.0 * stiffness));
-    level.spring_one_sided.push_back(0);
-  }
-};
-
-/// Retinacula: one spring straight through each column, two across under each edge. The crossing pair carries
-/// the layer's shear: of stiffness k each, inclined by the angle whose cosine is edge over diagonal.
-void add_retinacula(const Columns& c, const Attachments& attachments, const TissueMaterial& m, rig::TissueLevel& level) {
-  const auto n = static_cast<size_t>(c.count());
-  const SpringAdder spring{level};
-  const auto inner_free = [&](size_t v) { return !c.rim[v] && !c.bone[v]; };
-  for (size_t v = 0; v < n; ++v) {
-    spring(v, n + v, m.fat_modulus * c.area[v] / std::max(c.smas_depth[v], 0.001));
-    if (inner_free(v))
-      spring(n + v, 2 * n + v, 0.4 * m.fat_modulus * c.area[v] / std::max(c.inner_depth[v] - c.smas_depth[v], 0.001));
-  }
-  std::set<std::pair<size_t, size_t>> edges;
-  for (const fascia::Triangle& t : c.mesh.triangles)
-    for (size_t e = 0; e < 3; ++e) {
-      const auto a = static_cast<size_t>(t[e]), b = static_cast<size_t>(t[(e + 1) % 3]);
-      edges.insert({std::min(a, b), std::max(a, b)});
-    }
-  for (const auto& [a, b] : edges) {
-    const double edge = (c.mesh.vertices[a] - c.mesh.vertices[b]).squaredNorm();
-    const double area = (c.area[a] + c.area[b]) / 6.0;  // an edge's share of its two columns
-    const auto crossing = [&](double thickness, double shear) {
-      const double t = std::max(thickness, 0.001);
-      return shear * area / t * (edge + t * t) / edge;  // two springs, each half, over the cosine squared
-    };
-    const double skin = 0.5 * (attachments.skin[a] + attachments.skin[b]) * std::min(lid_share(c, a), lid_share(c, b));
-    const double k = crossing(0.5 * (c.smas_depth[a] + c.smas_depth[b]), m.fat_shear * skin);
-    spring(a, n + b, k);
-    spring(b, n + a, k);
-    if (!inner_free(a) && !inner_free(b)) continue;
-    const double deep = crossing(0.5 * (c.inner_depth[a] + c.inner_depth[b] - c.smas_depth[a] - c.smas_depth[b]), 0.5 * m.fat_shear);
-    if (inner_free(b)) spring(n + a, 2 * n + b, deep);
-    if (inner_free(a)) spring(n + b, 2 * n + a, deep);
   }
 }
 
@@ -182,8 +234,8 @@ rig::TissueLevel make_level(const TissueInputs& inputs, const TissueOptions& opt
   level.name = wanted.name;
   const Attachments attachments = attachments_of(inputs, columns);
   add_nodes(columns, options.material, level);
-  add_membranes(columns, options.material, level);
-  add_retinacula(columns, attachments, options.material, level);
+  const std::vector<double> carried = add_retinacula(columns, attachments, options.material, level);
+  add_membranes(columns, options.material, carried, level);
   add_lip_body(columns, options.material, level);
   add_tethers(columns, attachments, options.material, level);
   return level;
