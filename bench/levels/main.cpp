@@ -2,7 +2,9 @@
 // vertices, over those that either moves by more than half a millimetre.
 //
 //   bench_levels [embedded|neutral|person_1|...]... [--solver own|reference] [--only SUBSTRING] [--rigs DIR] [--pose NAME=VALUE]...
+//                [--sheet PREFIX]
 //
+// A sheet shows each pose at the medium and low level, coloured by how far the next finer one lies from it (red: 2 mm).
 // With --rigs the rigs are kept in DIR, and read from there when they are. --pose plays channels instead of shapes.
 
 #include <algorithm>
@@ -11,6 +13,8 @@
 
 #include "bench/levels/person.h"
 #include "cli/posing.h"
+#include "view/image.h"
+#include "view/renderer.h"
 
 namespace fascia::bench {
 namespace {
@@ -19,7 +23,7 @@ namespace fs = std::filesystem;
 
 struct Request {
   std::vector<std::string> people, poses;
-  std::string solver = "own", only;
+  std::string solver = "own", only, sheet;
   fs::path rigs;
 };
 
@@ -61,6 +65,36 @@ Difference difference(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   return out;
 }
 
+Vec3 heat(double mm) {
+  const double t = std::min(mm / 2.0, 1.0);
+  return {std::min(1.0, 2.0 * t), std::min({1.0, 2.0 * t, 2.0 - 2.0 * t}), std::max(0.0, 1.0 - 2.0 * t)};
+}
+
+/// The skin as `moved` has it, coloured by how far `other` lies from it.
+view::Image picture(const view::Renderer& renderer, const cli::Face& face, const std::vector<Vec3>& moved, const std::vector<Vec3>& other) {
+  view::DrawList list;
+  size_t first = 0;
+  Vec3 front = Vec3(0, 0, -1e9);
+  for (size_t m = 0; m < face.meshes().size(); ++m) {
+    if (face.meshes()[m].part != "skin") continue;
+    view::DrawSurface surface;
+    surface.triangles = face.meshes()[m].triangles;
+    const auto rest = face.rest(m);
+    for (size_t i = 0; i + 2 < rest.size(); i += 3, ++first) {
+      const Vec3 p(rest[i], rest[i + 1], rest[i + 2]);
+      if (p.z() > front.z()) front = p;
+      surface.positions.push_back(p + moved[first]);
+      surface.vertex_colours.push_back(heat(1e3 * (moved[first] - other[first]).norm()));
+    }
+    list.surfaces.push_back(std::move(surface));
+  }
+  view::Camera camera;
+  camera.target = front + Vec3(0, -0.02, -0.04);
+  camera.distance = 0.42;
+  camera.yaw = 25;
+  return renderer.draw(list, camera);
+}
+
 void run(const std::string& name, const Request& request) {
   const fs::path path = (request.rigs.empty() ? fs::temp_directory_path() : request.rigs) / ("fascia_levels_" + name + ".glb");
   if (request.rigs.empty() || !fs::exists(path)) build_rig_file(read_person(name), "high", path);
@@ -76,6 +110,9 @@ void run(const std::string& name, const Request& request) {
               "medium from high", "low from medium", "seconds", "", "", "mean", "95 %", "most", "mean", "95 %", "most", "low, medium, high");
   Difference sum[2];
   int within = 0;
+  std::vector<view::Tile> tiles;
+  std::unique_ptr<view::Renderer> renderer;
+  if (!request.sheet.empty()) renderer = std::make_unique<view::Renderer>(320, 360);
   for (const auto& [pose, value] : poses) {
     std::vector<std::vector<Vec3>> moved;
     double seconds[3] = {};
@@ -88,6 +125,8 @@ void run(const std::string& name, const Request& request) {
     std::printf("%-26s %6.2f   %6.2f %6.2f %6.2f  %6.2f %6.2f %6.2f  %.1f %.1f %.1f\n", pose.c_str(), fine.motion, fine.mean, fine.most,
                 fine.largest, coarse.mean, coarse.most, coarse.largest, seconds[0], seconds[1], seconds[2]);
     std::fflush(stdout);
+    for (size_t level : {1, 0})
+      if (renderer) tiles.push_back({picture(*renderer, *faces[level], moved[level], moved[level + 1]), pose.substr(pose.find(':') + 1) + " " + levels[level]});
     within += fine.mean <= 0.5 && fine.most <= 1.5;
     for (int k = 0; k < 2; ++k) {
       const Difference& d = k ? coarse : fine;
@@ -101,6 +140,7 @@ void run(const std::string& name, const Request& request) {
   std::printf("%-26s %6.2f   %6.2f %6.2f %6.2f  %6.2f %6.2f %6.2f\n%d of %zu with medium from high within 0.5 mm in the mean and 1.5 mm in 95 %%\n\n",
               "mean", sum[0].motion / count, sum[0].mean / count, sum[0].most / count, sum[0].largest / count, sum[1].mean / count,
               sum[1].most / count, sum[1].largest / count, within, poses.size());
+  if (renderer) view::write_png(request.sheet + "_" + name + ".png", view::contact_sheet(tiles, 6));
   if (request.rigs.empty()) fs::remove(path);
 }
 
@@ -114,6 +154,7 @@ int main(int argc, char** argv) {
     const bool more = i + 1 < argc;
     if (word == "--solver" && more) request.solver = argv[++i];
     else if (word == "--only" && more) request.only = argv[++i];
+    else if (word == "--sheet" && more) request.sheet = argv[++i];
     else if (word == "--rigs" && more) request.rigs = argv[++i];
     else if (word == "--pose" && more) request.poses.push_back(argv[++i]);
     else request.people.push_back(word);

@@ -38,8 +38,9 @@ TissueResult::Figures figures_of(const rig::TissueLevel& level) {
 TissueResult build(const TissueInputs& inputs, const TissueOptions& options) {
   TissueResult result;
   const FaceRegion region = find_region(inputs, options);
+  const Beneath beneath = find_beneath(inputs, region, options);
   for (const LevelOptions& wanted : options.levels) {
-    const Columns columns = make_columns(inputs, region, wanted, options);
+    const Columns columns = make_columns(inputs, region, beneath, wanted, options);
     rig::TissueLevel level = make_level(inputs, options, wanted, columns);
     add_fibres(inputs, options, columns, level);
     add_lids(inputs, options, columns, level);

@@ -1,15 +1,9 @@
 #pragma once
 
-#include "builder/tissue/region.h"
+#include "builder/tissue/beneath.h"
 #include "builder/tissue/remesh.h"
 
 namespace fascia::tissue {
-
-/// What the bones behind the skin are: meshes with their teeth and gums.
-struct Bones {
-  TriangleMesh cranium, mandible;
-};
-Bones bones_of(const TissueInputs& inputs);
 
 /// The columns of one level: a remesh of the face region, with a place on the SMAS and one on bone or mucosa
 /// under every vertex.
@@ -29,25 +23,8 @@ struct Columns {
   int count() const { return mesh.vertex_count(); }
 };
 
-/// Makes the columns of `level` from the region.
-Columns make_columns(const TissueInputs& inputs, const FaceRegion& region, const LevelOptions& level,
+/// Makes the columns of `level` from the region and what lies beneath it.
+Columns make_columns(const TissueInputs& inputs, const FaceRegion& region, const Beneath& beneath, const LevelOptions& level,
                      const TissueOptions& options);
-
-/// The lips as the jaw's influence needs them: how far each vertex lies from their edge along the surface, and to which
-/// it belongs (Columns::lower_lip).
-struct Lips {
-  std::vector<double> distance, lower;
-};
-
-/// Which lip each vertex of `mesh` belongs to: from the skin clearly above and clearly below the mouth, `distance` from
-/// whose edge is given, it is asked which is nearer along the surface. Lips that touch stay apart: only the corner joins them.
-std::vector<double> lower_lip(const TissueInputs& inputs, const TriangleMesh& mesh, const std::vector<bool>& outer,
-                              const std::vector<double>& distance);
-
-/// How much of the jaw's motion carries each vertex of `mesh`: 1 and 0 where mandible or cranium clearly lies nearer,
-/// 0 on the rim, and between a smooth field over the surface (screened Laplace equation), which does not
-/// cross from lip to lip.
-std::vector<double> jaw_weights(const TriangleMesh& mesh, const std::vector<bool>& rim, const Bones& bones,
-                                const Lips& lips);
 
 }  // namespace fascia::tissue
