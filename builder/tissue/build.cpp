@@ -43,8 +43,8 @@ TissueResult build(const TissueInputs& inputs, const TissueOptions& options) {
     const Columns columns = make_columns(inputs, region, beneath, wanted, options);
     rig::TissueLevel level = make_level(inputs, options, wanted, columns);
     add_fibres(inputs, options, columns, level);
-    add_lids(inputs, options, columns, level);
-    add_lip_rolls(inputs, options, columns, level);
+    add_lids(inputs, options, region, columns, level);
+    add_lip_rolls(inputs, options, region, columns, level);
     add_pressures(inputs, options, columns, level);
     if (options.contact) {
       add_ligaments(inputs, columns, level);

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "builder/tissue/actuators.h"
+#include "builder/tissue/margin.h"
 
 namespace fascia::tissue {
 namespace {
@@ -39,25 +40,6 @@ EyeFrame frame_of(const TissueInputs& inputs, bool left) {
   return f;
 }
 
-/// A lid's edge as elevation over the place between the canthi, 0..1, in even steps.
-struct Margin {
-  std::vector<double> elevation = std::vector<double>(17, 0.0), weight = std::vector<double>(17, 0.0);
-  void add(double place, double value) {
-    for (size_t k = 0; k < elevation.size(); ++k) {
-      const double d = (place - static_cast<double>(k) / 16.0) / 0.08, w = std::exp(-d * d);
-      elevation[k] += w * value;
-      weight[k] += w;
-    }
-  }
-  double at(double place) const {
-    const double x = std::clamp(place, 0.0, 1.0) * 16.0;
-    const auto k = std::min<size_t>(static_cast<size_t>(x), 15);
-    const auto value = [&](size_t i) { return weight[i] > 1e-9 ? elevation[i] / weight[i] : 0.0; };
-    const double t = x - static_cast<double>(k);
-    return (1.0 - t) * value(k) + t * value(k + 1);
-  }
-};
-
 void carry(rig::TissueLevel& level, int channel, size_t node, const EyeFrame& f, const Vec3& axis, double angle, double stiffness,
            double reverse_share = 1.0) {
   level.carrier_channel.push_back(static_cast<uint32_t>(channel));
@@ -71,7 +53,7 @@ void carry(rig::TissueLevel& level, int channel, size_t node, const EyeFrame& f,
 }
 
 /// Half an eye's lids: nodes near the fissure, and what each channel does to them.
-void add_eye(const TissueInputs& inputs, const TissueOptions& options, const Columns& c, bool left, rig::TissueLevel& level) {
+void add_eye(const TissueInputs& inputs, const TissueOptions& options, const FaceRegion& region, const Columns& c, bool left, rig::TissueLevel& level) {
   const EyeFrame f = frame_of(inputs, left);
   const std::string side = left ? "_left" : "_right";
   const auto opening = static_cast<size_t>(left ? Opening::eye_left : Opening::eye_right);
@@ -86,16 +68,13 @@ void add_eye(const TissueInputs& inputs, const TissueOptions& options, const Col
     return a + std::clamp(t, 0.0, 1.0) * (b - a);
   };
   Margin upper, lower;
-  std::vector<size_t> near;
-  for (size_t v = 0; v < n; ++v) {
-    const double distance = c.opening_distance[opening][v];
-    if (!(distance < 0.016) || c.rim[v]) continue;
-    near.push_back(v);
-    if (!c.outer[v] || distance > 0.004) continue;
-    const double place = place_of(c.mesh.vertices[v]), elevation = f.elevation(c.mesh.vertices[v]);
-    if (place < -0.1 || place > 1.1) continue;
-    (elevation > middle(place) ? upper : lower).add(place, elevation);
+  for (const MarginPlace& p : margin_places(region, left ? Opening::eye_left : Opening::eye_right)) {
+    const double place = place_of(p.position), elevation = f.elevation(p.position);
+    (elevation > middle(place) ? upper : lower).add(place, {elevation, 0.0});
   }
+  std::vector<size_t> near;
+  for (size_t v = 0; v < n; ++v)
+    if (c.opening_distance[opening][v] < 0.016 && !c.rim[v]) near.push_back(v);
   const int close = channel_index(inputs.channels, "lid_upper" + side);
   const int raise = channel_index(inputs.channels, "lid_lower" + side);
   const int draw_upper = channel_index(inputs.channels, "orbicularis_oculi_pretarsal_upper" + side);
@@ -119,7 +98,7 @@ void add_eye(const TissueInputs& inputs, const TissueOptions& options, const Col
       level.globe_contact_globe.push_back(globe);
     }
     if (held < 0.01) continue;
-    const double gap = std::max(0.0, upper.at(place) - lower.at(place));
+    const double gap = std::max(0.0, upper.at(place).x() - lower.at(place).x());
     for (const size_t node : {v, n + v}) {
       const double stiffness = options.material.lid_hold * c.area[v] * held;
       // A positive turn about the leftward axis lowers what lies in front.
@@ -140,8 +119,8 @@ void add_eye(const TissueInputs& inputs, const TissueOptions& options, const Col
 
 }  // namespace
 
-void add_lids(const TissueInputs& inputs, const TissueOptions& options, const Columns& columns, rig::TissueLevel& level) {
-  for (const bool left : {true, false}) add_eye(inputs, options, columns, left, level);
+void add_lids(const TissueInputs& inputs, const TissueOptions& options, const FaceRegion& region, const Columns& columns, rig::TissueLevel& level) {
+  for (const bool left : {true, false}) add_eye(inputs, options, region, columns, left, level);
 }
 
 }  // namespace fascia::tissue

@@ -1,7 +1,9 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "builder/tissue/actuators.h"
+#include "builder/tissue/margin.h"
 
 namespace fascia::tissue {
 namespace {
@@ -11,46 +13,29 @@ double smoothstep(double low, double high, double x) {
   return t * t * (3.0 - 2.0 * t);
 }
 
-/// Height and depth of a lip's edge over the place across the mouth, in even steps from corner to corner.
-struct LipEdge {
-  std::array<double, 21> y{}, z{}, weight{};
-  void add(double place, const Vec3& p) {
-    for (size_t k = 0; k < y.size(); ++k) {
-      const double d = (place - static_cast<double>(k) / 20.0) / 0.06, w = std::exp(-d * d);
-      y[k] += w * p.y();
-      z[k] += w * p.z();
-      weight[k] += w;
-    }
-  }
-  Vec3 at(double place, double x) const {
-    const double s = std::clamp(place, 0.0, 1.0) * 20.0;
-    const auto k = std::min<size_t>(static_cast<size_t>(s), 19);
-    const double t = s - static_cast<double>(k);
-    const auto mean = [&](const std::array<double, 21>& values, size_t i) { return weight[i] > 1e-9 ? values[i] / weight[i] : 0.0; };
-    return {x, (1 - t) * mean(y, k) + t * mean(y, k + 1), (1 - t) * mean(z, k) + t * mean(z, k + 1)};
-  }
-};
-
 }  // namespace
 
-void add_lip_rolls(const TissueInputs& inputs, const TissueOptions& options, const Columns& c, rig::TissueLevel& level) {
+void add_lip_rolls(const TissueInputs& inputs, const TissueOptions& options, const FaceRegion& region, const Columns& c, rig::TissueLevel& level) {
   const Vec3 left = landmark(inputs, "cheilion_left"), right = landmark(inputs, "cheilion_right");
   const Vec3 centre = 0.5 * (left + right);
   const double half = 0.5 * (left - right).norm();
   const auto& distance = c.opening_distance[static_cast<size_t>(Opening::mouth)];
   const auto n = static_cast<size_t>(c.count());
   const auto place_of = [&](const Vec3& p) { return 0.5 + 0.5 * (p.x() - centre.x()) / half; };
+  // Height and depth of each lip's edge.
+  std::array<Margin, 2> edges;
+  const std::vector<double> lower = lower_lip(inputs, region.mesh, region.outer, region.opening_distance[static_cast<size_t>(Opening::mouth)]);
+  for (const MarginPlace& p : margin_places(region, Opening::mouth))
+    edges[lower[static_cast<size_t>(p.vertex)] < 0.5].add(place_of(p.position), p.position.tail<2>());
   for (const bool upper : {true, false}) {
-    LipEdge edge;
-    for (size_t v = 0; v < n; ++v) {
-      const Vec3& p = c.mesh.vertices[v];
-      if (c.outer[v] && distance[v] < 0.003 && (c.lower_lip[v] < 0.5) == upper) edge.add(place_of(p), p);
-    }
+    const Margin& edge = edges[upper];
+    if (edge.empty()) continue;
     for (size_t v = 0; v < n; ++v) {
       const Vec3& p = c.mesh.vertices[v];
       if (c.rim[v] || distance[v] > 0.014 || (c.lower_lip[v] < 0.5) != upper) continue;
       // The lip's body lies above (below) and behind its edge: the vermilion turns about that, the white lip stays.
-      const Vec3 origin = edge.at(place_of(p), p.x()) + Vec3(0, upper ? 0.006 : -0.006, -0.006);
+      const Eigen::Vector2d at = edge.at(place_of(p));
+      const Vec3 origin(p.x(), at.x() + (upper ? 0.006 : -0.006), at.y() - 0.006);
       const double fade = (1.0 - smoothstep(0.005, 0.014, distance[v])) * (1.0 - smoothstep(0.55, 1.0, std::abs(p.x() - centre.x()) / half));
       for (const bool is_left : {true, false}) {
         const double side = smoothstep(-0.005, 0.005, is_left ? p.x() - centre.x() : centre.x() - p.x());

@@ -75,13 +75,16 @@ void calm(const TriangleMesh& mesh, std::vector<bool>& flags) {
   }
 }
 
+/// The opening whose edge `p` lies at. The mouth is a line from corner to corner: nostrils may lie nearer to its middle than the
+/// corners do.
 Opening opening_at(const TissueInputs& inputs, const Vec3& p) {
-  const Vec3 mouth = 0.5 * (landmark(inputs, "cheilion_left") + landmark(inputs, "cheilion_right"));
-  const double width = (landmark(inputs, "cheilion_left") - landmark(inputs, "cheilion_right")).norm();
+  const Vec3 corner = landmark(inputs, "cheilion_right"), across = landmark(inputs, "cheilion_left") - corner;
+  const Vec3 mouth = corner + std::clamp((p - corner).dot(across) / across.squaredNorm(), 0.0, 1.0) * across;
+  const double half_width = 0.5 * across.norm();
   const rig::Eye left = eye_of(inputs, true), right = eye_of(inputs, false);
   const Vec3 nose = 0.5 * (landmark(inputs, "subnasale") + landmark(inputs, "pronasale"));
-  const double scores[] = {(p - mouth).norm() / width, (p - left.centre.cast<double>()).norm() / (1.6 * left.radius),
-                           (p - right.centre.cast<double>()).norm() / (1.6 * right.radius), (p - nose).norm() / (0.5 * width)};
+  const double scores[] = {(p - mouth).norm() / half_width, (p - left.centre.cast<double>()).norm() / (1.6 * left.radius),
+                           (p - right.centre.cast<double>()).norm() / (1.6 * right.radius), (p - nose).norm() / half_width};
   const auto best = std::min_element(std::begin(scores), std::end(scores)) - std::begin(scores);
   return scores[best] < 2.5 ? static_cast<Opening>(best + 1) : Opening::none;
 }

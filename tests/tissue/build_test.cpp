@@ -161,6 +161,39 @@ TEST_F(Built, LidsCloseTheFissure) {
   EXPECT_LT(other, 0.1F * drop);
 }
 
+TEST_F(Built, TheUpperLidTravelsTheSameOnBothSidesAndAtEveryLevel) {
+  TissueOptions options;
+  options.levels = {{"coarse", 500}, {"low", 700}};
+  options.contact = false;
+  const TissueResult result = build(measured_head(), options);
+  std::vector<double> travel;
+  for (const rig::TissueLevel& level : result.tissue.levels)
+    for (const uint32_t side : {0U, 1U}) {
+      double most = 0.0;
+      for (size_t k = 0; k < level.carrier_node.size(); ++k)
+        if (level.carrier_channel[k] == side) most = std::max(most, static_cast<double>(level.carrier_angle[k]));
+      travel.push_back(most);
+    }
+  for (const double angle : travel) {
+    EXPECT_GT(angle, 0.4);
+    EXPECT_NEAR(angle, travel[0], 0.1 * travel[0]);
+  }
+}
+
+TEST_F(Built, NostrilsAreNotOfTheMouth) {
+  const FaceRegion region = find_region(measured_head(), {});
+  for (const Opening opening : {Opening::mouth, Opening::nostril}) {
+    const auto& distance = region.opening_distance[static_cast<size_t>(opening)];
+    int edge = 0;
+    for (size_t v = 0; v < distance.size(); ++v) {
+      if (distance[v] > 0.0) continue;
+      ++edge;
+      EXPECT_EQ(region.mesh.vertices[v].y() > -0.015, opening == Opening::nostril);
+    }
+    EXPECT_GT(edge, 20);
+  }
+}
+
 TEST_F(Built, AMissingLandmarkIsNamed) {
   TissueInputs inputs = measured_head();
   inputs.landmarks.erase("glabella");
