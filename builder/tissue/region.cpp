@@ -106,12 +106,18 @@ Vestibule::Vestibule(const TissueInputs& inputs) {
   half_width_ = 0.5 * (left - right).norm();
   top_ = landmark(inputs, "subnasale").y() - mouth_.y();
   bottom_ = 0.75 * (landmark(inputs, "gnathion").y() - mouth_.y());
+  for (const size_t side : {0U, 1U}) {
+    corners_[side] = side ? left : right;
+    to_ears_[side] = landmark(inputs, side ? "tragion_left" : "tragion_right") - corners_[side];
+  }
 }
 
 double Vestibule::share(const Vec3& p) const {
-  const double out = std::abs(p.x() - mouth_.x()) / half_width_, up = p.y() - mouth_.y();
-  const double height = up > 0.0 ? up / top_ : up / bottom_;
-  return falling(1.5, 2.6, out) * falling(0.55, 1.15, height) * falling(0.0, 0.5, (mouth_.z() - p.z()) / half_width_ - 1.1);
+  const double up = p.y() - mouth_.y(), height = up > 0.0 ? up / top_ : up / bottom_;
+  // The masseter's front edge lies a little before the middle of the way from the corner of the mouth to the ear.
+  const size_t side = p.x() > mouth_.x();
+  const double back = (p - corners_[side]).dot(to_ears_[side]) / to_ears_[side].squaredNorm();
+  return falling(0.36, 0.50, back) * falling(0.55, 1.15, height);
 }
 
 double Vestibule::side(const Vec3& p, bool left) const {

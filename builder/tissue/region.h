@@ -36,6 +36,7 @@ class Vestibule {
 
  private:
   Vec3 mouth_;
+  std::array<Vec3, 2> corners_, to_ears_;  // right, left
   double half_width_, top_, bottom_;
 };
 
