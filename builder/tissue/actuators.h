@@ -20,8 +20,8 @@ void add_lids(const TissueInputs& inputs, const TissueOptions& options, const Fa
 void add_pressures(const TissueInputs& inputs, const TissueOptions& options, const Columns& columns, rig::TissueLevel& level);
 
 /// Lips rolled over the teeth (`lip_roll_upper_<side>`, `lip_roll_lower_<side>` above 0) or turned out (below 0).
-void add_lip_rolls(const TissueInputs& inputs, const TissueOptions& options, const FaceRegion& region, const Columns& columns,
-                   rig::TissueLevel& level);
+void add_lip_rolls(const TissueInputs& inputs, const TissueOptions& options, const FaceRegion& region, const Beneath& beneath,
+                   const Columns& columns, rig::TissueLevel& level);
 
 /// Retaining ligaments from bone through the fascia to the skin: springs that only resist being stretched.
 void add_ligaments(const TissueInputs& inputs, const Columns& columns, rig::TissueLevel& level);

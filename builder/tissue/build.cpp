@@ -44,7 +44,7 @@ TissueResult build(const TissueInputs& inputs, const TissueOptions& options) {
     rig::TissueLevel level = make_level(inputs, options, wanted, columns);
     add_fibres(inputs, options, columns, level);
     add_lids(inputs, options, region, columns, level);
-    add_lip_rolls(inputs, options, region, columns, level);
+    add_lip_rolls(inputs, options, region, beneath, columns, level);
     add_pressures(inputs, options, columns, level);
     if (options.contact) {
       add_ligaments(inputs, columns, level);

@@ -1,5 +1,6 @@
 #include "builder/tissue/elements.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -181,23 +182,29 @@ void add_membranes(const Columns& c, const TissueMaterial& m, const std::vector<
 }
 
 /// Between the columns of a lip's or cheek's outer skin and those of its lining lies the same flesh: each lining column hangs
-/// on the three outer ones that end nearest before it.
+/// on three outer ones that end before it, some way to its sides however close columns stand.
 void add_lip_body(const Columns& c, const TissueMaterial& m, rig::TissueLevel& level) {
+  constexpr double aside = 0.0025, reach = 0.009;  // metres
   const auto n = static_cast<size_t>(c.count());
   const SpringAdder spring{level};
   const auto& mouth = c.opening_distance[static_cast<size_t>(Opening::mouth)];
   for (size_t v = 0; v < n; ++v) {
     if (c.outer[v] || c.rim[v] || mouth[v] > 0.03) continue;
-    std::vector<std::pair<double, size_t>> near;
+    std::vector<size_t> near;
     for (size_t w = 0; w < n; ++w) {
       if (!c.outer[w] || c.rim[w] || c.bone[w] || std::abs(c.lower_lip[w] - c.lower_lip[v]) > 0.3) continue;
-      const double distance = (c.inner[w] - c.inner[v]).norm();
-      if (distance < 0.009 && (c.mesh.vertices[w] - c.mesh.vertices[v]).dot(c.normals[v]) < 0.0) near.emplace_back(distance, w);
+      if ((c.inner[w] - c.inner[v]).norm() < reach && (c.mesh.vertices[w] - c.mesh.vertices[v]).dot(c.normals[v]) < 0.0) near.push_back(w);
     }
-    const size_t count = std::min<size_t>(near.size(), 3);
-    std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(count), near.end());
-    for (size_t k = 0; k < count; ++k)
-      spring(2 * n + v, 2 * n + near[k].second, m.fat_modulus * c.area[v] / (static_cast<double>(count) * std::max(near[k].first, 0.001)));
+    if (near.empty()) continue;
+    const Vec3 across = c.normals[v].cross(Vec3::UnitY()).normalized(), up = across.cross(c.normals[v]);
+    std::map<size_t, double> share;
+    for (const double angle : {0.5, 2.5944, 4.6888}) {  // thirds of a turn
+      const Vec3 aim = c.inner[v] + aside * (std::cos(angle) * across + std::sin(angle) * up);
+      const auto nearer = [&](size_t a, size_t b) { return (c.inner[a] - aim).squaredNorm() < (c.inner[b] - aim).squaredNorm(); };
+      share[*std::min_element(near.begin(), near.end(), nearer)] += 1.0 / 3.0;
+    }
+    for (const auto& [w, part] : share)
+      spring(2 * n + v, 2 * n + w, part * m.fat_modulus * c.area[v] / std::max((c.inner[w] - c.inner[v]).norm(), 0.001));
   }
 }
 
@@ -216,13 +223,15 @@ void add_tethers(const Columns& c, const Attachments& attachments, const TissueM
   }
   // Behind the lips the lining turns over onto the gums and is bound down there: lips hang from this fold.
   for (const auto& loop : boundary_loops(c.mesh, connectivity(c.mesh)))
-    for (const int i : loop) {
-      const auto v = static_cast<size_t>(i);
+    for (size_t k = 0; k < loop.size(); ++k) {
+      const auto v = static_cast<size_t>(loop[k]);
       if (c.rim[v] || c.opening_distance[static_cast<size_t>(Opening::mouth)][v] > 0.03) continue;
+      const auto place = [&](size_t i) -> const Vec3& { return c.mesh.vertices[static_cast<size_t>(loop[i % loop.size()])]; };
+      const double length = 0.5 * ((place(k + 1) - place(k)).norm() + (place(k + loop.size() - 1) - place(k)).norm());
       level.tether_nodes.push_back(static_cast<uint32_t>(v));
       level.tether_normals.push_back(c.normals[v].cast<float>());
-      level.tether_normal_stiffness.push_back(static_cast<float>(m.gum_hold * c.area[v]));
-      level.tether_tangential_stiffness.push_back(static_cast<float>(m.gum_hold * c.area[v]));
+      level.tether_normal_stiffness.push_back(static_cast<float>(m.gum_hold * length));
+      level.tether_tangential_stiffness.push_back(static_cast<float>(m.gum_hold * length));
     }
 }
 

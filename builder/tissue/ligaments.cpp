@@ -17,13 +17,15 @@ void one_sided(rig::TissueLevel& level, size_t a, size_t b, float stiffness) {
 }  // namespace
 
 void add_ligaments(const TissueInputs& inputs, const Columns& c, rig::TissueLevel& level) {
+  constexpr double reach = 0.012;  // metres: farther off the ligament is not of the simulated part
+  constexpr double tuft = 0.006;
   const auto n = static_cast<size_t>(c.count());
-  const auto nearest = [&](const Vec3& p, auto&& place, bool on_bone) {
+  const auto nearest_root = [&](const Vec3& p) {
     size_t best = n;
-    double distance = 0.012;  // metres: farther off the ligament is not of the simulated part
+    double distance = reach;
     for (size_t v = 0; v < n; ++v) {
-      if (c.rim[v] || !c.outer[v] || (on_bone && !c.bone[v])) continue;
-      const double d = (place(v) - p).norm();
+      if (c.rim[v] || !c.outer[v] || !c.bone[v]) continue;
+      const double d = (c.inner[v] - p).norm();
       if (d >= distance) continue;
       distance = d;
       best = v;
@@ -32,11 +34,33 @@ void add_ligaments(const TissueInputs& inputs, const Columns& c, rig::TissueLeve
   };
   for (const rig::Ligament& ligament : inputs.ligaments) {
     const Vec3 bone = ligament.bone.cast<double>(), skin = ligament.skin.cast<double>();
-    const size_t root = nearest(bone, [&](size_t v) { return c.inner[v]; }, true);
-    const size_t end = nearest(skin, [&](size_t v) { return c.mesh.vertices[v]; }, false);
-    if (root == n || end == n) continue;
-    one_sided(level, 2 * n + root, n + end, ligament.stiffness);
-    one_sided(level, n + end, end, ligament.stiffness);
+    // It ends as a tuft: on all columns near its end, by their area, or on the nearest.
+    std::vector<std::pair<size_t, double>> ends;
+    double sum = 0.0, closest = reach;
+    size_t nearest = n;
+    for (size_t v = 0; v < n; ++v) {
+      if (c.rim[v] || !c.outer[v]) continue;
+      const double d = (c.mesh.vertices[v] - skin).norm(), t = d / tuft;
+      if (d < closest) {
+        closest = d;
+        nearest = v;
+      }
+      if (t >= 1.0) continue;
+      ends.emplace_back(v, c.area[v] * (1.0 - t * t) * (1.0 - t * t));
+      sum += ends.back().second;
+    }
+    if (nearest == n) continue;
+    if (ends.empty()) {
+      ends.emplace_back(nearest, 1.0);
+      sum = 1.0;
+    }
+    for (const auto& [end, weight] : ends) {
+      const size_t root = nearest_root(bone + c.mesh.vertices[end] - skin);
+      if (root == n) continue;
+      const auto stiffness = static_cast<float>(weight / sum * static_cast<double>(ligament.stiffness));
+      one_sided(level, 2 * n + root, n + end, stiffness);
+      one_sided(level, n + end, end, stiffness);
+    }
   }
 }
 

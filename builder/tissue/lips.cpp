@@ -15,7 +15,8 @@ double smoothstep(double low, double high, double x) {
 
 }  // namespace
 
-void add_lip_rolls(const TissueInputs& inputs, const TissueOptions& options, const FaceRegion& region, const Columns& c, rig::TissueLevel& level) {
+void add_lip_rolls(const TissueInputs& inputs, const TissueOptions& options, const FaceRegion& region, const Beneath& beneath, const Columns& c,
+                   rig::TissueLevel& level) {
   const Vec3 left = landmark(inputs, "cheilion_left"), right = landmark(inputs, "cheilion_right");
   const Vec3 centre = 0.5 * (left + right);
   const double half = 0.5 * (left - right).norm();
@@ -24,9 +25,8 @@ void add_lip_rolls(const TissueInputs& inputs, const TissueOptions& options, con
   const auto place_of = [&](const Vec3& p) { return 0.5 + 0.5 * (p.x() - centre.x()) / half; };
   // Height and depth of each lip's edge.
   std::array<Margin, 2> edges;
-  const std::vector<double> lower = lower_lip(inputs, region.mesh, region.outer, region.opening_distance[static_cast<size_t>(Opening::mouth)]);
   for (const MarginPlace& p : margin_places(region, Opening::mouth))
-    edges[lower[static_cast<size_t>(p.vertex)] < 0.5].add(place_of(p.position), p.position.tail<2>());
+    edges[beneath.lower_lip[static_cast<size_t>(p.vertex)] < 0.5].add(place_of(p.position), p.position.tail<2>());
   for (const bool upper : {true, false}) {
     const Margin& edge = edges[upper];
     if (edge.empty()) continue;
