@@ -100,7 +100,7 @@ sim::MakeSolver bullet_entry() {
 
 std::unique_ptr<Solver> make_solver(fascia_solver kind, const Asset& asset, std::size_t level) {
   const std::size_t channels = asset.channel_names.size();
-  if (kind == FASCIA_SOLVER_OWN) return std::make_unique<FaceSolver<sim::realtime::Face>>(asset.realtime_model(level), channels, 400);
+  if (kind == FASCIA_SOLVER_OWN) return std::make_unique<FaceSolver<sim::realtime::Face>>(asset.realtime_model(level), channels, 2000);
   const sim::FaceModel& model = asset.model(level);
   if (kind == FASCIA_SOLVER_REFERENCE) return std::make_unique<FaceSolver<sim::Face>>(model, channels, 200);
   require(kind == FASCIA_SOLVER_BULLET, "unknown solver");
