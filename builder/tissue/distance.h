@@ -25,6 +25,12 @@ EdgeDistances edge_distances(const TriangleMesh& mesh, const std::vector<Distanc
                              double range = std::numeric_limits<double>::infinity(),
                              const std::vector<bool>& allowed = {});
 
+/// The same over the surface itself, so that it hardly matters how it is cut into triangles: fronts are straight across each
+/// triangle (Kimmel & Sethian 1998, "Computing geodesic paths on manifolds"); where one comes in past an obtuse corner, along the edge.
+EdgeDistances surface_distances(const TriangleMesh& mesh, const std::vector<DistanceSeed>& seeds,
+                                double range = std::numeric_limits<double>::infinity(),
+                                const std::vector<bool>& allowed = {});
+
 /// The vertices next to each vertex, ascending.
 std::vector<std::vector<int>> vertex_neighbours(const TriangleMesh& mesh);
 

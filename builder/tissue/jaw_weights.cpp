@@ -29,7 +29,7 @@ std::vector<double> lower_lip(const TissueInputs& inputs, const TriangleMesh& me
   }
   std::vector<double> lower(mesh.vertices.size(), 0.5);
   if (seeds[0].empty() || seeds[1].empty()) return lower;
-  const EdgeDistances above = edge_distances(mesh, seeds[0]), below = edge_distances(mesh, seeds[1]);
+  const EdgeDistances above = surface_distances(mesh, seeds[0]), below = surface_distances(mesh, seeds[1]);
   for (size_t v = 0; v < lower.size(); ++v)
     if (std::isfinite(above.distance[v] + below.distance[v]))
       lower[v] = above.distance[v] / std::max(above.distance[v] + below.distance[v], 1e-9);

@@ -167,7 +167,7 @@ FaceRegion find_region(const TissueInputs& inputs, const TissueOptions& options)
   std::vector<DistanceSeed> seeds;
   for (size_t v = 0; v < within.size(); ++v)
     if (face.seed[v] >= 0) seeds.push_back({static_cast<int>(v)});
-  const EdgeDistances inward = edge_distances(skin, seeds, 0.08, within);
+  const EdgeDistances inward = surface_distances(skin, seeds, 0.08, within);
   region.depth = inward.distance;
   region.opening.assign(within.size(), Opening::none);
   for (size_t v = 0; v < within.size(); ++v)
@@ -213,9 +213,9 @@ FaceRegion find_region(const TissueInputs& inputs, const TissueOptions& options)
         break;
       }
   if (edges.empty()) throw Error("the skin has neither a mouth nor eyes that open: cut the lips and lids before building");
-  region.feature_distance = edge_distances(region.mesh, edges).distance;
+  region.feature_distance = surface_distances(region.mesh, edges).distance;
   for (size_t k = 1; k < edges_of.size(); ++k)
-    region.opening_distance[k] = edge_distances(region.mesh, edges_of[k]).distance;
+    region.opening_distance[k] = surface_distances(region.mesh, edges_of[k]).distance;
   return region;
 }
 
