@@ -17,7 +17,8 @@ const std::vector<Expectation>& expectations() {
       {"orbicularis_oculi_orbital_upper", 1, "superciliare_left", {0, -1, 0}, 0.7, 6},
       {"orbicularis_oculi_orbital_lower", 1, "zygomaxillare_skin_left", {0, 1, 0}, 0.7, 6},
       {"levator_palpebrae_superioris", 1, "palpebrale_superius_left", {0, 1, 0}, 0.5, 4},
-      {"nasalis_transverse", 1, "alar_groove_left", {-1, 0.3, 0}, 0.2, 3},
+      // Slung over the nose from side to side, the two press the skin beside the ala onto it: against the outward normal of the groove.
+      {"both:nasalis_transverse", 1, "alar_groove_left", {-0.83, -0.19, -0.53}, 0.2, 3},
       {"nasalis_alar", 1, "alare_left", {0.6, -1, 0}, 0.2, 3},
       {"depressor_septi_nasi", 1, "subnasale", {0, -1, 0}, 0.3, 3},
       {"levator_labii_superioris_alaeque_nasi_alar", 1, "alare_left", {0, 1, 0}, 1, 6},
@@ -37,8 +38,9 @@ const std::vector<Expectation>& expectations() {
       {"orbicularis_oris_peripheral_upper", 1, "cheilion_left", {-1, 0, 0}, 0.5, 7},
       {"orbicularis_oris_marginal_lower", 1, "cheilion_left", {-1, 0, 0}, 0.5, 7},
       {"orbicularis_oris_peripheral_lower", 1, "cheilion_left", {-1, 0, 0}, 0.5, 7},
-      {"compressor_labii_upper", 1, "labiale_superius_laterale_left", {0, 0, -1}, 0.2, 4},
-      {"compressor_labii_lower", 1, "labiale_inferius_laterale_left", {0, 0, -1}, 0.2, 4},
+      // Thinner from front to back, the lip grows taller: lips press against each other (action unit 24).
+      {"compressor_labii_upper", 1, "labiale_superius_laterale_left", {0, -1, -0.5}, 0.2, 4},
+      {"compressor_labii_lower", 1, "labiale_inferius_laterale_left", {0, 1, -0.5}, 0.2, 4},
       {"depressor_labii_inferioris_medial", 1, "labiale_inferius_laterale_left", {0.2, -1, 0}, 1.5, 8},
       {"depressor_labii_inferioris_lateral", 1, "labiale_inferius_laterale_left", {0.2, -1, 0}, 1.5, 8},
       {"depressor_anguli_oris", 1, "cheilion_left", {0.2, -1, 0}, 3, 11},

@@ -8,7 +8,7 @@ namespace fascia::bench {
 /// What an actuator alone at 1 ought to do: which landmark it moves, which way, and how far. The left side stands for
 /// both; `right`-ward counterparts mirror it. Directions are (lateral, up, forward) of the subject's left; travels millimetres.
 struct Expectation {
-  std::string actuator;  ///< without side
+  std::string actuator;  ///< without side; after "both:" both sides at once
   double value;          ///< it is set to
   std::string landmark;  ///< full name
   double direction[3];   ///< unit or not; the travel is measured along it

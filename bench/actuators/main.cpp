@@ -152,10 +152,13 @@ int run(const std::string& person, const Request& request) {
   int outside = 0;
   for (const Expectation& e : expectations()) {
     if (e.actuator.find(request.only) == std::string::npos) continue;
-    const std::string name = is_channel(face, e.actuator) ? e.actuator : e.actuator + "_left";
+    const bool is_both = e.actuator.rfind("both:", 0) == 0;
+    const std::string bare = is_both ? e.actuator.substr(5) : e.actuator;
+    const std::string name = is_channel(face, bare) ? bare : bare + "_left";
     face.clear();
     face.reset();
     face.set(name, e.value);
+    if (is_both) face.set(bare + "_right", e.value);
     const auto begin = std::chrono::steady_clock::now();
     face.pose();
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -167,7 +170,7 @@ int run(const std::string& person, const Request& request) {
                 motion.y(), motion.z(), travel, e.least, e.most, fits ? " " : "*", seconds);
     if (renderer) {
       char caption[64];
-      std::snprintf(caption, sizeof caption, "%.27s %+.1f", e.actuator.c_str(), travel);
+      std::snprintf(caption, sizeof caption, "%.27s %+.1f", bare.c_str(), travel);
       tiles.push_back({renderer->draw(cli::draw_face(face, built->rig, cli::layers_from(request.layers)), camera_for(built->rig, e.landmark, request.zoom)), caption});
     }
   }

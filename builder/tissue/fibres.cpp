@@ -8,18 +8,7 @@
 namespace fascia::tissue {
 namespace {
 
-/// The SMAS layer under the outer skin: what fibres are laid on.
-struct OuterSmas {
-  TriangleMesh mesh;            // vertices: all columns' SMAS places
-  explicit OuterSmas(const Columns& c) {
-    mesh.vertices = c.smas;
-    for (const fascia::Triangle& t : c.mesh.triangles) {
-      bool outer = true;
-      for (const int v : t) outer = outer && c.outer[static_cast<size_t>(v)];
-      if (outer) mesh.triangles.push_back(t);
-    }
-  }
-};
+constexpr double deep_course = 0.010;  // metres from the fascia, beyond which a fibre no longer goes with it
 
 /// `points` thinned so that steps are at least `spacing` long; both ends stay.
 std::vector<size_t> thinned(const std::vector<rig::Vec3f>& points, size_t first, size_t last, double spacing) {
@@ -43,27 +32,84 @@ bool meets_fellow(const rig::Muscle& muscle, size_t first, size_t last) {
          std::abs(muscle.points[last - 1].x()) < 0.006F && std::abs(way.x()) > 0.5F * way.norm();
 }
 
-/// The lining of the lips as triangles of columns.
-TriangleMesh lip_lining(const Columns& c) {
-  TriangleMesh mesh;
-  mesh.vertices = c.mesh.vertices;
-  for (const fascia::Triangle& t : c.mesh.triangles) {
-    bool lining = true;
-    for (const int v : t)
-      lining = lining && !c.outer[static_cast<size_t>(v)] && c.opening_distance[static_cast<size_t>(Opening::mouth)][static_cast<size_t>(v)] < 0.03;
-    if (lining) mesh.triangles.push_back(t);
-  }
-  return mesh;
+/// Whether a fibre comes from behind the globe to a lid, as the levator's do.
+bool is_from_orbit(const TissueInputs& inputs, const rig::Muscle& muscle, size_t first, size_t last) {
+  const rig::Vec3f &begin = muscle.points[first], &end = muscle.points[last - 1];
+  const rig::Eye eye = eye_of(inputs, end.x() > 0.0F);
+  return muscle.origin == rig::FibreEnd::cranium && begin.z() < eye.centre.z() - eye.radius &&
+         (end - eye.centre).norm() < eye.radius + 0.006F;
 }
 
-/// Adds one point of a fibre that lies on `triangle` of the layer that begins at node `layer`.
-void add_point(uint32_t layer, const fascia::Triangle& t, const Vec3& barycentric, const rig::Vec3f& place, rig::FibreEnd end, double taper,
-               rig::TissueLevel& level) {
+bool is_bony(rig::FibreEnd end) { return end == rig::FibreEnd::cranium || end == rig::FibreEnd::mandible; }
+
+/// A layer of the lattice, to find what a fibre's points go with.
+struct LayerSurface {
+  TriangleMesh mesh;  ///< vertices: all columns' places
+  std::optional<spatial::SurfaceQuery> query;
+  template <class Has>
+  LayerSurface(const std::vector<Vec3>& places, const Columns& c, const Has& has) {
+    mesh.vertices = places;
+    for (const fascia::Triangle& t : c.mesh.triangles)
+      if (std::all_of(t.begin(), t.end(), [&](int v) { return has(static_cast<size_t>(v)); })) mesh.triangles.push_back(t);
+    if (!mesh.triangles.empty()) query.emplace(mesh);
+  }
+};
+
+/// What fibres are laid on: the SMAS under the outer skin, the lining of the lips, and the SMAS layer of the lids with their lining,
+/// where the tarsal plates are.
+struct Surfaces {
+  LayerSurface outer, lips, lids;
+  explicit Surfaces(const Columns& c)
+      : outer(c.smas, c, [&](size_t v) { return c.outer[v]; }),
+        lips(c.mesh.vertices, c, [&](size_t v) { return !c.outer[v] && c.opening_distance[static_cast<size_t>(Opening::mouth)][v] < 0.03; }),
+        lids(c.smas, c, [&](size_t v) {
+          return std::min(c.opening_distance[static_cast<size_t>(Opening::eye_left)][v],
+                          c.opening_distance[static_cast<size_t>(Opening::eye_right)][v]) < 0.010;
+        }) {}
+};
+
+/// Adds one point of a fibre that goes with the place nearest to it on `surface`, whose nodes begin at `layer`.
+void add_point(const LayerSurface& surface, uint32_t layer, const rig::Vec3f& point, rig::FibreEnd end, double taper, rig::TissueLevel& level) {
+  const SurfacePoint place = surface.query->closest(point.cast<double>()).surface;
+  const fascia::Triangle& t = surface.mesh.triangles[static_cast<size_t>(place.triangle)];
   level.fibre_nodes.push_back({layer + static_cast<uint32_t>(t[0]), layer + static_cast<uint32_t>(t[1]), layer + static_cast<uint32_t>(t[2])});
-  level.fibre_weights.push_back(barycentric.cast<float>());
-  level.fibre_rest.push_back(place);
+  level.fibre_weights.push_back(place.barycentric.cast<float>());
+  level.fibre_rest.push_back(point);
   level.fibre_anchor.push_back(end);
   level.fibre_taper.push_back(static_cast<float>(std::clamp(taper, 0.15, 1.0)));
+}
+
+/// A fibre of a compressor runs through the lip from its skin to its lining.
+void lay_through(const rig::Muscle& muscle, const std::vector<size_t>& kept, const Surfaces& surfaces, rig::TissueLevel& level) {
+  add_point(surfaces.outer, 0, muscle.points[kept.front()], rig::FibreEnd::skin, 1.0, level);
+  add_point(surfaces.lips, 0, muscle.points[kept.back()], rig::FibreEnd::skin, 1.0, level);
+}
+
+/// A fibre from the orbit goes over the globe as over a pulley and ends on the tarsal plate, which takes its pull whole.
+void lay_from_orbit(const rig::Muscle& muscle, const std::vector<size_t>& kept, uint32_t smas, const Surfaces& surfaces, rig::TissueLevel& level) {
+  for (const size_t k : kept)
+    add_point(surfaces.lids, smas, muscle.points[k], k == kept.back() ? rig::FibreEnd::smas : muscle.origin, 1.0, level);
+}
+
+/// A fibre along the fascia. `spread`: metres over which its pull comes in at a free end.
+void lay_along(const rig::Muscle& muscle, const std::vector<size_t>& kept, const std::vector<double>& along, double spread, bool meets_fellow,
+               uint32_t smas, const Surfaces& surfaces, rig::TissueLevel& level) {
+  const double length = along.back();
+  bool is_deep = is_bony(muscle.origin);
+  for (size_t k = 0; k < kept.size(); ++k) {
+    const rig::Vec3f& point = muscle.points[kept[k]];
+    const bool is_last = k + 1 == kept.size();
+    // Where it still runs far beneath the fascia its sheath holds it by the bone.
+    is_deep = is_deep && !is_last && surfaces.outer.query->closest(point.cast<double>()).distance > deep_course;
+    const rig::FibreEnd end = k == 0 || is_deep ? muscle.origin : is_last ? muscle.insertion : rig::FibreEnd::smas;
+    // A free end takes up the pull over a few millimetres, so that no node is drawn out alone.
+    const double middle = is_last ? length : 0.5 * (along[k] + along[k + 1]);
+    double taper = 1.0;
+    // Slung over the bridge of the nose, a muscle ends on its fellow of the other side, which holds it.
+    if (!is_bony(muscle.insertion) && !meets_fellow) taper = std::min(taper, (length - middle) / spread);
+    if (!is_bony(muscle.origin)) taper = std::min(taper, middle / spread);
+    add_point(surfaces.outer, end == rig::FibreEnd::skin ? 0 : smas, point, end, taper, level);
+  }
 }
 
 }  // namespace
@@ -75,20 +121,15 @@ int channel_index(const std::vector<rig::Channel>& channels, const std::string& 
 }
 
 void add_fibres(const TissueInputs& inputs, const TissueOptions& options, const Columns& c, rig::TissueLevel& level) {
-  const OuterSmas outer(c);
   level.fibre_offsets.assign(1, 0);
-  if (outer.mesh.empty()) return;
-  const spatial::SurfaceQuery query(outer.mesh);
-  const TriangleMesh lining = lip_lining(c);
-  std::optional<spatial::SurfaceQuery> inside;
-  if (!lining.empty()) inside.emplace(lining);
-  const auto n = static_cast<uint32_t>(c.count());
+  const Surfaces surfaces(c);
+  if (!surfaces.outer.query) return;
+  const auto smas = static_cast<uint32_t>(c.count());
   for (size_t m = 0; m < inputs.muscles.size(); ++m) {
     const rig::Muscle& muscle = inputs.muscles[m];
     const int channel = channel_index(inputs.channels, muscle.name);
     if (channel < 0 || muscle.fibre_offsets.size() < 2) continue;
-    const auto bony = [](rig::FibreEnd end) { return end == rig::FibreEnd::cranium || end == rig::FibreEnd::mandible; };
-    if (bony(muscle.origin) && bony(muscle.insertion)) continue;  // moves the jaw, not the fascia it lies under
+    if (is_bony(muscle.origin) && is_bony(muscle.insertion)) continue;  // moves the jaw, not the fascia it lies under
     const size_t fibres = muscle.fibre_offsets.size() - 1;
     for (size_t f = 0; f < fibres; ++f) {
       const size_t first = muscle.fibre_offsets[f], last = muscle.fibre_offsets[f + 1];
@@ -99,30 +140,12 @@ void add_fibres(const TissueInputs& inputs, const TissueOptions& options, const 
         along[k] = along[k - 1] + static_cast<double>((muscle.points[kept[k]] - muscle.points[kept[k - 1]]).norm());
       const double length = along.back();
       if (!(length > 1e-4)) continue;
-      // Compressors run through the lip from its skin to its lining.
-      const bool is_through = muscle.kind == "compressor" && inside;
-      for (size_t k = 0; k < kept.size(); ++k) {
-        if (is_through && k > 0 && k + 1 < kept.size()) continue;
-        const rig::Vec3f& point = muscle.points[kept[k]];
-        const bool is_last = k + 1 == kept.size();
-        if (is_through) {
-          const SurfacePoint place = (is_last ? *inside : query).closest(point.cast<double>()).surface;
-          add_point(0, (is_last ? lining : outer.mesh).triangles[static_cast<size_t>(place.triangle)], place.barycentric, point, rig::FibreEnd::skin, 1.0, level);
-          continue;
-        }
-        const rig::FibreEnd end = k == 0 ? muscle.origin : is_last ? muscle.insertion : rig::FibreEnd::smas;
-        const SurfacePoint place = query.closest(point.cast<double>()).surface;
-        // A free end takes up the pull over a few millimetres, so that no node is drawn out alone.
-        const double middle = is_last ? length : 0.5 * (along[k] + along[k + 1]);
-        // A ring that hangs on one bone gives its pull to the skin all along its way.
-        const bool hung_ring = muscle.kind == "sphincter_ring" && bony(muscle.origin) != bony(muscle.insertion);
-        const double spread = hung_ring ? 0.9 * length : std::min(options.material.insertion_spread, 0.35 * length);
-        double taper = 1.0;
-        // Slung over the bridge of the nose, a muscle ends on its fellow of the other side, which holds it.
-        if (!bony(muscle.insertion) && !meets_fellow(muscle, first, last)) taper = std::min(taper, (length - middle) / spread);
-        if (!bony(muscle.origin)) taper = std::min(taper, middle / spread);
-        add_point(end == rig::FibreEnd::skin ? 0 : n, outer.mesh.triangles[static_cast<size_t>(place.triangle)], place.barycentric, point, end, taper, level);
-      }
+      // A ring that hangs on one bone gives its pull to the skin all along its way.
+      const bool hung_ring = muscle.kind == "sphincter_ring" && is_bony(muscle.origin) != is_bony(muscle.insertion);
+      const double spread = hung_ring ? 0.9 * length : std::min(options.material.insertion_spread, 0.35 * length);
+      if (muscle.kind == "compressor" && surfaces.lips.query) lay_through(muscle, kept, surfaces, level);
+      else if (surfaces.lids.query && is_from_orbit(inputs, muscle, first, last)) lay_from_orbit(muscle, kept, smas, surfaces, level);
+      else lay_along(muscle, kept, along, spread, meets_fellow(muscle, first, last), smas, surfaces, level);
       level.fibre_offsets.push_back(static_cast<uint32_t>(level.fibre_nodes.size()));
       level.fibre_muscle.push_back(static_cast<uint32_t>(m));
       level.fibre_channel.push_back(static_cast<uint32_t>(channel));
