@@ -9,6 +9,7 @@
 #include "builder/spatial/triangle.h"
 #include "builder/tissue/bind.h"
 #include "builder/tissue/distance.h"
+#include "builder/tissue/laplacian.h"
 
 namespace fascia::tissue {
 namespace {
@@ -82,29 +83,97 @@ void smooth(const TriangleMesh& mesh, const Columns& c, int passes, std::vector<
   }
 }
 
+/// How far the rows are evened out at each vertex, metres: at the corners of the mouth and the edges of the lids.
+std::vector<double> easing(const TissueInputs& inputs, const FaceRegion& region) {
+  const Vec3 corners[] = {landmark(inputs, "cheilion_left"), landmark(inputs, "cheilion_right")};
+  std::vector<double> lengths(region.mesh.vertices.size());
+  for (size_t v = 0; v < lengths.size(); ++v) {
+    const Vec3& p = region.mesh.vertices[v];
+    const double corner = std::min((p - corners[0]).norm(), (p - corners[1]).norm());
+    const double lid = std::min(region.opening_distance[static_cast<size_t>(Opening::eye_left)][v],
+                                region.opening_distance[static_cast<size_t>(Opening::eye_right)][v]);
+    lengths[v] = std::max(0.0015 * (1.0 - smoothstep(0.010, 0.018, corner)), 0.0007 * (1.0 - smoothstep(0.003, 0.008, lid)));
+  }
+  return lengths;
+}
+
+/// Evens out rows along the surface over `reach` (metres, #vertices): at the corners of the mouth a few tenths of a millimetre of skin
+/// span what opens by centimetres, and across the lattice's few triangles there the skin would turn over at every crease.
+void ease(const TriangleMesh& mesh, const std::vector<double>& reach, std::vector<Row>& rows) {
+  std::vector<bool> keep(mesh.triangles.size());
+  for (size_t t = 0; t < keep.size(); ++t)
+    keep[t] = std::any_of(mesh.triangles[t].begin(), mesh.triangles[t].end(), [&](int v) { return reach[static_cast<size_t>(v)] > 0.0; });
+  std::vector<int> patch_vertex;
+  const TriangleMesh patch = submesh(mesh, keep, &patch_vertex);
+  if (patch.empty()) return;
+  std::vector<size_t> vertex(patch.vertices.size());
+  std::vector<double> lengths(patch.vertices.size());
+  std::map<uint32_t, Eigen::Index> column;
+  for (size_t v = 0; v < rows.size(); ++v) {
+    if (patch_vertex[v] < 0) continue;
+    const auto at = static_cast<size_t>(patch_vertex[v]);
+    vertex[at] = v;
+    lengths[at] = reach[v];
+    for (const auto& entry : rows[v]) column.emplace(entry.first, 0);
+  }
+  Eigen::Index count = 0;
+  for (auto& entry : column) entry.second = count++;
+  Eigen::MatrixXd weights = Eigen::MatrixXd::Zero(patch.vertex_count(), count);
+  for (size_t at = 0; at < vertex.size(); ++at)
+    for (const auto& [node, weight] : rows[vertex[at]]) weights(static_cast<Eigen::Index>(at), column.at(node)) = weight;
+  SurfaceSmoother(patch, lengths).smooth(weights);
+  for (size_t at = 0; at < vertex.size(); ++at) {
+    rows[vertex[at]].clear();
+    for (const auto& [node, k] : column)
+      if (const double weight = weights(static_cast<Eigen::Index>(at), k); weight > 1e-4) rows[vertex[at]][node] = weight;
+  }
+}
+
 void add(const Row& from, double share, Row& to) {
   for (const auto& [node, weight] : from) to[node] += share * weight;
 }
 
-/// The strongest entries, their sum kept.
-Follow pack(const Row& row) {
+/// Shifts the first weights of a row that lost its others so that it stands where it stood, in multiples of themselves:
+/// neighbours whose rows were cut at different entries keep moving alike.
+void keep_place(const std::vector<std::pair<double, uint32_t>>& entries, size_t kept, const std::vector<Vec3>& places, std::vector<double>& weights) {
+  Eigen::Matrix4d moments = Eigen::Matrix4d::Zero();
+  Eigen::Vector4d lost = Eigen::Vector4d::Zero();
+  const Vec3 origin = places[entries[0].second];
+  for (size_t k = 0; k < entries.size(); ++k) {
+    Eigen::Vector4d at;
+    at << 1.0, (places[entries[k].second] - origin) / 0.002;
+    if (k < kept) moments += weights[k] * at * at.transpose();
+    else lost -= entries[k].first * at;
+  }
+  moments += 1e-3 * Eigen::Vector4d(1e-6, 1.0, 1.0, 1.0).asDiagonal().toDenseMatrix();  // columns in one plane say nothing off it
+  const Eigen::Vector4d share = moments.ldlt().solve(lost);
+  double sum = 0.0, wanted = 0.0;
+  for (const auto& entry : entries) wanted -= entry.first;
+  for (size_t k = 0; k < kept; ++k) {
+    Eigen::Vector4d at;
+    at << 1.0, (places[entries[k].second] - origin) / 0.002;
+    weights[k] *= std::max(0.0, 1.0 + share.dot(at));
+    sum += weights[k];
+  }
+  for (double& weight : weights) weight *= wanted / std::max(sum, 1e-12);
+}
+
+/// The strongest entries, their sum and their mean place kept.
+Follow pack(const Row& row, const std::vector<Vec3>& places) {
   std::vector<std::pair<double, uint32_t>> order;
-  double total = 0.0, kept = 0.0;
   Follow follow;
   for (const auto& [node, weight] : row) {
-    if (node == jaw_entry) {
-      follow.jaw = static_cast<float>(weight);
-      continue;
-    }
-    order.emplace_back(-weight, node);
-    total += weight;
+    if (node == jaw_entry) follow.jaw = static_cast<float>(weight);
+    else order.emplace_back(-weight, node);
   }
   std::sort(order.begin(), order.end());
-  if (order.size() > Follow::influences) order.resize(Follow::influences);
-  for (const auto& [negative, node] : order) kept -= negative;
-  for (size_t k = 0; k < order.size() && kept > 0.0; ++k) {
+  const size_t kept = std::min(order.size(), Follow::influences);
+  std::vector<double> weights;
+  for (size_t k = 0; k < kept; ++k) weights.push_back(-order[k].first);
+  if (kept < order.size()) keep_place(order, kept, places, weights);
+  for (size_t k = 0; k < kept; ++k) {
     follow.nodes[k] = order[k].second;
-    follow.weights[k] = static_cast<float>(-order[k].first * total / kept);
+    follow.weights[k] = static_cast<float>(weights[k]);
   }
   return follow;
 }
@@ -167,6 +236,7 @@ void smooth_deep(const std::vector<std::vector<int>>& neighbours, const std::vec
 std::vector<Follow> follow_skin(const TissueInputs& inputs, const FaceRegion& region, const Columns& c) {
   std::vector<Row> rows = rows_of_region(region, c);
   smooth(region.mesh, c, 2, rows);
+  ease(region.mesh, easing(inputs, region), rows);
   std::vector<Row> skin(inputs.skin.vertices.size());
   std::vector<DistanceSeed> edge;
   for (size_t v = 0; v < rows.size(); ++v) {
@@ -188,7 +258,7 @@ std::vector<Follow> follow_skin(const TissueInputs& inputs, const FaceRegion& re
   }
   smooth_deep(vertex_neighbours(inputs.skin), deep_mouth, 10, skin);
   std::vector<Follow> follow(skin.size());
-  for (size_t v = 0; v < skin.size(); ++v) follow[v] = pack(skin[v]);
+  for (size_t v = 0; v < skin.size(); ++v) follow[v] = pack(skin[v], c.mesh.vertices);
   return follow;
 }
 

@@ -63,4 +63,9 @@ void SurfaceSmoother::smooth(std::vector<Vec3>& values) const {
   }
 }
 
+void SurfaceSmoother::smooth(Eigen::MatrixXd& values) const {
+  for (Eigen::Index v = 0; v < values.rows(); ++v) values.row(v) *= areas_[static_cast<size_t>(v)] + 1e-14;
+  values = solver_.solve(values).eval();
+}
+
 }  // namespace fascia::tissue

@@ -22,6 +22,7 @@ class SurfaceSmoother {
   SurfaceSmoother(const TriangleMesh& mesh, const std::vector<double>& lengths);
   void smooth(std::vector<double>& values) const;
   void smooth(std::vector<Vec3>& values) const;
+  void smooth(Eigen::MatrixXd& values) const;  ///< a function a column
 
  private:
   std::vector<double> areas_;
