@@ -10,7 +10,7 @@ namespace {
 
 double cotangent(const Vec3& corner, const Vec3& a, const Vec3& b) {
   const Vec3 u = a - corner, v = b - corner;
-  return std::clamp(u.dot(v) / std::max(u.cross(v).norm(), 1e-12), 0.05, 10.0);
+  return std::clamp(u.dot(v) / std::max(u.cross(v).norm(), 1e-12), -1.0, 10.0);
 }
 
 }  // namespace

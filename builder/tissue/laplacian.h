@@ -12,7 +12,7 @@ namespace fascia::tissue {
 std::vector<double> vertex_areas(const TriangleMesh& mesh);
 
 /// The cotangent Laplacian of `mesh`, positive semidefinite, each edge's weight times the product of its ends' `lengths` (metres).
-/// Cotangents are kept between 0.05 and 10, so that no weight is negative.
+/// Cotangents are kept between -1 and 10: slivers weigh no more than that.
 Eigen::SparseMatrix<double> laplacian(const TriangleMesh& mesh, const std::vector<double>& lengths);
 
 /// Evens out functions on a surface over about `lengths` (#vertices, metres) by one implicit step of diffusion: what comes
