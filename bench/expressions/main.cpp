@@ -3,19 +3,24 @@
 // mean error over vertices of the skin that move more than 0.5 mm. Beside them what tells a wrong amplitude from a wrong
 // direction: the factor that would serve best, and the share explained with it.
 //
-//   bench_expressions [neutral|person_0|...]... [--sheet FILE.png] [--level NAME] [--rigs DIR]
+//   bench_expressions [neutral|person_0|...]... [--sheet FILE.png] [--level NAME] [--rigs DIR] [--remeshed]
 //
+// With --remeshed copies of each head cut into other triangles are scored too, and how far their poses lie from the head's own
+// where either moves by more than 0.5 mm.
 // With --rigs the rigs are left in DIR and nothing is scored.
 //
 // Doing nothing scores 0 and about 3 mm, a half-amplitude copy 0.75 and 1.5 mm. mouthClose is scored as jawOpen + mouthClose.
 // The shapes are one sculpted, nearly mirrored set shared by all people: a reference, not an independent sample.
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <memory>
 
 #include "anatomy/anatomy.h"
 #include "bench/expressions/measured_shapes.h"
+#include "bench/expressions/remeshed.h"
 #include "builder/rigging/build_rig.h"
 #include "builder/rigging/gltf_source.h"
 #include "builder/spatial/surface_query.h"
@@ -141,22 +146,51 @@ void add_tiles(std::vector<view::Tile>& tiles, const view::Renderer& renderer, c
   }
 }
 
+/// A rig built from `scene`, its file gone with this.
+struct Subject {
+  fs::path path;
+  std::unique_ptr<cli::Face> face;
+  Subject(const formats::Scene& scene, const formats::LandmarkFile& landmarks, const std::string& name, const std::string& level,
+          const fs::path& kept = {})
+      : path(kept.empty() ? fs::temp_directory_path() / ("fascia_bench_" + name + ".glb") : kept), is_kept(!kept.empty()) {
+    rigging::BuildOptions options;
+    if (!level.empty()) options.detail = level;
+    const rigging::BuildResult built = rigging::build_rig(scene, landmarks, anatomy::load_generic(), options);
+    const std::vector<uint8_t> bytes = rig::write(rigging::gltf_source(scene, built.report.input_to_metres), built.rig);
+    formats::write_bytes(path, bytes.data(), bytes.size());
+    if (!is_kept) face = std::make_unique<cli::Face>(path, cli::Face::Options{FASCIA_SPACE_INPUT, "own", level});
+  }
+  Subject(const Subject&) = delete;
+  ~Subject() {
+    std::error_code ignored;
+    if (!is_kept) fs::remove(path, ignored);
+  }
+
+ private:
+  bool is_kept;
+};
+
+/// What plays a measured shape, and what it should look like.
+struct Goal {
+  std::map<std::string, double> values;
+  std::vector<Vec3> truth;
+};
+
+std::map<std::string, Goal> goals() {
+  const std::vector<MeasuredShape> shapes = measured_shapes(measured / "expressions.glb", "head");
+  std::map<std::string, Goal> goals;
+  for (const MeasuredShape& shape : shapes) goals[shape.name] = {{{"arkit:" + shape.name, 1.0}}, shape.displacement};
+  Goal& close = goals.at("mouthClose");
+  close.values["arkit:jawOpen"] = 1.0;
+  for (size_t v = 0; v < close.truth.size(); ++v) close.truth[v] += goals.at("jawOpen").truth[v];
+  return goals;
+}
+
 void run_person(const std::string& person, const std::string& level, const std::string& sheet, const std::string& rigs) {
   const formats::Scene scene = formats::read(measured / (person + ".glb"));
-  const auto anatomy = anatomy::load_generic();
-  rigging::BuildOptions options;
-  if (!level.empty()) options.detail = level;
-  const rigging::BuildResult built = rigging::build_rig(scene, landmarks_on(scene), anatomy, options);
-  const std::vector<uint8_t> bytes = rig::write(rigging::gltf_source(scene, built.report.input_to_metres), built.rig);
-  const fs::path rig_path = (rigs.empty() ? fs::temp_directory_path() / "fascia_bench_" : fs::path(rigs) / "").string() + person + ".glb";
-  formats::write_bytes(rig_path, bytes.data(), bytes.size());
+  const Subject subject(scene, landmarks_on(scene), person, level, rigs.empty() ? fs::path() : fs::path(rigs) / (person + ".glb"));
   if (!rigs.empty()) return;
-  cli::Face face(rig_path, {FASCIA_SPACE_INPUT, "own", level});
   const formats::SceneMesh& head = head_mesh(scene);
-  const std::vector<MeasuredShape> shapes = measured_shapes(measured / "expressions.glb", "head");
-  std::map<std::string, const MeasuredShape*> by_name;
-  for (const MeasuredShape& shape : shapes) by_name[shape.name] = &shape;
-
   std::printf("%s\n%-22s %9s %9s %9s %7s %10s %10s\n", person.c_str(), "shape", "explained", "all skin", "error mm", "turned",
               "best scale", "share at it");
   std::vector<view::Tile> tiles;
@@ -164,32 +198,63 @@ void run_person(const std::string& person, const std::string& level, const std::
   if (!sheet.empty()) renderer = std::make_unique<view::Renderer>(300, 340);
   double sum = 0.0, skin_sum = 0.0, best_sum = 0.0, errors = 0.0, sum_without_look = 0.0;
   int without_look = 0;
-  for (const MeasuredShape& shape : shapes) {
-    std::map<std::string, double> values = {{"arkit:" + shape.name, 1.0}};
-    std::vector<Vec3> truth = shape.displacement;
-    if (shape.name == "mouthClose") {
-      values["arkit:jawOpen"] = 1.0;
-      for (size_t v = 0; v < truth.size(); ++v) truth[v] += by_name.at("jawOpen")->displacement[v];
-    }
-    const std::vector<Vec3> simulated = simulated_displacement(face, values);
-    const Score result = score(head.positions, head.triangles, simulated, truth);
-    std::printf("%-22s %9.3f %9.3f %9.2f %7d %10.2f %10.3f\n", shape.name.c_str(), result.explained, result.skin_explained,
+  const std::map<std::string, Goal> shapes = goals();
+  for (const auto& [name, goal] : shapes) {
+    const std::vector<Vec3> simulated = simulated_displacement(*subject.face, goal.values);
+    const Score result = score(head.positions, head.triangles, simulated, goal.truth);
+    std::printf("%-22s %9.3f %9.3f %9.2f %7d %10.2f %10.3f\n", name.c_str(), result.explained, result.skin_explained,
                 result.error_mm, result.turned, result.best_scale, result.at_best_scale);
     sum += result.explained;
     skin_sum += result.skin_explained;
     best_sum += result.at_best_scale;
     errors += result.error_mm;
-    if (shape.name.rfind("eyeLook", 0) != 0) {
+    if (name.rfind("eyeLook", 0) != 0) {
       sum_without_look += result.explained;
       ++without_look;
     }
-    if (renderer) add_tiles(tiles, *renderer, head, simulated, truth, shape.name, result);
+    if (renderer) add_tiles(tiles, *renderer, head, simulated, goal.truth, name, result);
   }
   const auto count = static_cast<double>(shapes.size());
   std::printf("%-22s %9.3f %9.3f %9.2f %29.3f\n%-22s %9.3f\n\n", "mean", sum / count, skin_sum / count, errors / count,
               best_sum / count, "mean without eyeLook", sum_without_look / without_look);
   if (renderer) view::write_png(sheet, view::contact_sheet(tiles, 9));
-  fs::remove(rig_path);
+}
+
+/// The same head in other triangles: its score, and how far its poses lie from the original's.
+void run_copies(const std::string& person, const std::string& level) {
+  const formats::Scene scene = formats::read(measured / (person + ".glb"));
+  const formats::LandmarkFile landmarks = landmarks_on(scene);
+  const Subject original(scene, landmarks, person, level);
+  const std::map<std::string, Goal> shapes = goals();
+  for (const char* kind : {"half", "uneven"}) {
+    const RemeshedCopy copy = remeshed_copy(scene, "head", kind);
+    const Subject subject(copy.scene, landmarks, person + "_" + kind, level);
+    const auto is_face = [&](size_t v) { return copy.head[v].vertices[0] < face_vertices; };
+    std::printf("%s, %s: %zu vertices instead of %zu\n%-22s %9s %9s %12s %9s\n", person.c_str(), kind, copy.head.size(), head_mesh(scene).positions.size(),
+                "shape", "explained", "original", "apart: mean", "95 % mm");
+    double sum[4] = {};
+    for (const auto& [name, goal] : shapes) {
+      const std::vector<Vec3> own = carried_over(copy, simulated_displacement(*original.face, goal.values));
+      const std::vector<Vec3> truth = carried_over(copy, goal.truth), simulated = simulated_displacement(*subject.face, goal.values);
+      double all = 0.0, miss[2] = {}, mean = 0.0;
+      std::vector<double> apart;
+      for (size_t v = 0; v < truth.size(); ++v) {
+        if (!is_face(v)) continue;
+        all += truth[v].squaredNorm();
+        miss[0] += (simulated[v] - truth[v]).squaredNorm();
+        miss[1] += (own[v] - truth[v]).squaredNorm();
+        if (std::max(own[v].norm(), simulated[v].norm()) < 0.0005) continue;
+        apart.push_back(1e3 * (own[v] - simulated[v]).norm());
+        mean += apart.back();
+      }
+      std::sort(apart.begin(), apart.end());
+      const double row[] = {1.0 - miss[0] / all, 1.0 - miss[1] / all, apart.empty() ? 0.0 : mean / static_cast<double>(apart.size()),
+                            apart.empty() ? 0.0 : apart[apart.size() * 95 / 100]};
+      std::printf("%-22s %9.3f %9.3f %12.2f %9.2f\n", name.c_str(), row[0], row[1], row[2], row[3]);
+      for (size_t k = 0; k < 4; ++k) sum[k] += row[k] / static_cast<double>(shapes.size());
+    }
+    std::printf("%-22s %9.3f %9.3f %12.2f %9.2f\n\n", "mean", sum[0], sum[1], sum[2], sum[3]);
+  }
 }
 
 }  // namespace
@@ -199,11 +264,13 @@ void run_person(const std::string& person, const std::string& level, const std::
 int main(int argc, char** argv) {
   std::vector<std::string> people;
   std::string sheet, level, rigs;
+  bool remeshed = false;
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
     if (word == "--sheet" && i + 1 < argc) sheet = argv[++i];
     else if (word == "--level" && i + 1 < argc) level = argv[++i];
     else if (word == "--rigs" && i + 1 < argc) rigs = argv[++i];
+    else if (word == "--remeshed") remeshed = true;
     else people.push_back(word);
   }
   if (people.empty()) people = {"neutral"};
@@ -212,7 +279,10 @@ int main(int argc, char** argv) {
     return 0;
   }
   try {
-    for (const std::string& person : people) fascia::bench::run_person(person, level, sheet, rigs);
+    for (const std::string& person : people) {
+      fascia::bench::run_person(person, level, sheet, rigs);
+      if (remeshed) fascia::bench::run_copies(person, level);
+    }
   } catch (const std::exception& error) {
     std::fprintf(stderr, "bench_expressions: %s\n", error.what());
     return 1;
