@@ -123,9 +123,12 @@ void ease(const TriangleMesh& mesh, const std::vector<double>& reach, std::vecto
     for (const auto& [node, weight] : rows[vertex[at]]) weights(static_cast<Eigen::Index>(at), column.at(node)) = weight;
   SurfaceSmoother(patch, lengths).smooth(weights);
   for (size_t at = 0; at < vertex.size(); ++at) {
-    rows[vertex[at]].clear();
+    const auto even = weights.row(static_cast<Eigen::Index>(at)).unaryExpr([](double w) { return w > 1e-4 ? w : 0.0; });
+    const double kept = even.sum(), whole = weights.row(static_cast<Eigen::Index>(at)).sum();
+    Row row;
     for (const auto& [node, k] : column)
-      if (const double weight = weights(static_cast<Eigen::Index>(at), k); weight > 1e-4) rows[vertex[at]][node] = weight;
+      if (even[k] > 0.0) row[node] = even[k] * whole / kept;
+    rows[vertex[at]] = std::move(row);
   }
 }
 
