@@ -50,10 +50,11 @@ struct TissueMaterial {
   double density = 1000.0;           ///< kilogram a cubic metre
   double fibre_shortest_factor = 1.6;///< the pull ends at this multiple of the muscle's peak shortening
   double insertion_spread = 0.006;   ///< over which a fibre's pull comes in at its free end
-  double mouth_pressure = 3000.0;    ///< behind the cheeks at channel value 1; trumpeters blow with 1 to 25 kPa (Fletcher & Tarnopolsky 1999)
+  double mouth_pressure = 3500.0;    ///< behind the cheeks at channel value 1; trumpeters blow with 1 to 25 kPa (Fletcher & Tarnopolsky 1999)
   double gum_hold = 480.0;           ///< pascal: stiffness a length with which the gums hold the lips' lining at its fold
   double lip_drive = 1.5e5;          ///< pascal per metre: stiffness an area with which lips follow their roll
   double lid_hold = 1.0e6;           ///< pascal per metre: stiffness an area with which the tarsal plates keep their place on the globe
+  double lid_drive = 1.45;           ///< times that, with which they are moved: the skin around them takes some of it up
 };
 
 /// How fine a level is: roughly how many columns, and how edge length grows from lips and lids outward.

@@ -90,7 +90,10 @@ void add_eye(const TissueInputs& inputs, const TissueOptions& options, const Fac
     // The plate goes as one, full at the edge and in the lining; none beyond the canthi. Above it the skin folds in at
     // the crease, where the levator's aponeurosis holds it.
     const double across = smoothstep(-0.18, 0.02, place) * (1.0 - smoothstep(0.98, 1.18, place));
-    const double fade = (c.outer[v] ? 1.0 - smoothstep(0.004, is_upper ? 0.012 : 0.013, distance) : 1.0) * across;
+    const double reach = !c.outer[v] ? 1.0 - 0.5 * smoothstep(0.001, 0.006, distance)
+                         : is_upper  ? 1.0 - smoothstep(0.002, 0.009, distance)
+                                     : 1.0 - smoothstep(0.004, 0.013, distance);
+    const double fade = reach * across;
     const double held = std::max(fade, c.outer[v] && is_upper ? across * (1.0 - smoothstep(0.010, 0.015, distance)) : 0.0);
     const auto globe = static_cast<uint32_t>(level.globe_centre.size() - 1);
     for (const size_t node : {v, n + v}) {
@@ -102,10 +105,11 @@ void add_eye(const TissueInputs& inputs, const TissueOptions& options, const Fac
     for (const size_t node : {v, n + v}) {
       const double stiffness = options.material.lid_hold * c.area[v] * held;
       // A positive turn about the leftward axis lowers what lies in front.
+      const double drive = options.material.lid_drive * stiffness;
       const size_t before = level.carrier_node.size();
-      if (is_upper && close >= 0) carry(level, close, node, f, f.lateral, 0.85 * gap * fade, stiffness, 0.38);  // the levator lifts it some 3 mm above rest
-      if (!is_upper && raise >= 0) carry(level, raise, node, f, f.lateral, -0.22 * gap * fade, stiffness);
-      if (pitch >= 0) carry(level, pitch, node, f, f.lateral, (is_upper ? -0.75 : -0.4) * fade, stiffness);
+      if (is_upper && close >= 0) carry(level, close, node, f, f.lateral, gap * fade, drive, 0.26);  // the levator lifts it some 3 mm above rest
+      if (!is_upper && raise >= 0) carry(level, raise, node, f, f.lateral, -0.22 * gap * fade, drive);
+      if (pitch >= 0) carry(level, pitch, node, f, f.lateral, (is_upper ? -0.75 : -0.4) * fade, drive);
       // Horner's part of the pretarsal muscle draws the plates, the lower one most, towards the nose.
       const int draw = is_upper ? draw_upper : draw_lower;
       if (draw >= 0) carry(level, draw, node, f, f.up, (left ? -1.0 : 1.0) * (is_upper ? 0.10 : 0.30) * fade, stiffness);

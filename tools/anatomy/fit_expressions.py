@@ -307,6 +307,7 @@ def main():
         name = shape + "Left" if entry.get("paired") else shape
         base = dict(rows[entry["corrects"]]["weights"]) if "corrects" in entry else {}
         base.update(entry.get("given", {}))
+        base.update(entry.get("bones", {}))  # muscles of mastication, which move the jaw beside its own channels
         fit = Fit(faces, [shapes[name]] * len(faces), weight, base)
         params, x, u = fit.pruned(parameters(entry, faces[0]))
         found = {}
@@ -316,7 +317,7 @@ def main():
         found = {n: v for n, v in found.items() if abs(v) >= 0.005}
         for n, v in entry.get("given", {}).items():
             found[n] = v
-        for n, v in entry.get("bones", {}).items():  # muscles that move bones are shown at work; they move no skin
+        for n, v in entry.get("bones", {}).items():
             found.setdefault(n, v)
         order = sorted(found, key=lambda n: -abs(found[n]))
         rows[name]["weights"] = {n: found[n] for n in order}
