@@ -27,7 +27,7 @@ std::vector<double> target_lengths(const TissueInputs& inputs, const FaceRegion&
     // Where lips join, edges as long as elsewhere would bridge them.
     const Vec3& p = region.mesh.vertices[v];
     const double corner = std::min((p - corners[0]).norm(), (p - corners[1]).norm());
-    lengths[v] *= options.corner_ratio + (1.0 - options.corner_ratio) * std::clamp(corner / options.corner_growth - 0.3, 0.0, 1.0);
+    lengths[v] *= level.corner_ratio + (1.0 - level.corner_ratio) * std::clamp(corner / options.corner_growth - 0.3, 0.0, 1.0);
   }
   const double scale = edge_scale_for(region.mesh, lengths, level.columns);
   for (double& length : lengths) length *= scale;
