@@ -163,14 +163,14 @@ void add_pressures(const TissueInputs& inputs, const TissueOptions& options, con
     if (channel < 0) continue;
     for (size_t t = 0; t < c.mesh.triangles.size(); ++t) {
       Vec3 centre = Vec3::Zero();
-      bool outer = true;
+      double outer = 0.0;  // on the lips' edge part of a triangle
       for (const int v : c.mesh.triangles[t]) {
         centre += c.mesh.vertices[static_cast<size_t>(v)] / 3.0;
-        outer = outer && c.outer[static_cast<size_t>(v)];
+        outer += c.outer[static_cast<size_t>(v)] ? 1.0 / 3.0 : 0.0;
       }
       // The two sides share the middle of the lips.
       const double own = vestibule.side(centre, side > 0.0);
-      const double share = outer ? own * vestibule.share(centre) : 0.0;
+      const double share = outer * own * vestibule.share(centre);
       if (share < 0.02) continue;
       level.pressure_channel.push_back(static_cast<uint32_t>(channel));
       level.pressure_prism.push_back(static_cast<uint32_t>(t));
