@@ -49,32 +49,86 @@ struct OuterSkin {
   }
 };
 
-/// Each connected piece (a lash card, a strand) follows the skin at its root, or vertex by vertex if it is long.
+/// The connected pieces of a part: lash cards, strands, or all in one.
+struct Pieces {
+  std::vector<int> vertex_map;   // #part vertices, made with the mesh
+  TriangleMesh mesh;             // welded
+  std::vector<int> piece;        // #welded vertices, -1 of a loose one
+  std::vector<double> size;      // #pieces, metres, across their boxes
+  explicit Pieces(const PartMesh& part) : mesh(weld({part.vertices, part.triangles}, 1e-6, &vertex_map)) {
+    int count = 0;
+    const std::vector<int> piece_of_triangle = components(mesh, &count);
+    piece.assign(mesh.vertices.size(), -1);
+    std::vector<Bounds> box(static_cast<size_t>(count));
+    for (size_t t = 0; t < mesh.triangles.size(); ++t)
+      for (const int v : mesh.triangles[t]) {
+        piece[static_cast<size_t>(v)] = piece_of_triangle[t];
+        Bounds& bounds = box[static_cast<size_t>(piece_of_triangle[t])];
+        bounds.lower = bounds.lower.cwiseMin(mesh.vertices[static_cast<size_t>(v)]);
+        bounds.upper = bounds.upper.cwiseMax(mesh.vertices[static_cast<size_t>(v)]);
+      }
+    for (const Bounds& bounds : box) size.push_back(bounds.size().norm());
+  }
+};
+
+/// Lashes and brows: each vertex follows the skin at the root that is nearest along its own piece, a small piece at one root.
 void follow_roots(const PartMesh& part, const OuterSkin& outer, const std::vector<Follow>& skin, rig::Binding& binding) {
-  TriangleMesh mesh{part.vertices, part.triangles};
-  std::vector<int> vertex_map;
-  const TriangleMesh welded = weld(mesh, 1e-6, &vertex_map);
-  int pieces = 0;
-  const std::vector<int> piece_of_triangle = components(welded, &pieces);
-  std::vector<int> piece(welded.vertices.size(), -1);
-  for (size_t t = 0; t < welded.triangles.size(); ++t)
-    for (const int v : welded.triangles[t]) piece[static_cast<size_t>(v)] = piece_of_triangle[t];
-  std::vector<Bounds> box(static_cast<size_t>(pieces));
-  std::vector<OuterSkin::Place> root(static_cast<size_t>(pieces), {-1, 1e9});
-  for (size_t v = 0; v < piece.size(); ++v) {
-    if (piece[v] < 0) continue;
-    const auto p = static_cast<size_t>(piece[v]);
-    box[p].lower = box[p].lower.cwiseMin(welded.vertices[v]);
-    box[p].upper = box[p].upper.cwiseMax(welded.vertices[v]);
-    const OuterSkin::Place place = outer.at(welded.vertices[v]);
-    if (place.distance < root[p].distance) root[p] = place;
+  constexpr double small = 0.014, root_depth = 0.0008, reach = 0.02;  // metres
+  const Pieces pieces(part);
+  std::vector<OuterSkin::Place> place;
+  std::vector<double> nearest(pieces.size.size(), 1e9);
+  for (size_t v = 0; v < pieces.mesh.vertices.size(); ++v) {
+    place.push_back(outer.at(pieces.mesh.vertices[v]));
+    if (pieces.piece[v] < 0) continue;
+    double& least = nearest[static_cast<size_t>(pieces.piece[v])];
+    least = std::min(least, place[v].distance);
+  }
+  std::vector<DistanceSeed> roots;
+  std::vector<bool> has_root(nearest.size(), false);
+  for (size_t v = 0; v < place.size(); ++v) {
+    if (pieces.piece[v] < 0) continue;
+    const auto p = static_cast<size_t>(pieces.piece[v]);
+    const bool is_small = pieces.size[p] < small;
+    if (place[v].distance > nearest[p] + (is_small ? 0.0 : root_depth) || (is_small && has_root[p])) continue;
+    has_root[p] = true;
+    roots.push_back({static_cast<int>(v)});
+  }
+  const EdgeDistances way = edge_distances(pieces.mesh, roots);
+  for (size_t v = 0; v < part.vertices.size(); ++v) {
+    const auto w = static_cast<size_t>(pieces.vertex_map[v]);
+    const int root = way.seed[w];
+    const OuterSkin::Place& at = root >= 0 ? place[static_cast<size_t>(roots[static_cast<size_t>(root)].vertex)] : place[w];
+    if (at.skin_vertex >= 0 && at.distance < reach) put(binding, v, skin[static_cast<size_t>(at.skin_vertex)]);
+  }
+}
+
+/// Hair: a strand goes with the skin at its root, so a moustache with the lip and the scalp's hair with nothing. What is larger, a
+/// cap or a whole beard, clings to the skin it lies on and less the farther off.
+void follow_scalp(const PartMesh& part, const TissueInputs& inputs, const spatial::SurfaceQuery& whole, const std::vector<Follow>& skin,
+                  rig::Binding& binding) {
+  constexpr double strand = 0.06, near = 0.008, far = 0.02;  // metres
+  const auto skin_at = [&](const spatial::ClosestPoint& hit) {
+    int corner = 0;
+    hit.surface.barycentric.maxCoeff(&corner);
+    return static_cast<size_t>(inputs.skin.triangles[static_cast<size_t>(hit.surface.triangle)][static_cast<size_t>(corner)]);
+  };
+  const Pieces pieces(part);
+  std::vector<spatial::ClosestPoint> place;
+  std::vector<size_t> root(pieces.size.size(), pieces.mesh.vertices.size());
+  for (size_t v = 0; v < pieces.mesh.vertices.size(); ++v) {
+    place.push_back(whole.closest(pieces.mesh.vertices[v]));
+    if (pieces.piece[v] < 0) continue;
+    size_t& best = root[static_cast<size_t>(pieces.piece[v])];
+    if (best == pieces.mesh.vertices.size() || place[v].distance < place[best].distance) best = v;
   }
   for (size_t v = 0; v < part.vertices.size(); ++v) {
-    const auto w = static_cast<size_t>(vertex_map[v]);
-    const int p = w < piece.size() ? piece[w] : -1;
-    const bool small = p >= 0 && box[static_cast<size_t>(p)].size().norm() < 0.014;
-    const OuterSkin::Place place = small ? root[static_cast<size_t>(p)] : outer.at(part.vertices[v]);
-    if (place.skin_vertex >= 0 && place.distance < 0.02) put(binding, v, skin[static_cast<size_t>(place.skin_vertex)]);
+    const auto w = static_cast<size_t>(pieces.vertex_map[v]);
+    if (pieces.piece[w] < 0) continue;
+    const auto p = static_cast<size_t>(pieces.piece[w]);
+    const bool is_strand = pieces.size[p] < strand;
+    const spatial::ClosestPoint& at = place[is_strand ? root[p] : w];
+    const double share = std::clamp((far - at.distance) / (far - near), 0.0, 1.0);
+    if (share > 0.0) put(binding, v, skin[skin_at(at)], share);
   }
 }
 
@@ -134,6 +188,9 @@ std::vector<rig::Binding> bind_parts(const TissueInputs& inputs, const FaceRegio
       std::fill(binding.eye.begin(), binding.eye.end(), static_cast<uint8_t>(part.part == "eye_left" ? 1 : 2));
     } else if (part.part == "lashes" || part.part == "brows") {
       follow_roots(part, outer, skin, binding);
+    } else if (part.part == "hair") {
+      if (!whole) whole.emplace(inputs.skin);
+      follow_scalp(part, inputs, *whole, skin, binding);
     } else if (part.part == "mouth_interior") {
       binding.jaw_weights = between_the_jaws(part, inputs);
     } else if (part.part == "other" || part.part == "eye_surround") {
