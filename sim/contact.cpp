@@ -8,9 +8,14 @@
 namespace fascia::sim {
 namespace {
 
-constexpr double facing_reach = 0.006;  // metres before a surface within which lips and lids see one another
-constexpr double facing_depth = 0.0025; // metres behind one: what lies deeper has come from somewhere else
-constexpr double facing_slip = 0.0015;  // metres beside it
+/// Where a place may lie that sees a facing surface, metres.
+struct Sight {
+  double reach;  ///< before the surface
+  double depth;  ///< behind it: what lies deeper has come from somewhere else
+  double slip;   ///< beside it
+};
+constexpr Sight lips = {0.006, 0.0025, 0.0015};
+constexpr Sight lids = {0.014, 0.0040, 0.0040};  // edges that meet head on across the whole fissure
 
 /// Weights of the point of a triangle that is closest to `p` (Ericson 2005, section 5.1.5).
 Vec3 closest_weights(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -109,12 +114,19 @@ Contacts::Contacts(const Lattice& lattice, const std::vector<Vec3>& rest, const 
     bone_fields_.push_back(lattice.contact_field[c]);
     bone_margins_.push_back(std::min(options.thickness, distance));
   }
-  std::array<std::map<uint32_t, std::vector<uint32_t>>, 6> fans;
+  std::array<std::map<uint32_t, uint32_t>, 6> fans;  // node -> its place in the side's fans
   for (size_t f = 0; f < lattice.facing_prism.size(); ++f) {
     Side& side = sides_[lattice.facing_side[f]];
-    for (const uint32_t corner : lattice.triangles[lattice.facing_prism[f]])
-      fans[lattice.facing_side[f]][corner].push_back(static_cast<uint32_t>(side.triangles.size()));
+    auto& known = fans[lattice.facing_side[f]];
+    const auto triangle = static_cast<uint32_t>(side.triangles.size());
     side.triangles.push_back(lattice.triangles[lattice.facing_prism[f]]);
+    auto& corners = side.corners.emplace_back();
+    for (size_t k = 0; k < 3; ++k) {
+      const auto [fan, is_new] = known.try_emplace(side.triangles.back()[k], static_cast<uint32_t>(side.fans.size()));
+      if (is_new) side.fans.emplace_back();
+      side.fans[fan->second].push_back(triangle);
+      corners[k] = fan->second;
+    }
   }
   for (size_t s = 0; s < 6; ++s)
     for (const auto& [node, fan] : fans[s]) {
@@ -123,13 +135,13 @@ Contacts::Contacts(const Lattice& lattice, const std::vector<Vec3>& rest, const 
       facing_sides_.push_back(static_cast<uint8_t>(s));
       facing_fans_.push_back(fan);
     }
-  facing_margins_.assign(facing_nodes_.size(), options.thickness);
+  for (const uint8_t side : facing_sides_) facing_margins_.push_back(side < 2 ? options.thickness : options.lid_thickness);
   for (size_t i = 0; i < facing_nodes_.size(); ++i) {
     FacingPair pair;
     pair_of(i, rest.data(), pair);
-    if (pair.is_found()) facing_margins_[i] = std::min(options.thickness, pair.gap(rest.data()));
+    if (pair.is_found()) facing_margins_[i] = std::min(facing_margins_[i], pair.gap(rest.data()));
     // Where a mesh's closed lips run into each other at rest there is no telling what is before what.
-    if (facing_margins_[i] < -0.0005) facing_fans_[i].clear();
+    if (facing_margins_[i] < -0.0005) facing_fans_[i] = FacingPair::none;
   }
 }
 
@@ -216,31 +228,43 @@ void Contacts::add_curvature(const RigidTransform& mandible, std::span<const Fac
   }
 }
 
+Vec3 Contacts::fan_area(const Side& side, uint32_t fan, const Vec3* x) {
+  Vec3 area = Vec3::Zero();
+  for (const uint32_t t : side.fans[fan]) area += area_of(side.triangles[t], x);
+  return area;
+}
+
 void Contacts::pair_of(size_t contact, const Vec3* x, FacingPair& pair) const {
   pair.node = facing_nodes_[contact];
   pair.corners.fill(FacingPair::none);
   pair.margin = facing_margins_[contact];
-  const Side &own = sides_[facing_sides_[contact]], &other = sides_[facing_sides_[contact] ^ 1U];
-  Vec3 facing = Vec3::Zero();
-  for (const uint32_t t : facing_fans_[contact]) facing += area_of(own.triangles[t], x);
+  const uint8_t side = facing_sides_[contact];
+  const Side& other = sides_[side ^ 1U];
+  const Sight& sight = side < 2 ? lips : lids;
+  if (facing_fans_[contact] == FacingPair::none) return;
+  Vec3 facing = fan_area(sides_[side], facing_fans_[contact], x);
   if (facing.squaredNorm() < 1e-30) return;
   facing.normalize();
   const Vec3& p = x[pair.node];
-  double best = facing_reach * facing_reach;
-  for (const auto& t : other.triangles) {
-    // A corner farther than the reach and the longest edge there is cannot be of the nearest triangle.
-    if ((x[t[0]] - p).squaredNorm() > (facing_reach + 0.012) * (facing_reach + 0.012)) continue;
+  constexpr double longest = 0.012;  // metres: no edge there is is longer
+  double best = sight.reach * sight.reach, within = sight.reach + longest;
+  for (size_t i = 0; i < other.triangles.size(); ++i) {
+    const auto& t = other.triangles[i];
+    if ((x[t[0]] - p).squaredNorm() > within * within) continue;
     const Vec3 weights = closest_weights(p, x[t[0]], x[t[1]], x[t[2]]);
-    const Vec3 place = weights[0] * x[t[0]] + weights[1] * x[t[1]] + weights[2] * x[t[2]];
-    const double distance = (p - place).squaredNorm();
-    if (distance >= best) continue;
-    const Vec3 area = area_of(t, x);
-    const double size = area.norm();
-    if (size < 1e-15 || area.dot(facing) > 0.2 * size) continue;  // its back, or a surface that runs along
-    const Vec3 normal = area / size, away = p - place;
+    const Vec3 away = p - (weights[0] * x[t[0]] + weights[1] * x[t[1]] + weights[2] * x[t[2]]);
+    const double distance = away.squaredNorm();
+    if (distance >= best || area_of(t, x).squaredNorm() < 1e-30) continue;
+    // Between the corners' normals: where a surface turns about an edge, as a lid does, its triangles' own would lead past it.
+    Vec3 normal = Vec3::Zero();
+    for (size_t k = 0; k < 3; ++k) normal += weights[static_cast<int>(k)] * fan_area(other, other.corners[i][k], x).stableNormalized();
+    const double size = normal.norm();
+    if (size < 0.1 || normal.dot(facing) > 0.2 * size) continue;  // its back, or a surface that runs along
+    normal /= size;
     const double along = normal.dot(away);
-    if (along < -facing_depth || (away - along * normal).squaredNorm() > facing_slip * facing_slip) continue;
+    if (along < -sight.depth || (away - along * normal).squaredNorm() > sight.slip * sight.slip) continue;
     best = distance;
+    within = std::sqrt(best) + longest;
     pair.corners = t;
     pair.weights = weights;
     pair.normal = normal;

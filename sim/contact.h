@@ -16,7 +16,8 @@ struct ContactOptions {
   double globe_stiffness = 200.0;   ///< newton per metre a node
   double bone_stiffness = 150.0;    ///< newton per metre a node
   double facing_stiffness = 150.0;  ///< newton per metre a node
-  double thickness = 0.0004;        ///< metres kept between skin and bone, skin and skin
+  double thickness = 0.0004;        ///< metres kept between skin and bone, lip and lip
+  double lid_thickness = -0.0003;   ///< between lid and lid: edges overlap a little, so that no slit is left between nodes
   double friction = 0.3;            ///< of moist mucosa and skin, Coulomb's coefficient; in steps of time only
   double stickiness = 0.0;          ///< 0..1: how far lips that have met hold together before they part; in steps of time only
 };
@@ -43,7 +44,7 @@ struct FacingPair {
   uint32_t node = none;
   std::array<uint32_t, 3> corners{none, none, none};  ///< none: it faces nothing now
   Vec3 weights = Vec3::Zero();
-  Vec3 normal = Vec3::Zero();  ///< unit, outward of the triangle's side
+  Vec3 normal = Vec3::Zero();  ///< unit, outward of the triangle's side, between its corners' normals
   double margin = 0.0;         ///< gap that must remain
   bool is_found() const { return corners[0] != none; }
   double gap(const Vec3* x) const {
@@ -103,6 +104,8 @@ class Contacts {
  private:
   struct Side {
     std::vector<std::array<uint32_t, 3>> triangles;
+    std::vector<std::array<uint32_t, 3>> corners;  ///< of each triangle: its corners' places in `fans`
+    std::vector<std::vector<uint32_t>> fans;       ///< of each node: the side's triangles around it
   };
   struct Touch {
     double depth = 0.0;
@@ -110,6 +113,7 @@ class Contacts {
   };
   Touch globe_touch(size_t contact, const Vec3* x) const;
   Touch bone_touch(size_t contact, const RigidTransform& mandible, const Vec3* x) const;
+  static Vec3 fan_area(const Side& side, uint32_t fan, const Vec3* x);
   void pair_of(size_t contact, const Vec3* x, FacingPair& pair) const;
 
   ContactOptions options_;
@@ -124,7 +128,7 @@ class Contacts {
   std::vector<uint32_t> facing_nodes_;
   std::vector<uint8_t> facing_sides_;
   std::vector<double> facing_margins_;
-  std::vector<std::vector<uint32_t>> facing_fans_;  ///< of each facing node: its side's triangles around it
+  std::vector<uint32_t> facing_fans_;  ///< of each facing node: its place in its side's `fans`
 };
 
 }  // namespace fascia::sim

@@ -29,7 +29,7 @@ void add_ligaments(const TissueInputs& inputs, const Columns& columns, rig::Tiss
 /// Distance fields of the bones with their teeth, and which nodes may touch them.
 void add_contact(const TissueInputs& inputs, const Columns& columns, rig::TissueLevel& level);
 
-/// Lips before lips: which skin may touch which. (Lids meet by how far their carriers take them.)
-void add_facing(const Columns& columns, rig::TissueLevel& level);
+/// Lips before lips, lids before lids: which skin may touch which.
+void add_facing(const TissueInputs& inputs, const FaceRegion& region, const Columns& columns, rig::TissueLevel& level);
 
 }  // namespace fascia::tissue

@@ -49,7 +49,7 @@ TissueResult build(const TissueInputs& inputs, const TissueOptions& options) {
     if (options.contact) {
       add_ligaments(inputs, columns, level);
       add_contact(inputs, columns, level);
-      add_facing(columns, level);
+      add_facing(inputs, region, columns, level);
     }
     if (const char* fault = sim::lattice_fault(sim::lattice_of(level)))
       throw Error("the " + wanted.name + " tissue lattice came out unsound (" + fault + "): check the head's skin around lips and lids");

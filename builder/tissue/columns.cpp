@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "builder/tissue/fissure.h"
 #include "builder/tissue/laplacian.h"
 #include "geometry/connectivity.h"
 #include "sim/energies.h"
@@ -32,6 +33,42 @@ std::vector<double> target_lengths(const TissueInputs& inputs, const FaceRegion&
   const double scale = edge_scale_for(region.mesh, lengths, level.columns);
   for (double& length : lengths) length *= scale;
   return lengths;
+}
+
+/// Moves the vertex nearest to each place of the lids' edges onto it, where that turns no triangle: an edge between two rows of
+/// columns would be cut off, and lids that meet would meet beside it.
+void settle_on_lid_edges(const TissueInputs& inputs, const FaceRegion& region, RemeshResult& remeshed) {
+  TriangleMesh& mesh = remeshed.mesh;
+  const auto around = triangles_around(mesh);
+  std::vector<double> moved(mesh.vertices.size(), 1e9);
+  std::vector<Vec3> before = mesh.vertices;
+  const std::vector<double> areas = vertex_areas(mesh);
+  for (const bool left : {true, false}) {
+    const Fissure fissure(inputs, region, left);
+    for (const SurfacePoint& place : fissure.edges()) {
+      const Vec3 there = position(region.mesh, place);
+      size_t nearest = 0;
+      for (size_t v = 1; v < before.size(); ++v)
+        if ((before[v] - there).squaredNorm() < (before[nearest] - there).squaredNorm()) nearest = v;
+      const double way = (before[nearest] - there).norm();
+      if (way > 0.7 * std::sqrt(areas[nearest]) || way > moved[nearest]) continue;
+      const Vec3 here = mesh.vertices[nearest];
+      bool is_sound = true;
+      std::vector<std::pair<Vec3, double>> old;
+      for (const int t : around[nearest]) old.emplace_back(triangle_normal(mesh, t), triangle_area(mesh, t));
+      mesh.vertices[nearest] = there;
+      for (size_t k = 0; k < old.size(); ++k) {
+        const int t = around[nearest][k];
+        is_sound = is_sound && triangle_normal(mesh, t).dot(old[k].first) > 0.3 && triangle_area(mesh, t) > 0.3 * old[k].second;
+      }
+      if (is_sound) {
+        moved[nearest] = way;
+        remeshed.source[nearest] = place;
+      } else {
+        mesh.vertices[nearest] = here;
+      }
+    }
+  }
 }
 
 void place_layers(Columns& c) {
@@ -82,6 +119,7 @@ void place_layers(Columns& c) {
 Columns make_columns(const TissueInputs& inputs, const FaceRegion& region, const Beneath& beneath, const LevelOptions& level,
                      const TissueOptions& options) {
   RemeshResult remeshed = remesh(region.mesh, target_lengths(inputs, region, level, options));
+  settle_on_lid_edges(inputs, region, remeshed);
   Columns c;
   c.mesh = std::move(remeshed.mesh);
   c.source = std::move(remeshed.source);

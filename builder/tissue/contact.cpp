@@ -4,6 +4,7 @@
 
 #include "builder/spatial/surface_query.h"
 #include "builder/tissue/actuators.h"
+#include "builder/tissue/fissure.h"
 
 namespace fascia::tissue {
 namespace {
@@ -68,7 +69,47 @@ void add_contact(const TissueInputs& inputs, const Columns& c, rig::TissueLevel&
   }
 }
 
-void add_facing(const Columns& c, rig::TissueLevel& level) {
+namespace {
+
+void face(rig::TissueLevel& level, size_t triangle, uint8_t side) {
+  level.facing_prism.push_back(static_cast<uint32_t>(triangle));
+  level.facing_side.push_back(side);
+}
+
+/// The columns on either side of where skin turns into lining.
+std::vector<bool> edge_columns(const Columns& c) {
+  std::vector<bool> edge(static_cast<size_t>(c.count()));
+  for (const fascia::Triangle& t : c.mesh.triangles)
+    for (const int a : t)
+      for (const int b : t)
+        if (c.outer[static_cast<size_t>(a)] != c.outer[static_cast<size_t>(b)]) edge[static_cast<size_t>(a)] = true;
+  return edge;
+}
+
+/// The lids' edges, with the triangles around them.
+void add_lid_facing(const TissueInputs& inputs, const FaceRegion& region, const Columns& c, bool left, rig::TissueLevel& level) {
+  constexpr double depth = 0.010;  // metres along the skin from the opening
+  const Fissure fissure(inputs, region, left);
+  const auto& opening = c.opening_distance[static_cast<size_t>(left ? Opening::eye_left : Opening::eye_right)];
+  const std::vector<bool> edge = edge_columns(c);
+  for (size_t t = 0; t < c.mesh.triangles.size(); ++t) {
+    int upper = 0;
+    bool is_edge = false, is_near = true;
+    for (const int i : c.mesh.triangles[t]) {
+      const auto v = static_cast<size_t>(i);
+      const double place = fissure.place(c.mesh.vertices[v]);
+      is_edge = is_edge || edge[v];
+      is_near = is_near && opening[v] < depth && place > 0.0 && place < 1.0;
+      upper += fissure.is_upper(c.mesh.vertices[v]) ? 1 : 0;
+    }
+    if (!is_edge || !is_near || (upper != 0 && upper != 3)) continue;  // at the canthi both lids are one
+    face(level, t, static_cast<uint8_t>((left ? 2 : 4) + (upper == 3 ? 0 : 1)));
+  }
+}
+
+}  // namespace
+
+void add_facing(const TissueInputs& inputs, const FaceRegion& region, const Columns& c, rig::TissueLevel& level) {
   for (size_t t = 0; t < c.mesh.triangles.size(); ++t) {
     double lower = 0.0, distance = 0.0;
     for (const int i : c.mesh.triangles[t]) {
@@ -77,9 +118,9 @@ void add_facing(const Columns& c, rig::TissueLevel& level) {
       distance = std::max(distance, c.opening_distance[static_cast<size_t>(Opening::mouth)][v]);
     }
     if (distance > 0.012 || std::abs(lower - 0.5) < 0.06) continue;  // at the corner both lips are one
-    level.facing_prism.push_back(static_cast<uint32_t>(t));
-    level.facing_side.push_back(lower < 0.5 ? 0 : 1);
+    face(level, t, lower < 0.5 ? 0 : 1);
   }
+  for (const bool left : {true, false}) add_lid_facing(inputs, region, c, left, level);
 }
 
 }  // namespace fascia::tissue

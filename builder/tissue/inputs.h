@@ -54,7 +54,6 @@ struct TissueMaterial {
   double gum_hold = 480.0;           ///< pascal: stiffness a length with which the gums hold the lips' lining at its fold
   double lip_drive = 1.5e5;          ///< pascal per metre: stiffness an area with which lips follow their roll
   double lid_hold = 1.0e6;           ///< pascal per metre: stiffness an area with which the tarsal plates keep their place on the globe
-  double lid_drive = 1.45;           ///< times that, with which they are moved: the skin around them takes some of it up
 };
 
 /// How fine a level is: roughly how many columns, and how edge length grows from lips and lids outward.

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "builder/tissue/actuators.h"
-#include "builder/tissue/margin.h"
+#include "builder/tissue/fissure.h"
 
 namespace fascia::tissue {
 namespace {
@@ -13,68 +13,55 @@ double smoothstep(double low, double high, double x) {
   return t * t * (3.0 - 2.0 * t);
 }
 
-/// An eye's own axes: `lateral` from canthus to canthus (to the subject's left), `front` out of the fissure.
-struct EyeFrame {
-  Vec3 centre, lateral, front, up;
-  double radius, inner, outer;  // inner, outer: where along `lateral` the canthi lie
-  double elevation(const Vec3& p) const {
-    const Vec3 arm = p - centre;
-    return std::atan2(arm.dot(up), arm.dot(front));
-  }
-};
+// Shares of the fissure's height that a lid is driven at full value; what the skin's resistance takes is added, towards the
+// canthi most. Where lids meet they stop each other.
+constexpr double closing = 1.06, raising = 0.28;
+constexpr double canthal = 0.10;       // radians
+constexpr double opening_wide = 0.32;  // of closing: the levator lifts the lid some 3 mm above rest
 
-EyeFrame frame_of(const TissueInputs& inputs, bool left) {
-  const rig::Eye eye = eye_of(inputs, left);
-  const std::string side = left ? "_left" : "_right";
-  const Vec3 a = landmark(inputs, "endocanthion" + side), b = landmark(inputs, "exocanthion" + side);
-  EyeFrame f;
-  f.centre = eye.centre.cast<double>();
-  f.radius = static_cast<double>(eye.radius);
-  f.lateral = (left ? b - a : a - b).normalized();
-  f.front = 0.5 * (a + b) - f.centre;
-  f.front = (f.front - f.front.dot(f.lateral) * f.lateral).normalized();
-  f.up = f.front.cross(f.lateral);
-  const double s = (a - f.centre).dot(f.lateral), t = (b - f.centre).dot(f.lateral);
-  f.inner = std::min(s, t);
-  f.outer = std::max(s, t);
-  return f;
-}
-
-void carry(rig::TissueLevel& level, int channel, size_t node, const EyeFrame& f, const Vec3& axis, double angle, double stiffness,
-           double reverse_share = 1.0) {
+void carry(rig::TissueLevel& level, int channel, size_t node, const Fissure& f, const Vec3& axis, double angle, double stiffness,
+           double reverse) {
   level.carrier_channel.push_back(static_cast<uint32_t>(channel));
   level.carrier_node.push_back(static_cast<uint32_t>(node));
   level.carrier_origin.push_back(f.centre.cast<float>());
   level.carrier_axis.push_back(axis.cast<float>());
   level.carrier_angle.push_back(static_cast<float>(angle));
-  level.carrier_reverse.push_back(static_cast<float>(-reverse_share * angle));
+  level.carrier_reverse.push_back(static_cast<float>(reverse));
   level.carrier_stiffness.push_back(0.0F);
   level.carrier_drive.push_back(static_cast<float>(stiffness));
 }
 
-/// Half an eye's lids: nodes near the fissure, and what each channel does to them.
-void add_eye(const TissueInputs& inputs, const TissueOptions& options, const FaceRegion& region, const Columns& c, bool left, rig::TissueLevel& level) {
-  const EyeFrame f = frame_of(inputs, left);
-  const std::string side = left ? "_left" : "_right";
-  const auto opening = static_cast<size_t>(left ? Opening::eye_left : Opening::eye_right);
-  const auto n = static_cast<size_t>(c.count());
-  const auto place_of = [&](const Vec3& p) { return ((p - f.centre).dot(f.lateral) - f.inner) / (f.outer - f.inner); };
+/// How far the eye of a side reaches from its centre: the cornea's apex, or its radius where the head has no eyeball.
+double apex_of(const TissueInputs& inputs, bool left, const Fissure& f) {
+  double apex = f.radius;
+  for (const PartMesh& part : inputs.parts)
+    if (part.part == (left ? "eye_left" : "eye_right"))
+      for (const Vec3& p : part.vertices) {
+        const double distance = (p - f.centre).norm();
+        if (distance < 1.15 * f.radius) apex = std::max(apex, distance);
+      }
+  return apex;
+}
 
-  // The canthi's own elevation divides upper lid from lower.
-  const Vec3 canthi[] = {landmark(inputs, "endocanthion" + side), landmark(inputs, "exocanthion" + side)};
-  const auto middle = [&](double place) {
-    const double a = f.elevation(canthi[0]), b = f.elevation(canthi[1]);
-    const double t = left ? place : 1.0 - place;
-    return a + std::clamp(t, 0.0, 1.0) * (b - a);
-  };
-  Margin upper, lower;
-  for (const MarginPlace& p : margin_places(region, left ? Opening::eye_left : Opening::eye_right)) {
-    const double place = place_of(p.position), elevation = f.elevation(p.position);
-    (elevation > middle(place) ? upper : lower).add(place, {elevation, 0.0});
+/// What skin between columns near an opening needs over a ball of `radius`: several times the height of a chord as long as they
+/// stand apart, for triangles span more than that.
+double chord_room(const Columns& c, const std::vector<double>& opening, double radius) {
+  double area = 0.0;
+  int count = 0;
+  for (size_t v = 0; v < opening.size(); ++v) {
+    if (!(opening[v] < 0.008)) continue;
+    area += c.area[v];
+    ++count;
   }
-  std::vector<size_t> near;
-  for (size_t v = 0; v < n; ++v)
-    if (c.opening_distance[opening][v] < 0.016 && !c.rim[v]) near.push_back(v);
+  return 1e-4 + 4.0 * area / std::max(1, count) / (8.0 * radius);
+}
+
+/// An eye's lids: nodes near the fissure, and what each channel does to them.
+void add_eye(const TissueInputs& inputs, const TissueOptions& options, const FaceRegion& region, const Columns& c, bool left, rig::TissueLevel& level) {
+  const Fissure f(inputs, region, left);
+  const std::string side = left ? "_left" : "_right";
+  const auto& opening = c.opening_distance[static_cast<size_t>(left ? Opening::eye_left : Opening::eye_right)];
+  const auto n = static_cast<size_t>(c.count());
   const int close = channel_index(inputs.channels, "lid_upper" + side);
   const int raise = channel_index(inputs.channels, "lid_lower" + side);
   const int draw_upper = channel_index(inputs.channels, "orbicularis_oculi_pretarsal_upper" + side);
@@ -83,38 +70,51 @@ void add_eye(const TissueInputs& inputs, const TissueOptions& options, const Fac
   const int pitch = channel_index(inputs.channels, "eye_pitch" + side);
   level.globe_centre.push_back(f.centre.cast<float>());
   level.globe_radius.push_back(static_cast<float>(f.radius));
-  for (const size_t v : near) {
+  // The cornea bulges before the globe, 7.8 mm round where the globe is 12 (Gray's Anatomy).
+  const double bulge = 0.65 * f.radius, apex = apex_of(inputs, left, f);
+  const bool has_cornea = apex > f.radius + 1e-4;
+  if (has_cornea) {
+    level.globe_centre.push_back((f.centre + (apex - bulge) * f.front).cast<float>());
+    level.globe_radius.push_back(static_cast<float>(bulge + chord_room(c, opening, bulge)));
+  }
+  for (size_t v = 0; v < n; ++v) {
+    if (!(opening[v] < 0.016) || c.rim[v]) continue;
     const Vec3& p = c.mesh.vertices[v];
-    const double place = place_of(p), elevation = f.elevation(p), distance = c.opening_distance[opening][v];
-    const bool is_upper = elevation > middle(place);
+    const double place = f.place(p), distance = opening[v];
+    const bool is_upper = f.is_upper(p);
     // The plate goes as one, full at the edge and in the lining; none beyond the canthi. Above it the skin folds in at
     // the crease, where the levator's aponeurosis holds it.
     const double across = smoothstep(-0.18, 0.02, place) * (1.0 - smoothstep(0.98, 1.18, place));
-    const double reach = !c.outer[v] ? 1.0 - 0.5 * smoothstep(0.001, 0.006, distance)
-                         : is_upper  ? 1.0 - smoothstep(0.002, 0.009, distance)
-                                     : 1.0 - smoothstep(0.004, 0.013, distance);
-    const double fade = reach * across;
+    const double fade = (c.outer[v] ? 1.0 - smoothstep(0.004, is_upper ? 0.012 : 0.013, distance) : 1.0) * across;
+    // Skin that the lid takes down unfolds from the crease, so that it goes less far than the edge.
+    const double unfolding = (c.outer[v] ? 1.0 - smoothstep(0.0015, 0.010, distance) : 1.0) * across;
     const double held = std::max(fade, c.outer[v] && is_upper ? across * (1.0 - smoothstep(0.010, 0.015, distance)) : 0.0);
-    const auto globe = static_cast<uint32_t>(level.globe_centre.size() - 1);
-    for (const size_t node : {v, n + v}) {
-      level.globe_contact_node.push_back(static_cast<uint32_t>(node));
-      level.globe_contact_globe.push_back(globe);
-    }
+    const auto last = static_cast<uint32_t>(level.globe_centre.size() - 1);
+    for (const size_t node : {v, n + v})
+      for (uint32_t globe = has_cornea ? last - 1 : last; globe <= last; ++globe) {
+        level.globe_contact_node.push_back(static_cast<uint32_t>(node));
+        level.globe_contact_globe.push_back(globe);
+      }
     if (held < 0.01) continue;
-    const double gap = std::max(0.0, upper.at(place).x() - lower.at(place).x());
+    const double gap = f.gap(place);
     for (const size_t node : {v, n + v}) {
       const double stiffness = options.material.lid_hold * c.area[v] * held;
       // A positive turn about the leftward axis lowers what lies in front.
-      const double drive = options.material.lid_drive * stiffness;
       const size_t before = level.carrier_node.size();
-      if (is_upper && close >= 0) carry(level, close, node, f, f.lateral, gap * fade, drive, 0.26);  // the levator lifts it some 3 mm above rest
-      if (!is_upper && raise >= 0) carry(level, raise, node, f, f.lateral, -0.22 * gap * fade, drive);
-      if (pitch >= 0) carry(level, pitch, node, f, f.lateral, (is_upper ? -0.75 : -0.4) * fade, drive);
+      const auto turn = [&](int channel, const Vec3& axis, double angle, double reverse) {
+        if (channel >= 0) carry(level, channel, node, f, axis, angle, stiffness, reverse);
+      };
+      const double coarse = std::max(0.0, std::sqrt(c.area[v]) - 0.002);  // metres: few columns give way to their neighbours more
+      const double lid = (closing + 60.0 * coarse) * gap + canthal * std::abs(2.0 * place - 1.0);
+      if (is_upper) turn(close, f.lateral, lid * unfolding, -opening_wide * lid * fade);
+      else turn(raise, f.lateral, -raising * gap * fade, raising * gap * fade);
+      const double follows = (is_upper ? 0.75 : 0.4) * fade;
+      turn(pitch, f.lateral, -follows, follows);
       // Horner's part of the pretarsal muscle draws the plates, the lower one most, towards the nose.
-      const int draw = is_upper ? draw_upper : draw_lower;
-      if (draw >= 0) carry(level, draw, node, f, f.up, (left ? -1.0 : 1.0) * (is_upper ? 0.10 : 0.30) * fade, stiffness);
+      const double drawn = (left ? -1.0 : 1.0) * (is_upper ? 0.10 : 0.30) * fade;
+      turn(is_upper ? draw_upper : draw_lower, f.up, drawn, -drawn);
       // The cornea's bulge takes both lids a little way sideways.
-      if (yaw >= 0) carry(level, yaw, node, f, f.up, 0.18 * fade, stiffness);
+      turn(yaw, f.up, 0.18 * fade, -0.18 * fade);
       // One of a node's carriers holds it, however many move it.
       if (level.carrier_node.size() > before) level.carrier_stiffness[before] = static_cast<float>(stiffness);
     }

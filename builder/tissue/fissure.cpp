@@ -1,0 +1,103 @@
+#include "builder/tissue/fissure.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace fascia::tissue {
+namespace {
+
+constexpr size_t steps = 33;
+constexpr double edge = 0.004;  // metres of skin beside the opening among which a lid's edge is looked for
+
+}  // namespace
+
+Fissure::Fissure(const TissueInputs& inputs, const FaceRegion& region, bool left) {
+  const rig::Eye eye = eye_of(inputs, left);
+  const std::string side = left ? "_left" : "_right";
+  const Vec3 inner = landmark(inputs, "endocanthion" + side), outer = landmark(inputs, "exocanthion" + side);
+  const Vec3 &a = left ? inner : outer, &b = left ? outer : inner;  // a to the subject's right
+  centre = eye.centre.cast<double>();
+  radius = static_cast<double>(eye.radius);
+  lateral = (b - a).normalized();
+  front = 0.5 * (a + b) - centre;
+  front = (front - front.dot(lateral) * lateral).normalized();
+  up = front.cross(lateral);
+  right_ = (a - centre).dot(lateral);
+  left_ = (b - centre).dot(lateral);
+  right_elevation_ = elevation(a);
+  left_elevation_ = elevation(b);
+  find_gaps(region, left);
+}
+
+double Fissure::elevation(const Vec3& p) const {
+  const Vec3 arm = p - centre;
+  return std::atan2(arm.dot(up), arm.dot(front));
+}
+
+double Fissure::place(const Vec3& p) const { return ((p - centre).dot(lateral) - right_) / (left_ - right_); }
+
+double Fissure::middle(double place) const {
+  return right_elevation_ + std::clamp(place, 0.0, 1.0) * (left_elevation_ - right_elevation_);
+}
+
+void Fissure::find_gaps(const FaceRegion& region, bool left) {
+  // A lid reaches over the globe to the lowest place of the upper one, the highest of the lower: not where the lining begins.
+  const auto& distance = region.opening_distance[static_cast<size_t>(left ? Opening::eye_left : Opening::eye_right)];
+  std::vector<double> upper(steps, 4.0), lower(steps, -4.0);
+  std::vector<SurfacePoint> upper_places(steps), lower_places(steps);
+  constexpr double last = steps - 1;
+  const auto look_along = [&](size_t t, size_t first, size_t second) {
+    const fascia::Triangle& corners = region.mesh.triangles[t];
+    const Vec3 &a = region.mesh.vertices[static_cast<size_t>(corners[first])], &b = region.mesh.vertices[static_cast<size_t>(corners[second])];
+    const double from = place(a) * last, to = place(b) * last;
+    if (!(from < to)) return;
+    for (double k = std::max(0.0, std::ceil(from)); k <= std::min(last, to); k += 1.0) {
+      const double share = (k - from) / (to - from), value = elevation(a + share * (b - a));
+      const bool above = is_upper(a + share * (b - a));
+      const auto step = static_cast<size_t>(k);
+      double& best = above ? upper[step] : lower[step];
+      if (above ? value >= best : value <= best) continue;
+      best = value;
+      SurfacePoint& place = above ? upper_places[step] : lower_places[step];
+      place.triangle = static_cast<int>(t);
+      place.barycentric.setZero();
+      place.barycentric[static_cast<int>(first)] = 1.0 - share;
+      place.barycentric[static_cast<int>(second)] = share;
+    }
+  };
+  for (size_t t = 0; t < region.mesh.triangles.size(); ++t)
+    for (size_t e = 0; e < 3; ++e) {
+      const auto a = static_cast<size_t>(region.mesh.triangles[t][e]), b = static_cast<size_t>(region.mesh.triangles[t][(e + 1) % 3]);
+      if (a >= distance.size() || b >= distance.size() || !(distance[a] < edge) || !(distance[b] < edge)) continue;
+      look_along(t, e, (e + 1) % 3);
+      look_along(t, (e + 1) % 3, e);
+    }
+  for (const auto* places : {&upper_places, &lower_places})
+    for (const SurfacePoint& place : *places)
+      if (place.triangle >= 0) edges_.push_back(place);
+  gaps_.assign(steps, -1.0);
+  for (size_t k = 0; k < steps; ++k)
+    if (upper[k] < 4.0 && lower[k] > -4.0) gaps_[k] = std::max(0.0, upper[k] - lower[k]);
+  gaps_.front() = gaps_.back() = 0.0;
+  for (size_t k = 1, known = 0; k < steps; ++k) {
+    if (gaps_[k] < 0.0) continue;
+    for (size_t i = known + 1; i < k; ++i)
+      gaps_[i] = gaps_[known] + (gaps_[k] - gaps_[known]) * static_cast<double>(i - known) / static_cast<double>(k - known);
+    known = k;
+  }
+  for (int pass = 0; pass < 2; ++pass) {
+    std::vector<double> next = gaps_;
+    for (size_t k = 1; k + 1 < steps; ++k) next[k] = 0.25 * (gaps_[k - 1] + 2.0 * gaps_[k] + gaps_[k + 1]);
+    gaps_ = std::move(next);
+  }
+}
+
+double Fissure::gap(double place) const {
+  const double x = std::clamp(place, 0.0, 1.0) * static_cast<double>(steps - 1);
+  const auto k = std::min(static_cast<size_t>(x), steps - 2);
+  const double t = x - static_cast<double>(k);
+  return (1.0 - t) * gaps_[k] + t * gaps_[k + 1];
+}
+
+}  // namespace fascia::tissue

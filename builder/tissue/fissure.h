@@ -1,0 +1,40 @@
+#pragma once
+
+#include <vector>
+
+#include "builder/tissue/region.h"
+
+namespace fascia::tissue {
+
+/// The opening between an eye's lids in axes of its own: how high a place lies as an angle about the globe, and where it lies
+/// between the canthi.
+class Fissure {
+ public:
+  /// From the lids' landmarks and the skin's own edge in `region`.
+  Fissure(const TissueInputs& inputs, const FaceRegion& region, bool left);
+
+  Vec3 centre, lateral, front, up;  ///< lateral: from canthus to canthus, to the subject's left; front: out of the fissure
+  double radius = 0.0;              ///< of the globe, metres
+
+  /// Angle above the front, radians.
+  double elevation(const Vec3& p) const;
+  /// 0 at the canthus to the subject's right .. 1 at the other, beyond them outside of that.
+  double place(const Vec3& p) const;
+  /// Above the line between the canthi, which divides upper lid from lower.
+  bool is_upper(const Vec3& p) const { return elevation(p) > middle(place(p)); }
+  /// How far the lids' edges stand apart at a place between the canthi, radians; 0 where they meet.
+  double gap(double place) const;
+  /// Places along both lids' edges, on the region's mesh, some millimetre apart.
+  const std::vector<SurfacePoint>& edges() const { return edges_; }
+
+ private:
+  double middle(double place) const;
+  void find_gaps(const FaceRegion& region, bool left);
+
+  double right_ = 0.0, left_ = 0.0;                      ///< the canthi along `lateral`
+  double right_elevation_ = 0.0, left_elevation_ = 0.0;  ///< the canthi
+  std::vector<SurfacePoint> edges_;
+  std::vector<double> gaps_;                             ///< in even steps from canthus to canthus
+};
+
+}  // namespace fascia::tissue

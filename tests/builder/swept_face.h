@@ -1,0 +1,68 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <random>
+
+#include "runtime/asset.h"
+#include "runtime/bound_mesh.h"
+#include "sim/realtime/face.h"
+#include "tests/builder/crossings.h"
+
+namespace fascia::testing {
+
+/// A face of a rig driven by chance, and what is to be asked of it whatever drives it.
+class SweptFace {
+ public:
+  /// `level` is an index into the rig's levels of detail.
+  SweptFace(std::shared_ptr<const runtime::Asset> asset, size_t level);
+
+  /// A drive by chance: half of the time a few members of the ARKit set together, else a quarter of all channels, each anywhere
+  /// in its range. Stays as it is until the next.
+  void draw(std::mt19937& random);
+  /// More of a channel or a set's member, such as "arkit:jawOpen", as what drives it.
+  void add(const std::string& name, float value);
+  std::vector<std::string> shapes() const;  ///< names of the ARKit set's members
+  /// Nothing as what drives it.
+  void relax();
+  sim::Drive drive() const;
+
+  void pose();                         ///< where the drive's forces balance
+  bool step(double seconds);           ///< false when the watchdog put the face back
+  void add_force(const sim::Vec3& acceleration) { acceleration_ = acceleration; }  ///< on all loose tissue, m/s^2
+  void touch(std::span<const sim::NodeForce> touches) { touches_ = touches; }
+
+  struct State {
+    bool is_finite = true;
+    int turned_prisms = 0;                                 ///< of negative volume
+    std::array<Crossings::Worst, 3> lattice, rendered;     ///< lips, left lids, right lids
+    void take(const State& other);
+  };
+  /// `tolerance` as in Crossings::find.
+  State state(double tolerance) const;
+  int turned_prisms() const;
+  /// The skin of the mesh as it stands, metres.
+  TriangleMesh skin() const;
+  std::span<const sim::Vec3f> displacements() const { return displacements_; }
+  const std::vector<float>& values() const { return values_; }
+  const runtime::Asset& asset() const { return *asset_; }
+  const sim::FaceModel& model() const { return *model_; }
+
+ private:
+  void add(const runtime::Target& target, float value);
+  void follow();
+
+  std::shared_ptr<const runtime::Asset> asset_;
+  size_t level_;
+  const sim::FaceModel* model_;
+  sim::realtime::Face face_;
+  std::vector<float> values_;
+  sim::Vec3 acceleration_ = sim::Vec3::Zero();
+  std::span<const sim::NodeForce> touches_;
+  std::vector<sim::Vec3f> displacements_;
+  std::vector<runtime::BoundMesh> meshes_;  ///< the skin's primitives
+  std::vector<Triangle> triangles_;         ///< of all of them
+  std::unique_ptr<Crossings> lattice_, rendered_;
+};
+
+}  // namespace fascia::testing
