@@ -84,7 +84,17 @@ FASCIA_INLINE Lanes square_root(const Lanes& a) {
 /// The greater of each; `b` where `a` is not a number.
 FASCIA_INLINE Lanes greater(const Lanes& a, const Lanes& b) {
   Lanes out;
-  for (size_t p = 0; p < part_count; ++p) out.part[p] = a.part[p] > b.part[p] ? a.part[p] : b.part[p];
+  for (size_t p = 0; p < part_count; ++p) {
+#if defined(__AVX512F__)
+    out.part[p] = _mm512_maskz_max_ps(0xffff, a.part[p], b.part[p]);
+#elif defined(__AVX2__)
+    out.part[p] = _mm256_max_ps(a.part[p], b.part[p]);
+#elif defined(__SSE2__)
+    out.part[p] = _mm_max_ps(a.part[p], b.part[p]);
+#else
+    out.part[p] = a.part[p] > b.part[p] ? a.part[p] : b.part[p];
+#endif
+  }
   return out;
 }
 FASCIA_INLINE Lanes greater(const Lanes& a, float b) { return greater(a, splat(b)); }
@@ -110,10 +120,18 @@ FASCIA_INLINE Lanes where_below(const Lanes& a, const Lanes& b, const Lanes& yes
   return out;
 }
 FASCIA_INLINE bool any_below(const Lanes& a, const Lanes& b) {
-  float gap[lane_count];
-  store(gap, a - b);
   bool any = false;
-  for (size_t l = 0; l < lane_count; ++l) any |= gap[l] < 0.0F;
+  for (size_t p = 0; p < part_count; ++p) {
+#if defined(__AVX512F__)
+    any |= _mm512_cmp_ps_mask(a.part[p], b.part[p], _CMP_LT_OQ) != 0;
+#elif defined(__AVX2__)
+    any |= _mm256_movemask_ps(_mm256_cmp_ps(a.part[p], b.part[p], _CMP_LT_OQ)) != 0;
+#elif defined(__SSE2__)
+    any |= _mm_movemask_ps(_mm_cmplt_ps(a.part[p], b.part[p])) != 0;
+#else
+    for (size_t l = 0; l < part_width; ++l) any |= a.part[p][l] < b.part[p][l];
+#endif
+  }
   return any;
 }
 
@@ -188,32 +206,100 @@ FASCIA_INLINE Lanes3 gather(const float* base, const int32_t* at) {
   return out;
 }
 
+/// A part's coordinates as places: the j-th quarter of out[k] is lane 4j + k.
+struct PartPlaces {
+  Part quad[4];
+};
+FASCIA_INLINE PartPlaces places_of(const Part& x, const Part& y, const Part& z, const Part& w) {
+  const Part low = FASCIA_SHUFFLE(x, y, 0, 1, 4, 5), high = FASCIA_SHUFFLE(x, y, 2, 3, 6, 7);
+  const Part low_z = FASCIA_SHUFFLE(z, w, 0, 1, 4, 5), high_z = FASCIA_SHUFFLE(z, w, 2, 3, 6, 7);
+  return {{FASCIA_SHUFFLE(low, low_z, 0, 2, 4, 6), FASCIA_SHUFFLE(low, low_z, 1, 3, 5, 7), FASCIA_SHUFFLE(high, high_z, 0, 2, 4, 6),
+           FASCIA_SHUFFLE(high, high_z, 1, 3, 5, 7)}};
+}
+// Quarters are named by constants: taken in a loop, compilers go through memory float by float.
+#if defined(__AVX512F__)
+#define FASCIA_QUARTER(part, j) __builtin_shufflevector(part, part, 4 * (j), 4 * (j) + 1, 4 * (j) + 2, 4 * (j) + 3)
+#define FASCIA_EACH_QUARTER(what) what(0) what(1) what(2) what(3)
+#elif defined(__AVX2__)
+#define FASCIA_QUARTER(part, j) __builtin_shufflevector(part, part, 4 * (j), 4 * (j) + 1, 4 * (j) + 2, 4 * (j) + 3)
+#define FASCIA_EACH_QUARTER(what) what(0) what(1)
+#else
+#define FASCIA_QUARTER(part, j) (part)
+#define FASCIA_EACH_QUARTER(what) what(0)
+#endif
+
 /// Writes the sixteen as places, one after the other, `fourth` behind the coordinates.
 FASCIA_INLINE void interleave(const Lanes3& value, const Lanes& fourth, float* to) {
-  for (size_t p = 0; p < part_count; ++p) {
-    const Part x = value.x.part[p], y = value.y.part[p], z = value.z.part[p], w = fourth.part[p];
-    const Part low = FASCIA_SHUFFLE(x, y, 0, 1, 4, 5), high = FASCIA_SHUFFLE(x, y, 2, 3, 6, 7);
-    const Part low_z = FASCIA_SHUFFLE(z, w, 0, 1, 4, 5), high_z = FASCIA_SHUFFLE(z, w, 2, 3, 6, 7);
-    const Part fetched[4] = {FASCIA_SHUFFLE(low, low_z, 0, 2, 4, 6), FASCIA_SHUFFLE(low, low_z, 1, 3, 5, 7),
-                             FASCIA_SHUFFLE(high, high_z, 0, 2, 4, 6), FASCIA_SHUFFLE(high, high_z, 1, 3, 5, 7)};
-    for (size_t k = 0; k < 4; ++k)
-      for (size_t j = 0; j < part_width / 4; ++j) {
-        Quad quad;
-        for (size_t c = 0; c < 4; ++c) quad[c] = fetched[k][4 * j + c];
-        store_quad(to + 4 * (p * part_width + 4 * j + k), quad);
-      }
+  for (size_t p = 0; p < part_count; ++p, to += 4 * part_width) {
+    const PartPlaces places = places_of(value.x.part[p], value.y.part[p], value.z.part[p], fourth.part[p]);
+#define FASCIA_WRITE(j)                                         \
+  store_quad(to + 16 * (j), FASCIA_QUARTER(places.quad[0], j));      \
+  store_quad(to + 16 * (j) + 4, FASCIA_QUARTER(places.quad[1], j));  \
+  store_quad(to + 16 * (j) + 8, FASCIA_QUARTER(places.quad[2], j));  \
+  store_quad(to + 16 * (j) + 12, FASCIA_QUARTER(places.quad[3], j));
+    FASCIA_EACH_QUARTER(FASCIA_WRITE)
+#undef FASCIA_WRITE
   }
 }
 
 FASCIA_INLINE void interleave(const Lanes3& value, float* to) { interleave(value, splat(0.0F), to); }
 
-/// Adds each lane's value to the place at base + at[lane], lane after lane: places may be named twice.
+/// Lets `join(place, value)` make anew the place at base + at[lane], lane after lane: places may be named twice.
+template <class Join>
+FASCIA_INLINE void scatter(float* base, const int32_t* at, const Lanes3& value, const Lanes& fourth, Join&& join) {
+  for (size_t p = 0; p < part_count; ++p, at += part_width) {
+    const PartPlaces places = places_of(value.x.part[p], value.y.part[p], value.z.part[p], fourth.part[p]);
+    const auto put = [&](int32_t to, Quad quad) { store_quad(base + to, join(load_quad(base + to), quad)); };
+#define FASCIA_PUT(j)                                  \
+  put(at[4 * (j)], FASCIA_QUARTER(places.quad[0], j));     \
+  put(at[4 * (j) + 1], FASCIA_QUARTER(places.quad[1], j)); \
+  put(at[4 * (j) + 2], FASCIA_QUARTER(places.quad[2], j)); \
+  put(at[4 * (j) + 3], FASCIA_QUARTER(places.quad[3], j));
+    FASCIA_EACH_QUARTER(FASCIA_PUT)
+#undef FASCIA_PUT
+  }
+}
 FASCIA_INLINE void scatter_add(float* base, const int32_t* at, const Lanes3& value, const Lanes& fourth) {
-  alignas(64) float places[4 * lane_count];
-  interleave(value, fourth, places);
-  for (size_t l = 0; l < lane_count; ++l) store_quad(base + at[l], load_quad(base + at[l]) + load_quad(places + 4 * l));
+  scatter(base, at, value, fourth, [](Quad place, Quad quad) { return place + quad; });
 }
 FASCIA_INLINE void scatter_add(float* base, const int32_t* at, const Lanes3& value) { scatter_add(base, at, value, splat(0.0F)); }
+FASCIA_INLINE void scatter_subtract(float* base, const int32_t* at, const Lanes3& value) {
+  scatter(base, at, value, splat(0.0F), [](Quad place, Quad quad) { return place - quad; });
+}
+
+/// Four places one behind the other, and four floats, each four times.
+FASCIA_INLINE Lanes four_places(const float* base, const int32_t* at) {
+  Lanes out;
+#if defined(__AVX512F__)
+  typedef float Eight __attribute__((vector_size(32)));
+  const Eight low = __builtin_shufflevector(load_quad(base + at[0]), load_quad(base + at[1]), 0, 1, 2, 3, 4, 5, 6, 7);
+  const Eight high = __builtin_shufflevector(load_quad(base + at[2]), load_quad(base + at[3]), 0, 1, 2, 3, 4, 5, 6, 7);
+  out.part[0] = __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+#elif defined(__AVX2__)
+  for (size_t p = 0; p < 2; ++p)
+    out.part[p] = __builtin_shufflevector(load_quad(base + at[2 * p]), load_quad(base + at[2 * p + 1]), 0, 1, 2, 3, 4, 5, 6, 7);
+#else
+  for (size_t p = 0; p < 4; ++p) out.part[p] = load_quad(base + at[p]);
+#endif
+  return out;
+}
+FASCIA_INLINE Lanes each_four_times(const float* from) {
+  const Quad four = load_quad(from);
+  Lanes out;
+#if defined(__AVX512F__)
+  const __m512i order = _mm512_set_epi32(3, 3, 3, 3, 2, 2, 2, 2, 1, 1, 1, 1, 0, 0, 0, 0);
+  out.part[0] = _mm512_maskz_permutexvar_ps(0xffff, order, _mm512_castps128_ps512(four));
+#elif defined(__AVX2__)
+  out.part[0] = __builtin_shufflevector(four, four, 0, 0, 0, 0, 1, 1, 1, 1);
+  out.part[1] = __builtin_shufflevector(four, four, 2, 2, 2, 2, 3, 3, 3, 3);
+#else
+  out.part[0] = __builtin_shufflevector(four, four, 0, 0, 0, 0);
+  out.part[1] = __builtin_shufflevector(four, four, 1, 1, 1, 1);
+  out.part[2] = __builtin_shufflevector(four, four, 2, 2, 2, 2);
+  out.part[3] = __builtin_shufflevector(four, four, 3, 3, 3, 3);
+#endif
+  return out;
+}
 
 }  // namespace
 }  // namespace fascia::sim::lanes::FASCIA_LANES_NAMESPACE

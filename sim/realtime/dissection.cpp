@@ -8,7 +8,49 @@ namespace {
 
 using Matrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
-constexpr size_t last_piece = 24;  // unknowns that are not worth cutting further
+constexpr size_t last_piece = 16;  // unknowns that are not worth cutting further
+
+const Vec3 directions[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {1, -1, 0}, {1, 0, 1}, {1, 0, -1}, {0, 1, 1}, {0, 1, -1}};
+/// The fewest of two sides' nodes without which no edge joins them: by a greatest matching (König 1931).
+std::vector<uint32_t> fewest_between(const std::vector<uint32_t>& near, const std::vector<uint32_t>& far, const Matrix& matrix) {
+  std::vector<std::vector<uint32_t>> joined(near.size());
+  for (uint32_t i = 0; i < near.size(); ++i)
+    for (Matrix::InnerIterator e(matrix, static_cast<int>(near[i])); e; ++e) {
+      const auto found = std::find(far.begin(), far.end(), static_cast<uint32_t>(e.col()));
+      if (found != far.end()) joined[i].push_back(static_cast<uint32_t>(found - far.begin()));
+    }
+  constexpr uint32_t none = ~0U;
+  std::vector<uint32_t> partner_of_far(far.size(), none), partner_of_near(near.size(), none);
+  std::vector<uint8_t> seen_near(near.size()), seen_far(far.size());
+  const auto reach = [&](auto&& self, uint32_t i) -> bool {
+    seen_near[i] = 1;
+    for (const uint32_t j : joined[i]) {
+      if (seen_far[j]) continue;
+      seen_far[j] = 1;
+      if (partner_of_far[j] == none || self(self, partner_of_far[j])) {
+        partner_of_far[j] = i;
+        partner_of_near[i] = j;
+        return true;
+      }
+    }
+    return false;
+  };
+  for (uint32_t i = 0; i < near.size(); ++i) {
+    std::fill(seen_far.begin(), seen_far.end(), 0);
+    reach(reach, i);
+  }
+  // What alternating paths from near nodes without a partner reach: far ones of it and near ones beside it.
+  std::fill(seen_near.begin(), seen_near.end(), 0);
+  std::fill(seen_far.begin(), seen_far.end(), 0);
+  for (uint32_t i = 0; i < near.size(); ++i)
+    if (partner_of_near[i] == none) reach(reach, i);
+  std::vector<uint32_t> between;
+  for (uint32_t i = 0; i < near.size(); ++i)
+    if (!seen_near[i]) between.push_back(near[i]);
+  for (uint32_t j = 0; j < far.size(); ++j)
+    if (seen_far[j]) between.push_back(far[j]);
+  return between;
+}
 
 }  // namespace
 
@@ -35,45 +77,45 @@ void Dissection::dissect(std::vector<uint32_t>& piece, const Matrix& matrix, con
     eliminate(piece);
     return;
   }
-  // Of the planes across each axis through the middle, the one that cuts fewest.
-  std::vector<uint32_t> best_near, best_far, best_between;
-  for (int axis = 0; axis < 3; ++axis) {
-    std::vector<uint32_t> sorted = piece;
-    std::sort(sorted.begin(), sorted.end(), [&](uint32_t a, uint32_t b) {
-      return places[a][axis] != places[b][axis] ? places[a][axis] < places[b][axis] : a < b;
-    });
-    const size_t middle = sorted.size() / 2;
-    for (size_t i = 0; i < sorted.size(); ++i) mark_[sorted[i]] = i < middle ? 1 : 2;
+  // Of the planes across several directions through the middle, the one that cuts fewest.
+  struct Cut {
+    std::vector<uint32_t> near, far, from_near, from_far;
+    size_t cost() const { return std::min(from_near.size(), from_far.size()); }
+  };
+  Cut best;
+  std::vector<std::pair<double, uint32_t>> keyed(piece.size());
+  const size_t middle = piece.size() / 2;
+  for (const Vec3& direction : directions) {
+    for (size_t i = 0; i < piece.size(); ++i) keyed[i] = {direction.dot(places[piece[i]]), piece[i]};
+    std::nth_element(keyed.begin(), keyed.begin() + static_cast<std::ptrdiff_t>(middle), keyed.end());
+    for (size_t i = 0; i < keyed.size(); ++i) mark_[keyed[i].second] = i < middle ? 1 : 2;
     const auto touches = [&](uint32_t node, uint8_t side) {
       for (Matrix::InnerIterator e(matrix, static_cast<int>(node)); e; ++e)
         if (mark_[static_cast<size_t>(e.col())] == side) return true;
       return false;
     };
-    std::vector<uint32_t> from_near, from_far;
-    for (size_t i = 0; i < sorted.size(); ++i) {
-      if (i < middle && touches(sorted[i], 2)) from_near.push_back(sorted[i]);
-      if (i >= middle && touches(sorted[i], 1)) from_far.push_back(sorted[i]);
+    Cut cut;
+    for (const uint32_t node : piece) {
+      const bool is_near = mark_[node] == 1;
+      (is_near ? cut.near : cut.far).push_back(node);
+      if (touches(node, is_near ? 2 : 1)) (is_near ? cut.from_near : cut.from_far).push_back(node);
     }
-    const std::vector<uint32_t>& between = from_near.size() < from_far.size() ? from_near : from_far;
-    if (axis == 0 || between.size() < best_between.size()) {
-      best_between = between;
-      for (const uint32_t node : between) mark_[node] = 3;
-      best_near.clear();
-      best_far.clear();
-      for (const uint32_t node : sorted) {
-        if (mark_[node] == 1) best_near.push_back(node);
-        if (mark_[node] == 2) best_far.push_back(node);
-      }
-    }
-    for (const uint32_t node : sorted) mark_[node] = 0;
+    for (const uint32_t node : piece) mark_[node] = 0;
+    if (best.near.empty() || cut.cost() < best.cost()) best = std::move(cut);
   }
-  if (best_near.empty() || best_far.empty()) {  // everything touches everything
+  const std::vector<uint32_t> between = fewest_between(best.from_near, best.from_far, matrix);
+  for (const uint32_t node : between) mark_[node] = 1;
+  const auto is_between = [this](uint32_t node) { return mark_[node] == 1; };
+  std::erase_if(best.near, is_between);
+  std::erase_if(best.far, is_between);
+  for (const uint32_t node : between) mark_[node] = 0;
+  if (best.near.empty() || best.far.empty()) {  // everything touches everything
     eliminate(piece);
     return;
   }
-  dissect(best_near, matrix, places);
-  dissect(best_far, matrix, places);
-  eliminate(best_between);
+  dissect(best.near, matrix, places);
+  dissect(best.far, matrix, places);
+  eliminate(between);
 }
 
 void Dissection::find_rows(const Matrix& matrix) {
@@ -97,12 +139,32 @@ void Dissection::find_rows(const Matrix& matrix) {
   }
 }
 
-bool PanelFactor::compute(const Dissection& dissection, const Matrix& matrix) {
+/// Appends a front with its F.
+void PanelFactor::pack(const Dissection::Front& from, const Eigen::MatrixXd& matrix, std::vector<float>& values) {
   constexpr uint32_t wide = batch_width;
+  const auto rows = static_cast<uint32_t>(matrix.rows());
+  Panels::Front front;
+  front.first = from.first;
+  front.width = from.width;
+  front.blocks = (rows + wide - 1) / wide;
+  front.rows = static_cast<uint32_t>(rows_.size());
+  front.values = static_cast<uint32_t>(values.size());
+  for (uint32_t r = 0; r < front.blocks * wide; ++r) {
+    const size_t row = r < from.width ? from.first + r : r < rows ? from.rows[r - from.width] : size_;
+    rows_.push_back(static_cast<int32_t>(4 * row));
+  }
+  for (uint32_t block = 0; block < front.blocks; ++block)
+    for (uint32_t c = 0; c < front.columns(block); ++c)
+      for (uint32_t r = wide * block; r < wide * (block + 1); ++r) values.push_back(r < rows ? static_cast<float>(matrix(r, c)) : 0.0F);
+  scratch_ = std::max<size_t>(scratch_, std::max(3 * wide * front.blocks, 4 * front.width));
+  fronts_.push_back(front);
+}
+
+bool PanelFactor::compute(const Dissection& dissection, const Matrix& matrix) {
   const auto& fronts = dissection.fronts();
   const auto& order = dissection.order();
   size_ = order.size();
-  nodes_.clear();
+  fronts_.clear();
   rows_.clear();
   std::vector<float> values;
   std::vector<uint32_t> position(size_);
@@ -137,33 +199,10 @@ bool PanelFactor::compute(const Dissection& dissection, const Matrix& matrix) {
     dense.bottomRightCorner(below, below).selfadjointView<Eigen::Lower>().rankUpdate(under, -1.0);
     left[f] = dense.bottomRightCorner(below, below);
 
-    for (uint32_t c = 0; c < front.width; c += wide) {
-      const uint32_t panel = std::min(wide, front.width - c), rows_below = front.width - c - panel + static_cast<uint32_t>(front.rows.size());
-      Panels::Node node;
-      node.first = front.first + c;
-      node.width = panel;
-      node.blocks = (rows_below + wide - 1) / wide;
-      node.rows = static_cast<uint32_t>(rows_.size());
-      node.values = static_cast<uint32_t>(values.size());
-      nodes_.push_back(node);
-      const Eigen::MatrixXd inverse =
-          dense.block(c, c, panel, panel).triangularView<Eigen::Lower>().solve(Eigen::MatrixXd::Identity(panel, panel));
-      for (uint32_t column = 0; column < panel; ++column)
-        for (uint32_t lane = 0; lane < wide; ++lane)
-          values.push_back(lane < panel && lane >= column ? static_cast<float>(inverse(lane, column)) : 0.0F);
-      for (uint32_t row = 0; row < node.blocks * wide; ++row) {
-        const uint32_t at = c + panel + row;
-        rows_.push_back(row >= rows_below         ? static_cast<uint32_t>(size_)
-                        : at < front.width ? front.first + at
-                                                  : front.rows[at - front.width]);
-      }
-      for (uint32_t block = 0; block < node.blocks; ++block)
-        for (uint32_t column = 0; column < panel; ++column)
-          for (uint32_t lane = 0; lane < wide; ++lane) {
-            const uint32_t row = block * wide + lane;
-            values.push_back(row < rows_below ? static_cast<float>(dense(c + panel + row, c + column)) : 0.0F);
-          }
-    }
+    Eigen::MatrixXd whole(width + below, width);
+    whole.topRows(width) = diagonal.triangularView<Eigen::Lower>().solve(Eigen::MatrixXd::Identity(width, width));
+    whole.bottomRows(below).noalias() = -under * whole.topRows(width);
+    pack(front, whole, values);
   }
   values_ = Floats(values.size());
   std::copy(values.begin(), values.end(), values_.data());

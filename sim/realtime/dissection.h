@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <Eigen/SparseCore>
 #include <cstdint>
 #include <vector>
@@ -38,20 +39,24 @@ class Dissection {
   std::vector<uint8_t> mark_;
 };
 
-/// The Cholesky factor of a matrix in an order of elimination, in panels of at most sixteen columns and whole blocks of sixteen
-/// rows, single precision (computed in double). Diagonal blocks are kept as their inverses.
+/// The Cholesky factor of a matrix in an order of elimination, front by front in whole blocks of sixteen rows,
+/// single precision (computed in double). Diagonal parts are kept as their inverses.
 class PanelFactor {
  public:
   /// Factors `matrix`, which must have the pattern `dissection` was made for; false when it is not positive definite.
   bool compute(const Dissection& dissection, const Eigen::SparseMatrix<double, Eigen::RowMajor>& matrix);
-  Panels view() const { return {size_, nodes_.size(), nodes_.data(), rows_.data(), values_.data()}; }
+  Panels view() const { return {size_, fronts_.size(), fronts_.data(), rows_.data(), values_.data()}; }
   size_t entries() const { return values_.size(); }
   size_t columns() const { return size_; }
+  size_t scratch() const { return scratch_; }  ///< floats that a solve needs to work in
+
 
  private:
-  size_t size_ = 0;
-  std::vector<Panels::Node> nodes_;
-  std::vector<uint32_t> rows_;
+  void pack(const Dissection::Front& from, const Eigen::MatrixXd& matrix, std::vector<float>& values);
+
+  size_t size_ = 0, scratch_ = 0;
+  std::vector<Panels::Front> fronts_;
+  std::vector<int32_t> rows_;
   Floats values_;
 };
 

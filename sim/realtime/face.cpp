@@ -182,7 +182,7 @@ MinimiseResult Face::minimise(Solve& solve, const MinimiseOptions& options, bool
       loops.add(f(-share[k]), w.changes[slot].data(), direction, floats);
     }
     loops.scale(w.answer.data(), direction, floats);
-    loops.solve(solve.factor, direction);
+    loops.solve(solve.factor, direction, w.solve_scratch.data());
     loops.scale(w.answer.data(), direction, floats);
     for (size_t k = 0; k < count; ++k) {
       const size_t slot = (first + k) % history;

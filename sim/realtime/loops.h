@@ -48,20 +48,23 @@ FASCIA_INLINE void membrane(const MembraneBatch& m, const Packed& packed, const 
   const Lanes3 r0 = inverse * (f0 + turned_1), r1 = inverse * (f1 + turned_0);
   const Lanes3 off0 = f0 - r0, off1 = f1 - r1;
   const Lanes spread = trace - 2.0F, along = lambda * spread, twice = 2.0F * mu;
-  const Wall wall = wall_at(packed.crush_begin, packed.crush_end, ratio);
-  const Lanes slope = mu * wall.slope;
-  const Lanes3 s0 = twice * off0 + along * r0 + slope * turned_1, s1 = twice * off1 + along * r1 + slope * turned_0;
+  Lanes3 s0 = twice * off0 + along * r0, s1 = twice * off1 + along * r1;
+  energy += mu * (dot(off0, off0) + dot(off1, off1)) + 0.5F * along * spread;
+  if (any_below(ratio, splat(packed.crush_begin))) {
+    const Wall wall = wall_at(packed.crush_begin, packed.crush_end, ratio);
+    const Lanes slope = mu * wall.slope, bend = corner_bound * mu * wall.bend;
+    s0 += slope * turned_1;
+    s1 += slope * turned_0;
+    energy += mu * wall.value;
+    const Lanes3 by_1 = a * turned_1 + b * turned_0, by_2 = c * turned_0, by_0 = by_1 + by_2;
+    stiffer[0] += bend * dot(by_0, by_0);
+    stiffer[1] += bend * dot(by_1, by_1);
+    stiffer[2] += bend * dot(by_2, by_2);
+  }
   const Lanes3 force_1 = a * s0 + b * s1, force_2 = c * s1;
   gradient[0] -= force_1 + force_2;
   gradient[1] += force_1;
   gradient[2] += force_2;
-  energy += mu * (dot(off0, off0) + dot(off1, off1) + wall.value) + 0.5F * along * spread;
-  if (!any_below(splat(0.0F), wall.bend)) return;
-  const Lanes bend = corner_bound * mu * wall.bend;
-  const Lanes3 by_1 = a * turned_1 + b * turned_0, by_2 = c * turned_0, by_0 = by_1 + by_2;
-  stiffer[0] += bend * dot(by_0, by_0);
-  stiffer[1] += bend * dot(by_1, by_1);
-  stiffer[2] += bend * dot(by_2, by_2);
 }
 
 /// Six times the volume's gradient by the outer corners p and, when asked for, the inner ones q, and the volume; all from p[0].
@@ -88,18 +91,22 @@ FASCIA_INLINE void prism(const PrismBatch& m, const Packed& packed, const Lanes3
   const Lanes volume = prism_volume<true>(p, q, outer, inner);
   const Lanes inverse = load(m.inverse_volume), excess = volume - load(m.volume);
   const Lanes stiff = load(m.stiffness) * inverse * excess, guard = load(m.guard);
-  const Wall wall = wall_at(packed.turn_begin, packed.turn_end, volume * inverse);
-  energy += 0.5F * stiff * excess + guard * wall.value * greater(load(m.volume), 0.0F);
-  const Lanes pressure = (stiff + guard * wall.slope) * (1.0F / 6.0F);
+  energy += 0.5F * stiff * excess;
+  Lanes pressure = stiff * (1.0F / 6.0F);
+  const Lanes ratio = volume * inverse;
+  if (any_below(ratio, splat(packed.turn_begin))) {
+    const Wall wall = wall_at(packed.turn_begin, packed.turn_end, ratio);
+    energy += guard * wall.value * greater(load(m.volume), 0.0F);
+    pressure += (guard * wall.slope) * (1.0F / 6.0F);
+    const Lanes bend = (corner_bound / 36.0F) * guard * inverse * wall.bend;
+    for (size_t k = 0; k < 3; ++k) {
+      stiffer_p[k] += bend * dot(outer[k], outer[k]);
+      stiffer_q[k] += bend * dot(inner[k], inner[k]);
+    }
+  }
   for (size_t k = 0; k < 3; ++k) {
     by_p[k] += pressure * outer[k];
     by_q[k] += pressure * inner[k];
-  }
-  if (!any_below(splat(0.0F), wall.bend)) return;
-  const Lanes bend = (corner_bound / 36.0F) * guard * inverse * wall.bend;
-  for (size_t k = 0; k < 3; ++k) {
-    stiffer_p[k] += bend * dot(outer[k], outer[k]);
-    stiffer_q[k] += bend * dot(inner[k], inner[k]);
   }
 }
 
@@ -126,32 +133,61 @@ Lanes triangle_energy(const Packed& packed, const float* x, float* gradient) {
   return energy;
 }
 
-Lanes hinge_energy(const Packed& packed, const float* x, float* gradient) {
+/// Forces on the edge's ends and opposite corners, all but the first from the first.
+FASCIA_INLINE void hinge(const HingeBatch& h, const Packed& packed, const Lanes3* x, Lanes3* gradient, Lanes& energy) {
+  const Lanes3 edge = x[1] - x[0], arm_a = x[2] - x[0], arm_b = x[3] - x[0];
+  const Lanes w1 = load(h.weight[0]), w2 = load(h.weight[1]), w3 = load(h.weight[2]);
+  const Lanes scale_a = load(h.scale_a), scale_b = load(h.scale_b), stiffness = load(h.stiffness), bend = load(h.bend);
+  Lanes3 normal = scale_a * cross(edge, arm_a) + scale_b * cross(arm_b, edge);
+  const Lanes inverse = 1.0F / square_root(dot(normal, normal) + packed.fold_softness);
+  normal = inverse * normal;
+  const Lanes3 miss = w1 * edge + w2 * arm_a + w3 * arm_b - bend * normal;
+  const Lanes3 force = stiffness * miss;
+  const Lanes3 turn = (-(bend * inverse)) * (force - dot(normal, force) * normal);
+  const Lanes3 turn_a = scale_a * turn, turn_b = scale_b * turn;
+  const Lanes3 by_1 = w1 * force + cross(arm_a, turn_a) - cross(arm_b, turn_b);
+  gradient[2] = w2 * force + cross(turn_a, edge);
+  gradient[3] = w3 * force + cross(edge, turn_b);
+  gradient[0] -= by_1 + gradient[2] + gradient[3];
+  gradient[1] += by_1;
+  energy += 0.5F * dot(force, miss);
+}
+
+/// Pull on the first end, against it on the second.
+FASCIA_INLINE Lanes3 spring(const SpringBatch& s, const Lanes& slack, const Lanes3& along, Lanes& stiffer, Lanes& energy) {
+  const Lanes length = greater(square_root(dot(along, along)), 1e-12F), stretch = greater(length - load(s.length), slack);
+  const Lanes beyond = positive(stretch - load(s.limit)), extra = load(s.extra), stiffness = load(s.stiffness);
+  const Lanes force = stiffness * stretch + extra * beyond;
+  stiffer = where_below(splat(0.0F), beyond, extra, splat(0.0F));
+  energy += 0.5F * (stiffness * stretch * stretch + extra * beyond * beyond);
+  return (force / length) * along;
+}
+
+Lanes edge_energy(const Packed& packed, const float* x, float* gradient) {
   Lanes energy = splat(0.0F);
-  for (size_t b = 0; b < packed.hinge_batches; ++b) {
-    const HingeBatch& batch = packed.hinges[b];
-    for (size_t layer = 0; layer < 2; ++layer) {
-      const auto& h = batch.layer[layer];
-      const Lanes3 origin = gather(x + 4 * layer, batch.column[0]);
-      const Lanes3 edge = gather(x + 4 * layer, batch.column[1]) - origin, arm_a = gather(x + 4 * layer, batch.column[2]) - origin;
-      const Lanes3 arm_b = gather(x + 4 * layer, batch.column[3]) - origin;
-      const Lanes w1 = load(h.weight[0]), w2 = load(h.weight[1]), w3 = load(h.weight[2]);
-      const Lanes scale_a = load(h.scale_a), scale_b = load(h.scale_b), stiffness = load(h.stiffness), bend = load(h.bend);
-      Lanes3 normal = scale_a * cross(edge, arm_a) + scale_b * cross(arm_b, edge);
-      const Lanes inverse = 1.0F / square_root(dot(normal, normal) + packed.fold_softness);
-      normal = inverse * normal;
-      const Lanes3 miss = w1 * edge + w2 * arm_a + w3 * arm_b - bend * normal;
-      const Lanes3 force = stiffness * miss;
-      const Lanes3 turn = (-(bend * inverse)) * (force - dot(normal, force) * normal);
-      const Lanes3 turn_a = scale_a * turn, turn_b = scale_b * turn;
-      const Lanes3 by_1 = w1 * force + cross(arm_a, turn_a) - cross(arm_b, turn_b);
-      const Lanes3 by_2 = w2 * force + cross(turn_a, edge), by_3 = w3 * force + cross(edge, turn_b);
-      scatter_add(gradient + 4 * layer, batch.column[0], splat(-1.0F) * (by_1 + by_2 + by_3));
-      scatter_add(gradient + 4 * layer, batch.column[1], by_1);
-      scatter_add(gradient + 4 * layer, batch.column[2], by_2);
-      scatter_add(gradient + 4 * layer, batch.column[3], by_3);
-      energy += 0.5F * dot(force, miss);
+  for (size_t b = 0; b < packed.edge_batches; ++b) {
+    const EdgeBatch& batch = packed.edges[b];
+    Lanes3 place[3][4], force[3][4];
+    Lanes stiffer[3][2];
+    for (size_t layer = 0; layer < 3; ++layer)
+      for (size_t k = 0; k < (layer < 2 ? 4 : 2); ++k) {
+        place[layer][k] = gather(x + 4 * layer, batch.column[k]);
+        force[layer][k] = Lanes3{splat(0.0F), splat(0.0F), splat(0.0F)};
+        if (k < 2) stiffer[layer][k] = splat(0.0F);
+      }
+    for (size_t layer = 0; layer < 2; ++layer) hinge(batch.hinge[layer], packed, place[layer], force[layer], energy);
+    for (size_t k = 0; k < edge_springs; ++k) {
+      const size_t first = edge_spring_layers[k][0], second = edge_spring_layers[k][1];
+      Lanes more;
+      const Lanes3 pull = spring(batch.spring[k], splat(-1e3F), place[second][1] - place[first][0], more, energy);
+      force[first][0] -= pull;
+      force[second][1] += pull;
+      stiffer[first][0] += more;
+      stiffer[second][1] += more;
     }
+    for (size_t layer = 0; layer < 3; ++layer)
+      for (size_t k = 0; k < (layer < 2 ? 4 : 2); ++k)
+        scatter_add(gradient + 4 * layer, batch.column[k], force[layer][k], k < 2 ? stiffer[layer][k] : splat(0.0F));
   }
   return energy;
 }
@@ -159,16 +195,11 @@ Lanes hinge_energy(const Packed& packed, const float* x, float* gradient) {
 Lanes spring_energy(const Packed& packed, const float* x, float* gradient) {
   Lanes energy = splat(0.0F);
   for (size_t b = 0; b < packed.spring_batches; ++b) {
-    const SpringBatch& s = packed.springs[b];
-    const Lanes3 along = gather(x, s.at[1]) - gather(x, s.at[0]);
-    const Lanes length = greater(square_root(dot(along, along)), 1e-12F), stretch = greater(length - load(s.length), load(s.slack));
-    const Lanes beyond = positive(stretch - load(s.limit)), extra = load(s.extra), stiffness = load(s.stiffness);
-    const Lanes force = stiffness * stretch + extra * beyond;
-    const Lanes3 pull = (force / length) * along;
-    const Lanes stiffer = where_below(splat(0.0F), beyond, extra, splat(0.0F));
+    const LooseSpringBatch& s = packed.springs[b];
+    Lanes stiffer;
+    const Lanes3 pull = spring(s.spring, load(s.slack), gather(x, s.at[1]) - gather(x, s.at[0]), stiffer, energy);
     scatter_add(gradient, s.at[0], splat(-1.0F) * pull, stiffer);
     scatter_add(gradient, s.at[1], pull, stiffer);
-    energy += 0.5F * (stiffness * stretch * stretch + extra * beyond * beyond);
   }
   return energy;
 }
@@ -279,7 +310,7 @@ Lanes fibre_energy(const Packed& packed, const Driven& driven, const float* x, f
 double total_energy(const Packed& packed, const Driven& driven, const float* x, float* gradient) {
   for (size_t i = 0; i < packed.places; i += 16) store(gradient + i, splat(0.0F));
   double energy = static_cast<double>(total(triangle_energy(packed, x, gradient)));
-  energy += static_cast<double>(total(hinge_energy(packed, x, gradient)));
+  energy += static_cast<double>(total(edge_energy(packed, x, gradient)));
   energy += static_cast<double>(total(spring_energy(packed, x, gradient)));
   energy += static_cast<double>(total(held_energy(packed, driven, x, gradient)));
   energy += static_cast<double>(total(pressure_energy(packed, driven, x, gradient)));
@@ -365,13 +396,9 @@ void place(const Packed& packed, const Driven& driven) {
 
 void multiply(const SparseRows& m, const float* x, float* out) {
   for (size_t i = 0; i < m.size; ++i) {
-    Quad sums[4] = {};
-    uint32_t e = m.begin[i];
-    const uint32_t end = m.begin[i + 1];
-    for (; e + 4 <= end; e += 4)
-      for (uint32_t k = 0; k < 4; ++k) sums[k] += m.value[e + k] * load_quad(x + 4 * static_cast<size_t>(m.column[e + k]));
-    for (uint32_t k = 0; e < end; ++e, ++k) sums[k] += m.value[e] * load_quad(x + 4 * static_cast<size_t>(m.column[e]));
-    store_quad(out + 4 * i, (sums[0] + sums[1]) + (sums[2] + sums[3]));
+    Lanes sums = splat(0.0F);  // of every fourth entry
+    for (uint32_t e = m.begin[i]; e < m.begin[i + 1]; e += 4) sums += each_four_times(m.value + e) * four_places(x, m.column + e);
+    store_quad(out + 4 * i, quarters(sums));
   }
 }
 
@@ -406,54 +433,84 @@ void scale(const float* factors, float* list, size_t count) {
   for (size_t i = 0; i < count; i += batch_width) store(list + i, load(factors + i) * load(list + i));
 }
 
-/// Sum of a panel's columns, each times its own place: sixteen rows at once.
-FASCIA_INLINE Lanes3 combine(const float* value, const float* places, uint32_t width) {
-  Lanes3 sum{splat(0.0F), splat(0.0F), splat(0.0F)};
-  for (uint32_t c = 0; c < width; ++c) {
-    const Lanes column = load(value + batch_width * c);
-    sum.x += column * places[4 * c];
-    sum.y += column * places[4 * c + 1];
-    sum.z += column * places[4 * c + 2];
+/// So many accumulators of three coordinates fit a unit's registers.
+constexpr size_t group_width = part_count == 1 ? 4 : part_count == 2 ? 2 : 1;
+
+/// Adds what `count` blocks of a front, all with every column, say of its own places.
+template <size_t count>
+FASCIA_INLINE void spread_columns(const float* value, uint32_t columns, const float* own, const int32_t* row, float* values) {
+  Lanes3 sums[count];
+  for (size_t g = 0; g < count; ++g) sums[g] = Lanes3{splat(0.0F), splat(0.0F), splat(0.0F)};
+  for (uint32_t c = 0; c < columns; ++c) {
+    const Lanes x = splat(own[4 * c]), y = splat(own[4 * c + 1]), z = splat(own[4 * c + 2]);
+    for (size_t g = 0; g < count; ++g) sums[g] += load(value + batch_width * (g * columns + c)) * Lanes3{x, y, z};
   }
-  return sum;
+  for (size_t g = 0; g < count; ++g) scatter_add(values, row + batch_width * g, sums[g]);
 }
 
-void solve(const Panels& panels, float* values) {
-  float scratch[4 * batch_width];
-  for (size_t n = 0; n < panels.nodes; ++n) {
-    const Panels::Node& node = panels.node[n];
-    float* const own = values + 4 * static_cast<size_t>(node.first);
-    const float* value = panels.value + node.values;
-    interleave(combine(value, own, node.width), scratch);
-    for (uint32_t c = 0; c < 4 * node.width; ++c) own[c] = scratch[c];
-    for (uint32_t b = 0; b < node.blocks; ++b) {
-      value += batch_width * node.width;
-      SixteenAt at;
-      for (size_t l = 0; l < batch_width; ++l) at[l] = static_cast<int32_t>(4 * panels.row[node.rows + b * batch_width + l]);
-      scatter_add(values, at, splat(-1.0F) * combine(value, own, node.width));
+void go_forward(const Panels& panels, const Panels::Front& front, float* values, float* own) {
+  float* const from = values + 4 * static_cast<size_t>(front.first);
+  for (uint32_t c = 0; c < front.width; ++c) {
+    store_quad(own + 4 * c, load_quad(from + 4 * c));
+    store_quad(from + 4 * c, Quad{});
+  }
+  const float* value = panels.value + front.values;
+  const int32_t* row = panels.row + front.rows;
+  for (uint32_t b = 0; b < front.blocks;) {
+    const uint32_t columns = front.columns(b);
+    if (columns == front.width && b + group_width <= front.blocks) {
+      spread_columns<group_width>(value, columns, own, row, values);
+      value += group_width * batch_width * columns;
+      row += group_width * batch_width;
+      b += group_width;
+    } else {
+      spread_columns<1>(value, columns, own, row, values);
+      value += batch_width * columns;
+      row += batch_width;
+      ++b;
     }
   }
-  for (size_t n = panels.nodes; n-- > 0;) {
-    const Panels::Node& node = panels.node[n];
-    float* const own = values + 4 * static_cast<size_t>(node.first);
-    const float* value = panels.value + node.values + batch_width * node.width;
-    // Sixteen rows below at a time, against every column.
-    Lanes3 sums[batch_width];
-    for (uint32_t c = 0; c < node.width; ++c) sums[c] = Lanes3{splat(0.0F), splat(0.0F), splat(0.0F)};
-    for (uint32_t b = 0; b < node.blocks; ++b, value += batch_width * node.width) {
-      SixteenAt at;
-      for (size_t l = 0; l < batch_width; ++l) at[l] = static_cast<int32_t>(4 * panels.row[node.rows + b * batch_width + l]);
-      const Lanes3 below = gather(values, at);
-      for (uint32_t c = 0; c < node.width; ++c) sums[c] += load(value + batch_width * c) * below;
-    }
-    for (uint32_t c = 0; c < node.width; ++c) store_quad(scratch + 4 * c, load_quad(own + 4 * c) - totals(sums[c]));
-    for (uint32_t c = 4 * node.width; c < 4 * batch_width; ++c) scratch[c] = 0.0F;
-    SixteenAt at;
-    for (size_t l = 0; l < batch_width; ++l) at[l] = static_cast<int32_t>(4 * l);
-    const Lanes3 right = gather(scratch, at);
-    const float* inverse = panels.value + node.values;
-    for (uint32_t c = 0; c < node.width; ++c) store_quad(own + 4 * c, totals(load(inverse + batch_width * c) * right));
+}
+
+/// What `count` columns from `column` on say of the places of all rows, `places` as x, y, z of sixteen.
+template <size_t count>
+FASCIA_INLINE void collect_rows(const Panels::Front& front, const float* value, uint32_t block, uint32_t column, const float* places, float* own) {
+  Lanes3 sums[count];
+  for (size_t g = 0; g < count; ++g) sums[g] = Lanes3{splat(0.0F), splat(0.0F), splat(0.0F)};
+  value += batch_width * column;
+  for (uint32_t b = block; b < front.blocks; ++b) {
+    const float* p = places + 3 * batch_width * b;
+    const Lanes3 place{load(p), load(p + batch_width), load(p + 2 * batch_width)};
+    for (size_t g = 0; g < count; ++g) sums[g] += load(value + batch_width * g) * place;
+    value += batch_width * front.columns(b);
   }
+  for (size_t g = 0; g < count; ++g) store_quad(own + 4 * (column + g), totals(sums[g]));
+}
+
+void go_back(const Panels& panels, const Panels::Front& front, float* values, float* places) {
+  const int32_t* row = panels.row + front.rows;
+  for (uint32_t b = 0; b < front.blocks; ++b) {
+    const Lanes3 place = gather(values, row + batch_width * b);
+    float* const to = places + 3 * batch_width * b;
+    store(to, place.x);
+    store(to + batch_width, place.y);
+    store(to + 2 * batch_width, place.z);
+  }
+  float* const own = values + 4 * static_cast<size_t>(front.first);
+  const float* value = panels.value + front.values;
+  // Columns of one block of own rows at a time: blocks before it do not have them.
+  for (uint32_t block = 0, first = 0; first < front.width; ++block, first += batch_width) {
+    const uint32_t end = front.columns(block);
+    uint32_t c = first;
+    for (; c + group_width <= end; c += group_width) collect_rows<group_width>(front, value, block, c, places, own);
+    for (; c < end; ++c) collect_rows<1>(front, value, block, c, places, own);
+    value += batch_width * end;
+  }
+}
+
+void solve(const Panels& panels, float* values, float* scratch) {
+  for (size_t f = 0; f < panels.fronts; ++f) go_forward(panels, panels.front[f], values, scratch);
+  for (size_t f = panels.fronts; f-- > 0;) go_back(panels, panels.front[f], values, scratch);
 }
 
 double dot_of(const float* a, const float* b, size_t count) {

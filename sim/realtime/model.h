@@ -16,6 +16,7 @@ namespace fascia::sim::realtime {
 struct Workspace {
   static constexpr size_t history = 6;
   Floats carried, start, gradient, tether_normals, carrier_pulls, fibre_scratch;      // places and batches
+  Floats solve_scratch;
   Floats packed, direction, moved, damped, last_gradient, begun, ballistic, answer;    // unknowns
   std::vector<Floats> steps, changes;                                                  // `history` of unknowns
   Positions nodes, nodes_before;                                                       // #nodes, for contact
@@ -68,8 +69,7 @@ class Model {
 
  private:
   void pack_triangles();
-  void pack_hinges();
-  void pack_springs();
+  void pack_edges();
   void pack_held();
   void pack_fibres();
   void find_balance();
@@ -80,8 +80,8 @@ class Model {
   const Loops* loops_;
   Packed packed_{};
   std::vector<TriangleBatch> triangles_;
-  std::vector<HingeBatch> hinges_;
-  std::vector<SpringBatch> springs_;
+  std::vector<EdgeBatch> edges_;
+  std::vector<LooseSpringBatch> springs_;
   std::vector<TetherBatch> tethers_;
   std::vector<CarrierBatch> carriers_;
   std::vector<GlobeBatch> globes_;
@@ -92,7 +92,8 @@ class Model {
   size_t longest_fibre_ = 0, channels_ = 0, unknown_floats_ = 0;
   std::vector<int32_t> slots_;
   std::vector<float> masses_;
-  std::vector<uint32_t> begin_, column_;
+  std::vector<uint32_t> begin_;
+  std::vector<int32_t> column_;
   std::vector<float> value_;
   PanelFactor pose_factor_, step_factor_;
   std::vector<float> pose_diagonal_, step_diagonal_;

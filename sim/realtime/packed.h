@@ -30,15 +30,24 @@ struct alignas(64) TriangleBatch {
   PrismBatch prism[2];
 };
 struct alignas(64) HingeBatch {
-  SixteenAt column[4];
-  struct {
-    Sixteen weight[3];  ///< of the edge's second end and the opposite corners; the first's is what lacks to a sum of zero
-    Sixteen stiffness, bend, scale_a, scale_b;
-  } layer[2];
+  Sixteen weight[3];  ///< of the edge's second end and the opposite corners; the first's is what lacks to a sum of zero
+  Sixteen stiffness, bend, scale_a, scale_b;
 };
 struct alignas(64) SpringBatch {
-  SixteenAt at[2];
   Sixteen length, stiffness, limit, extra;
+};
+/// The springs of an edge: from its first column, in this layer, to its second, in that.
+constexpr size_t edge_springs = 4;
+constexpr size_t edge_spring_layers[edge_springs][2] = {{0, 1}, {1, 0}, {1, 2}, {2, 1}};
+/// Both hinges of an edge between two triangles of columns, and the springs across it.
+struct alignas(64) EdgeBatch {
+  SixteenAt column[4];  ///< the edge's ends, then the corners opposite to it
+  HingeBatch hinge[2];
+  SpringBatch spring[edge_springs];
+};
+struct alignas(64) LooseSpringBatch {
+  SixteenAt at[2];
+  SpringBatch spring;
   Sixteen slack;  ///< stretch below which there is no force: -1 km, or 0 when one-sided
 };
 /// Held to a place by its bones, stiffer or weaker along a normal; carriers are tethers with a pull.
@@ -76,15 +85,15 @@ struct alignas(64) PressureBatch {
 /// Everything of a model that its faces share.
 struct Packed {
   const TriangleBatch* triangles;
-  const HingeBatch* hinges;
-  const SpringBatch* springs;
+  const EdgeBatch* edges;
+  const LooseSpringBatch* springs;
   const TetherBatch* tethers;
   const CarrierBatch* carriers;
   const GlobeBatch* globes;
   const FibreBatch* fibres;
   const FibrePointBatch* fibre_points;
   const PressureBatch* pressures;
-  size_t triangle_batches, hinge_batches, spring_batches, tether_batches, carrier_batches, globe_batches, fibre_batches, pressure_batches;
+  size_t triangle_batches, edge_batches, spring_batches, tether_batches, carrier_batches, globe_batches, fibre_batches, pressure_batches;
   size_t places;          ///< 4 * columns
   const float* rest;      ///< places
   const float* balance;   ///< places: gradient at rest; null while it is being found
@@ -106,25 +115,30 @@ struct Driven {
   float* fibre_scratch;      ///< 3 x 16 a point of the longest batch
 };
 
-/// A matrix over unknowns that x, y and z share, rows of 4-float places.
+/// A matrix over unknowns that x, y and z share, rows of 4-float places. Rows are filled up to a multiple of four entries.
 struct SparseRows {
   size_t size;
   const uint32_t* begin;  ///< size + 1
-  const uint32_t* column;
+  const int32_t* column;  ///< 4 * unknown
   const float* value;
 };
 
-/// A Cholesky factor by supernodes, see dissection.h.
+/// A Cholesky factor by fronts, see dissection.h. Of a front with the factor's diagonal part A and part B below it stands
+/// F = (A^-1; -B A^-1), so that going forward is one product with F and going back one with its transpose.
 struct Panels {
-  struct Node {
-    uint32_t first, width;  ///< its unknowns, at most 16
-    uint32_t blocks;        ///< of sixteen rows below them
-    uint32_t rows;          ///< into `row`: 16 * blocks of them
-    uint32_t values;        ///< into `value`: the inverse of the diagonal block by columns (16 x width), then block after block the same
+  struct Front {
+    uint32_t first, width;  ///< its unknowns
+    uint32_t blocks;        ///< of sixteen rows of F
+    uint32_t rows;          ///< into `row`: 16 * blocks, its own first
+    uint32_t values;        ///< into `value`: block after block by columns, sixteen floats each; columns after a block's last own row are left out
+    uint32_t columns(uint32_t block) const {
+      const auto last = static_cast<uint32_t>(batch_width) * (block + 1);
+      return last < width ? last : width;
+    }
   };
-  size_t size, nodes;
-  const Node* node;
-  const uint32_t* row;  ///< unknown, or `size` for none
+  size_t size, fronts;
+  const Front* front;
+  const int32_t* row;  ///< 4 * unknown, or 4 * size for none
   const float* value;
 };
 
@@ -155,8 +169,8 @@ struct Loops {
   double (*collect)(const Unknowns&, const float* moved, const float* damped, float* packed, float* answer);
   /// list *= factors.
   void (*scale)(const float* factors, float* list, size_t count);
-  /// Solves in place over unknowns (4 x (size + 1) floats, the last place of no meaning).
-  void (*solve)(const Panels&, float* values);
+  /// Solves in place over unknowns (4 x (size + 1) floats, the last place of no meaning). `scratch` as PanelFactor::scratch says.
+  void (*solve)(const Panels&, float* values, float* scratch);
   double (*dot)(const float* a, const float* b, size_t count);
   void (*add)(float factor, const float* a, float* to, size_t count);  ///< to += factor * a; counts are multiples of 16
   /// Largest squared length of a place.

@@ -119,7 +119,8 @@ TEST_F(Everything, TheFactorSolvesItsMatrix) {
     Floats list(model.unknown_floats());
     for (size_t k = 0; k < dissection.size(); ++k)
       for (int axis = 0; axis < 3; ++axis) list.data()[4 * k + static_cast<size_t>(axis)] = static_cast<float>(right(dissection.order()[k], axis));
-    model.loops().solve(factor.view(), list.data());
+    Floats scratch(factor.scratch());
+    model.loops().solve(factor.view(), list.data(), scratch.data());
     for (size_t k = 0; k < dissection.size(); ++k)
       for (int axis = 0; axis < 3; ++axis)
         ASSERT_NEAR(list.data()[4 * k + static_cast<size_t>(axis)], expected(dissection.order()[k], axis), 1e-4 * expected.cwiseAbs().maxCoeff());
