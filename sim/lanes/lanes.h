@@ -99,6 +99,12 @@ FASCIA_INLINE Lanes greater(const Lanes& a, const Lanes& b) {
 }
 FASCIA_INLINE Lanes greater(const Lanes& a, float b) { return greater(a, splat(b)); }
 
+FASCIA_INLINE Lanes lesser(const Lanes& a, const Lanes& b) {
+  Lanes out;
+  for (size_t p = 0; p < part_count; ++p) out.part[p] = b.part[p] > a.part[p] ? a.part[p] : b.part[p];
+  return out;
+}
+
 /// Three coordinates of sixteen places.
 struct Lanes3 {
   Lanes x, y, z;

@@ -10,10 +10,6 @@ namespace {
 /// Fields of distances rise by at most this much a metre: one, but for their grid.
 constexpr double steepest = 1.25;
 
-constexpr float farthest = 0.0015F;  // metres a node may go in an iteration whose outcome is not looked at
-constexpr float noise = 1e-5F;       // metres below which turning back means nothing
-constexpr float onward = 0.5F;       // share of the last substep's motion that the next one's first guess goes on
-
 float f(double value) { return static_cast<float>(value); }
 Vec3 place_at(const float* list, int32_t at) { return {list[at], list[at + 1], list[at + 2]}; }
 void add_at(float* list, int32_t at, const Vec3& value) {
@@ -34,7 +30,7 @@ struct Face::Solve {
 };
 
 Face::Face(const Model& model, size_t channels)
-    : model_(&model), position_(model.places()), velocity_(model.places()), carried_(model.places()), last_direction_(model.unknown_floats()),
+    : model_(&model), position_(model.places()), velocity_(model.places()), carried_(model.places()), last_direction_(model.unknown_floats()), trust_(model.unknown_floats() / 4),
       facing_(model.face().contacts().facing_count()), reach_(model.face().contacts().bone_nodes().size()), excitations_(channels),
       last_excitations_(channels), activations_(channels) {
   reset({});
@@ -128,28 +124,16 @@ double Face::evaluate(Solve& solve, const float* x) {
   return energy + loops.collect(solve.unknowns, w.moved.data(), w.damped.data(), w.packed.data(), w.answer.data());
 }
 
-/// Makes a direction safe to go unseen: no node farther than a substep's largest sensible motion, and where a node keeps turning
-/// back it has been going too far (as in Riedmiller & Braun 1993, resilient propagation).
-void Face::steady(float* direction) {
-  const size_t unknowns = model_->unknowns();
-  for (size_t k = 0; k < unknowns; ++k) {
-    float* const d = direction + 4 * k;
-    float* const last = last_direction_.data() + 4 * k;
-    const float along = d[0] * last[0] + d[1] * last[1] + d[2] * last[2], squared = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-    float share = last[3];
-    if (!(squared < 1e6F)) {  // nothing to go by
-      for (size_t axis = 0; axis < 3; ++axis) d[axis] = last[axis] = 0.0F;
-      continue;
-    }
-    if (along < 0.0F && squared > noise * noise) share = std::max(0.5F * share, 0.02F);
-    else share = std::min(1.0F, 1.2F * share);
-    if (squared * share * share > farthest * farthest) share = farthest / std::sqrt(squared);
-    for (size_t axis = 0; axis < 3; ++axis) {
-      d[axis] *= share;
-      last[axis] = d[axis];
-    }
-    last[3] = share;
-  }
+/// What is left to go along the stride before, by what it did to the gradient: the line search along it that was left out,
+/// finished, and what keeps the new direction from undoing it (Hestenes & Stiefel 1952). The preconditioner answers for x, y and z
+/// alike and so goes too short; nobody looks where this leads, so no more than once as far.
+float Face::left_to_go(const Workspace& w) const {
+  const size_t floats = model_->unknown_floats();
+  const auto dot = model_->loops().dot;
+  const float *stride = w.steps[0].data(), *before = w.last_gradient.data(), *now = w.packed.data(), *direction = w.direction.data();
+  const double slope = dot(stride, now, floats), curvature = slope - dot(stride, before, floats);
+  const double answer = dot(direction, before, floats) - dot(direction, now, floats);
+  return curvature > 0.0 ? f(std::clamp((answer - slope) / curvature, 0.0, 1.0)) : 0.0F;
 }
 
 /// As sim::minimise: quasi-Newton steps on the rest factor, with the last few changes of the gradient as corrections.
@@ -204,12 +188,14 @@ MinimiseResult Face::minimise(Solve& solve, const MinimiseOptions& options, bool
     }
     float length = f(std::min(1.0, 0.02 / result.move));
     if (!checks_last) {
-      steady(direction);
-      go(1.0F);
+      float* const before = w.steps[0].data();
+      loops.stride({slots.size(), slots.data(), direction, before, iteration > 0 ? left_to_go(w) : 0.0F, last_direction_.data(), trust_.data(), x});
       if (iteration + 1 >= options.iterations) {
         result.iterations = iteration + 1;
         return result;
       }
+      std::copy(direction, direction + floats, before);
+      std::swap(w.last_gradient, w.packed);
       value = evaluate(solve, x);
       continue;
     }
@@ -289,7 +275,8 @@ void Face::reset(const Drive& drive) {
   std::copy(work->carried.data(), work->carried.data() + model_->places(), position_.data());
   std::copy(work->carried.data(), work->carried.data() + model_->places(), carried_.data());
   std::fill(velocity_.data(), velocity_.data() + velocity_.size(), 0.0F);
-  for (size_t i = 0; i < last_direction_.size(); ++i) last_direction_.data()[i] = i % 4 == 3 ? 1.0F : 0.0F;
+  std::fill(last_direction_.data(), last_direction_.data() + last_direction_.size(), 0.0F);
+  std::fill(trust_.data(), trust_.data() + trust_.size(), 1.0F);
   std::fill(activations_.begin(), activations_.end(), 0.0F);
   std::fill(last_excitations_.begin(), last_excitations_.end(), 0.0F);
   last_mandible_ = jaw_transform(model_->face().jaw(), last_jaw_);
@@ -356,18 +343,8 @@ MinimiseResult Face::substep(double share, bool is_first, const Drive& drive, co
   std::copy(x, x + model_->places(), before);
   const auto& slots = model_->slots();
   const float seconds = f(h);
-  for (size_t k = 0; k < slots.size(); ++k)
-    for (size_t axis = 0; axis < 3; ++axis) {
-      const size_t at = static_cast<size_t>(slots[k]) + axis, i = 4 * k + axis;
-      work.ballistic.data()[i] = x[at] + seconds * velocity[at];
-      work.begun.data()[i] = x[at] + (carried[at] - carried_.data()[at]);
-    }
-  std::copy(carried, carried + model_->places(), x);  // prescribed nodes go with their bones
-  for (size_t k = 0; k < slots.size(); ++k)
-    for (size_t axis = 0; axis < 3; ++axis) {
-      const size_t at = static_cast<size_t>(slots[k]) + axis, i = 4 * k + axis;
-      x[at] = work.begun.data()[i] + onward * (work.ballistic.data()[i] - work.begun.data()[i]);
-    }
+  model_->loops().set_out({slots.size(), slots.data(), velocity, carried, carried_.data(), trust_.data(), seconds, x, work.ballistic.data(), work.begun.data()});
+  for (const int32_t at : model_->prescribed_slots()) std::copy(carried + at, carried + at + 4, x + at);
   std::copy(carried, carried + model_->places(), carried_.data());
   const MinimiseResult result = minimise(solve, {options.iterations, options.tolerance}, options.checks_last, x);
   for (size_t i = 0; i < model_->places(); ++i) velocity[i] = (x[i] - before[i]) / seconds;
@@ -432,7 +409,7 @@ void Face::positions(std::span<Vec3f> out) const {
 }
 
 size_t Face::memory() const {
-  return sizeof *this + sizeof(float) * (position_.size() + velocity_.size() + carried_.size() + last_direction_.size() + pose_offset_.size() + 3 * activations_.size()) +
+  return sizeof *this + sizeof(float) * (position_.size() + velocity_.size() + carried_.size() + last_direction_.size() + trust_.size() + pose_offset_.size() + 3 * activations_.size()) +
          sizeof(FacingPair) * facing_.size() + sizeof(BoneReach) * reach_.size();
 }
 

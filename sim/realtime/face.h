@@ -46,13 +46,13 @@ class Face {
   void fill_nodes(const float* x, Positions& nodes) const;
   double contact_energy(Solve& solve, const float* x, float* gradient);
   double evaluate(Solve& solve, const float* x);
-  void steady(float* direction);
+  float left_to_go(const Workspace& work) const;
   MinimiseResult minimise(Solve& solve, const MinimiseOptions& options, bool checks_last, float* x);
   MinimiseResult substep(double share, bool is_first, const Drive& drive, const StepOptions& options, Workspace& work);
   bool sound(const float* carried, double largest) const;
 
   const Model* model_;
-  Floats position_, velocity_, carried_, last_direction_, pose_offset_;
+  Floats position_, velocity_, carried_, last_direction_, trust_, pose_offset_;
   std::vector<FacingPair> facing_;
   struct BoneReach {
     float place[3] = {0, 0, 0};  ///< in the bone's frame, where the distance was last looked up

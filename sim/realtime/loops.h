@@ -411,7 +411,7 @@ double collect(const Unknowns& u, const float* moved, const float* damped, float
   Quad twice{}, work{};
   for (size_t k = 0; k < u.count; ++k) {
     const Quad gradient = load_quad(u.gradient + u.slot[k]), x = load_quad(u.x + u.slot[k]);
-    const float mass = u.mass[k], stiffer = u.diagonal[k] / (u.diagonal[k] + gradient[3]), s = __builtin_sqrtf(stiffer);
+    const float mass = u.mass[k], more = gradient[3], s = more > 0.0F ? __builtin_sqrtf(u.diagonal[k] / (u.diagonal[k] + more)) : 1.0F;
     const Quad felt = mass * acceleration;
     Quad force = gradient - felt;
     work += felt * (x - load_quad(u.rest + u.slot[k]));
@@ -513,6 +513,50 @@ void solve(const Panels& panels, float* values, float* scratch) {
   for (size_t f = panels.fronts; f-- > 0;) go_back(panels, panels.front[f], values, scratch);
 }
 
+constexpr float farthest = 0.0015F;  // metres a node may go in one stride
+constexpr float noise = 1e-5F;       // metres below which turning back means nothing
+constexpr float least_trust = 0.02F;
+constexpr float inertia_trusted = 0.7F, inertia_else = 0.5F;  // share of what inertia alone would do that the first guess takes
+
+void stride(const Stride& s) {
+  SixteenAt at;
+  for (size_t l = 0; l < batch_width; ++l) at[l] = static_cast<int32_t>(4 * l);
+  const Lanes none = splat(0.0F), one = splat(1.0F);
+  for (size_t k = 0; k < s.count; k += batch_width) {  // lists of unknowns are whole batches
+    Lanes trust = load(s.trust + k);
+    const Lanes3 last = gather(s.last + 4 * k, at);
+    Lanes3 way = gather(s.direction + 4 * k, at);
+    if (s.onward > 0.0F) way += where_below(trust, one, none, splat(s.onward)) * gather(s.before + 4 * k, at);
+    const Lanes squared = dot(way, way), along = dot(way, last);
+    const Lanes back = where_below(along, none, where_below(splat(noise * noise), squared, one, none), none);
+    const Lanes more = lesser(1.2F * trust, one), less = greater(0.5F * trust, least_trust);
+    trust = where_below(none, back, less, more);
+    const Lanes most = farthest / square_root(greater(squared, 1e-20F));
+    trust = where_below(splat(farthest * farthest), squared * trust * trust, most, trust);
+    const Lanes is_sound = where_below(squared, splat(1e6F), one, none);  // false where it is not a number
+    way = {where_below(none, is_sound, way.x, none), where_below(none, is_sound, way.y, none), where_below(none, is_sound, way.z, none)};
+    trust = where_below(none, is_sound, trust, load(s.trust + k));
+    store(s.trust + k, trust);
+    way = trust * way;
+    interleave(way, s.last + 4 * k);
+    interleave(way, s.direction + 4 * k);
+    const size_t end = s.count - k < batch_width ? s.count : k + batch_width;
+    for (size_t i = k; i < end; ++i) store_quad(s.x + s.slot[i], load_quad(s.x + s.slot[i]) + load_quad(s.direction + 4 * i));
+  }
+}
+
+void set_out(const Outset& o) {
+  for (size_t k = 0; k < o.count; ++k) {
+    const int32_t at = o.slot[k];
+    const Quad x = load_quad(o.x + at), ballistic = x + o.seconds * load_quad(o.velocity + at);
+    const Quad begun = x + (load_quad(o.carried + at) - load_quad(o.carried_before + at));
+    const float trust = o.trust[k], share = trust < 1.0F ? inertia_else * trust : inertia_trusted;
+    store_quad(o.ballistic + 4 * k, ballistic);
+    store_quad(o.begun + 4 * k, begun);
+    store_quad(o.x + at, begun + share * (ballistic - begun));
+  }
+}
+
 double dot_of(const float* a, const float* b, size_t count) {
   Lanes sums[4] = {splat(0.0F), splat(0.0F), splat(0.0F), splat(0.0F)};
   for (size_t i = 0, k = 0; i < count; i += batch_width, ++k) sums[k % 4] += load(a + i) * load(b + i);
@@ -544,7 +588,7 @@ float largest(const float* a, size_t count) {
 }  // namespace
 
 const Loops& FASCIA_LOOPS() {
-  static constexpr Loops loops{place, total_energy, multiply, subtract, collect, scale, solve, dot_of, add, largest};
+  static constexpr Loops loops{place, total_energy, multiply, subtract, collect, scale, solve, stride, set_out, dot_of, add, largest};
   return loops;
 }
 

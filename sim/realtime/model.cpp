@@ -34,6 +34,7 @@ Model::Model(const FaceModel& face, lanes::InstructionSet instructions) : face_(
     for (size_t axis = 0; axis < 3; ++axis) rest_.data()[at + axis] = lattice.rest[i][static_cast<int>(axis)];
     const auto kind = static_cast<NodeKind>(lattice.kinds[i]);
     const bool still = kind == NodeKind::fixed || kind == NodeKind::fixed_cranium;
+    if (face.prescribed(i)) prescribed_slots_.push_back(static_cast<int32_t>(at));
     jaw_share_.data()[at / 4] = still ? 0.0F : lattice.jaw_weights[i];
   }
   packed_.rest = rest_.data();

@@ -39,6 +39,7 @@ class Model {
   size_t unknowns() const { return slots_.size(); }
   size_t unknown_floats() const { return unknown_floats_; }              ///< of a list of unknowns
   const std::vector<int32_t>& slots() const { return slots_; }           ///< of each unknown in the factors' order
+  const std::vector<int32_t>& prescribed_slots() const { return prescribed_slots_; }  ///< of nodes that go with their bones alone
   int32_t slot_of(size_t node) const {
     const size_t columns = face_->lattice().columns;
     return static_cast<int32_t>(16 * (node % columns) + 4 * (node / columns));
@@ -90,7 +91,7 @@ class Model {
   std::vector<PressureBatch> pressures_;
   Floats rest_, balance_, jaw_share_;
   size_t longest_fibre_ = 0, channels_ = 0, unknown_floats_ = 0;
-  std::vector<int32_t> slots_;
+  std::vector<int32_t> slots_, prescribed_slots_;
   std::vector<float> masses_;
   std::vector<uint32_t> begin_;
   std::vector<int32_t> column_;

@@ -154,6 +154,27 @@ struct Unknowns {
   float per_mass, drag, stiff;       ///< 1 / h^2 and dampings over h; all 0 in a static pose
 };
 
+/// One step along a direction whose outcome is not looked at.
+struct Stride {
+  size_t count;           ///< unknowns
+  const int32_t* slot;    ///< of each, into places
+  float* direction;       ///< 4 an unknown; leaves as it was gone
+  const float* before;    ///< the stride before, gone on with `onward` times where a node can be trusted
+  float onward;
+  float* last;            ///< 4 an unknown: each node's last stride, of whatever solve
+  float* trust;           ///< of each unknown, 0.02 to 1: its share of a stride; less where it keeps turning back
+  float* x;               ///< places
+};
+
+/// Where a step of time begins.
+struct Outset {
+  size_t count;
+  const int32_t* slot;
+  const float *velocity, *carried, *carried_before, *trust;
+  float seconds;
+  float *x, *ballistic, *begun;  ///< places that unknowns leave for the first guess; by unknown
+};
+
 struct Loops {
   /// Moves carried places, tether normals and carrier pulls.
   void (*place)(const Packed&, const Driven&);
@@ -171,6 +192,11 @@ struct Loops {
   void (*scale)(const float* factors, float* list, size_t count);
   /// Solves in place over unknowns (4 x (size + 1) floats, the last place of no meaning). `scratch` as PanelFactor::scratch says.
   void (*solve)(const Panels&, float* values, float* scratch);
+  /// Goes along a direction, safe to go unseen: no node farther than a substep's largest sensible motion, and where a node keeps
+  /// turning back it has been going too far (as in Riedmiller & Braun 1993, resilient propagation).
+  void (*stride)(const Stride&);
+  /// Finds where inertia alone and where bones alone would bring unknowns, and puts x between.
+  void (*set_out)(const Outset&);
   double (*dot)(const float* a, const float* b, size_t count);
   void (*add)(float factor, const float* a, float* to, size_t count);  ///< to += factor * a; counts are multiples of 16
   /// Largest squared length of a place.
