@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <cmath>
 
+#include "runtime/crowd.h"
 #include "runtime/drivers/curves.h"
 #include "runtime/face.h"
 
@@ -33,12 +35,13 @@ Target named(const Face& face, const char* name) {
   return *target;
 }
 
-fascia::runtime::BoundMesh& mesh_of(const fascia_face* handle, uint32_t mesh) {
+/// The face, which has a mesh of that number.
+Face& with_mesh(const fascia_face* handle, uint32_t mesh) {
   Face& face = checked(handle);
   if (mesh >= face.mesh_count())
     throw Failure(FASCIA_ERROR_ARGUMENT, "there is no mesh " + std::to_string(mesh) + ": the rig moves " +
                                              std::to_string(face.mesh_count()));
-  return face.mesh(mesh);
+  return face;
 }
 
 void hand_out_vectors(const std::vector<fascia::rig::Vec3f>& vectors, fascia_vectors* to) {
@@ -119,6 +122,29 @@ fascia_result fascia_face_step(fascia_face* handle, float seconds) {
   });
 }
 
+fascia_result fascia_faces_step(fascia_face* const* faces, uint32_t count, float seconds, const fascia_tasks* tasks) {
+  return guarded([&] {
+    require(faces != nullptr || count == 0, "the list of faces is null");
+    require(seconds >= 0.0F && seconds <= 1.0F, "seconds must lie between 0 and 1");
+    fascia_tasks given{};
+    if (tasks != nullptr) {
+      require(tasks->struct_size >= sizeof(uint32_t), "struct_size is not set: it must be sizeof the structure");
+      std::memcpy(&given, tasks, std::min<std::size_t>(tasks->struct_size, sizeof given));
+      require(given.begin != nullptr && given.finish != nullptr, "the host's tasks lack begin or finish");
+    }
+    std::vector<Face*> list;
+    for (uint32_t i = 0; i < count; ++i) list.push_back(&checked(faces[i]));
+    std::vector<Face*> sorted = list;
+    std::sort(sorted.begin(), sorted.end());
+    require(std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end(), "a face is listed twice");
+    const std::size_t diverged = fascia::runtime::step_all(list, static_cast<double>(seconds), tasks != nullptr ? &given : nullptr);
+    if (diverged == 0) return FASCIA_OK;
+    const std::string message = std::to_string(diverged) + " of " + std::to_string(count) +
+                                " faces became unsound and were put back to where their bones stand";
+    return fascia::runtime::report(FASCIA_ERROR_DIVERGED, message.c_str());
+  });
+}
+
 fascia_result fascia_face_reset(fascia_face* handle) {
   return guarded([&] {
     checked(handle).reset();
@@ -140,22 +166,21 @@ fascia_result fascia_face_set_acceleration(fascia_face* handle, const float* acc
 
 fascia_result fascia_face_positions(fascia_face* face, uint32_t mesh, fascia_vectors* positions) {
   return guarded([&] {
-    hand_out_vectors(mesh_of(face, mesh).positions(), positions);
+    hand_out_vectors(with_mesh(face, mesh).positions(mesh), positions);
     return FASCIA_OK;
   });
 }
 
 fascia_result fascia_face_normals(fascia_face* face, uint32_t mesh, fascia_vectors* normals) {
   return guarded([&] {
-    hand_out_vectors(mesh_of(face, mesh).normals(), normals);
+    hand_out_vectors(with_mesh(face, mesh).normals(mesh), normals);
     return FASCIA_OK;
   });
 }
 
 fascia_result fascia_face_compression(fascia_face* face, uint32_t mesh, fascia_vectors* compression) {
   return guarded([&] {
-    mesh_of(face, mesh);
-    hand_out_vectors(checked(face).compression(mesh), compression);
+    hand_out_vectors(with_mesh(face, mesh).compression(mesh), compression);
     return FASCIA_OK;
   });
 }
@@ -174,7 +199,7 @@ fascia_result fascia_face_touch(fascia_face* handle, uint32_t mesh, uint32_t ver
   return guarded([&] {
     require(force != nullptr && std::isfinite(force[0]) && std::isfinite(force[1]) && std::isfinite(force[2]),
             "the force is null or not a finite number");
-    require(vertex < mesh_of(handle, mesh).positions().size(), "the mesh has no such vertex");
+    require(vertex < with_mesh(handle, mesh).vertex_count(mesh), "the mesh has no such vertex");
     require(checked(handle).touch(mesh, vertex, {force[0], force[1], force[2]}), "there are 64 touches already");
     return FASCIA_OK;
   });
@@ -189,7 +214,7 @@ fascia_result fascia_face_clear_touches(fascia_face* face) {
 
 fascia_result fascia_face_write_positions(fascia_face* face, uint32_t mesh, void* to, size_t stride, size_t capacity) {
   return guarded([&] {
-    const auto& positions = mesh_of(face, mesh).positions();
+    const auto& positions = with_mesh(face, mesh).positions(mesh);
     require(to != nullptr && stride >= 12, "the memory is null or the stride below 12 bytes");
     require(capacity >= positions.size(), "the memory holds fewer vertices than the mesh has");
     for (std::size_t v = 0; v < positions.size(); ++v)

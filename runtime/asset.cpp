@@ -118,6 +118,15 @@ const sim::realtime::Model& Asset::realtime_model(std::size_t level) const {
   return *model;
 }
 
+const std::vector<std::unique_ptr<MeshShape>>& Asset::shapes(std::size_t level, fascia_space space) const {
+  require(space == FASCIA_SPACE_MESH || space == FASCIA_SPACE_INPUT || space == FASCIA_SPACE_METRES, "unknown space");
+  const std::lock_guard lock(models_mutex_);
+  auto& shapes = shapes_[{level, space}];
+  for (std::size_t i = shapes.size(); i < primitives().size(); ++i)
+    shapes.push_back(std::make_unique<MeshShape>(primitives()[i], binding(level, i), rig().input_to_metres, space));
+  return shapes;
+}
+
 const sim::FaceModel& Asset::model_under_lock(std::size_t level) const {
   auto& model = models_[level];
   if (!model) {

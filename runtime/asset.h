@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "rig/read/read.h"
+#include "runtime/mesh_shape.h"
 #include "runtime/message.h"
 #include "sim/face_model.h"
 #include "sim/jaw_muscles.h"
@@ -56,6 +57,9 @@ class Asset {
   const sim::FaceModel& model(std::size_t level) const;
   /// The same, laid out for real time.
   const sim::realtime::Model& realtime_model(std::size_t level) const;
+  /// The primitives as faces of a level see them in `space`, made on first use; any thread may ask. Throws Failure when there
+  /// is no such space.
+  const std::vector<std::unique_ptr<MeshShape>>& shapes(std::size_t level, fascia_space space) const;
 
   // Arrays of texts in the shape the C interface hands them out.
   std::vector<const char*> channel_names, channel_groups, channel_units;
@@ -76,6 +80,7 @@ class Asset {
   mutable std::mutex models_mutex_;
   mutable std::vector<std::unique_ptr<sim::FaceModel>> models_;
   mutable std::vector<std::unique_ptr<sim::realtime::Model>> realtime_models_;
+  mutable std::map<std::pair<std::size_t, fascia_space>, std::vector<std::unique_ptr<MeshShape>>> shapes_;
 
   const sim::FaceModel& model_under_lock(std::size_t level) const;
 };

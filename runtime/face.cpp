@@ -26,9 +26,6 @@ std::size_t chosen_level(const Asset& asset, int32_t level) {
 
 Face::Face(std::shared_ptr<const Asset> asset, const fascia_face_options& options)
     : asset_(std::move(asset)), level_(chosen_level(*asset_, options.level)) {
-  require(options.space == FASCIA_SPACE_MESH || options.space == FASCIA_SPACE_INPUT ||
-              options.space == FASCIA_SPACE_METRES,
-          "unknown space");
   const std::size_t channels = asset_->channel_names.size();
   model_ = &asset_->model(level_);
   solver_ = make_solver(options.solver, *asset_, level_);
@@ -43,8 +40,7 @@ Face::Face(std::shared_ptr<const Asset> asset, const fascia_face_options& option
   for (const sim::Vec3& place : model_->rest()) face_centre_ += place / static_cast<double>(model_->rest().size());
   bones_.displacements = displacements_;
   bones_.eye_centres = {rig.skull.eye_left.centre, rig.skull.eye_right.centre};
-  for (std::size_t i = 0; i < asset_->primitives().size(); ++i)
-    meshes_.emplace_back(asset_->primitives()[i], asset_->binding(level_, i), rig.input_to_metres, options.space);
+  for (const auto& shape : asset_->shapes(level_, options.space)) meshes_.emplace_back(*shape);
 }
 
 void Face::set(const Target& target, float value) {

@@ -39,7 +39,9 @@ class Face {
   bool step(double seconds);
   void reset();
 
-  BoundMesh& mesh(std::size_t index) { return meshes_[index]; }
+  const std::vector<Vec3f>& positions(std::size_t mesh) { return meshes_[mesh].positions(bones_); }
+  const std::vector<Vec3f>& normals(std::size_t mesh) { return meshes_[mesh].normals(bones_); }
+  std::size_t vertex_count(std::size_t mesh) const { return meshes_[mesh].vertex_count(); }
   std::size_t mesh_count() const { return meshes_.size(); }
   const std::vector<Vec3f>& fibre_points();
   /// #vertices of the mesh: see fascia_face_compression.

@@ -221,6 +221,25 @@ FASCIA_API fascia_result fascia_face_pose(fascia_face* face);
  * stepped on. Curves applied since the last pose or step are used up. */
 FASCIA_API fascia_result fascia_face_step(fascia_face* face, float seconds);
 
+/* The host's own tasks, for functions that can share their work among threads. `begin` starts or queues a task that calls
+ * `run(first, end, context)` for ranges that together cover 0 .. count once each, none shorter than `least` but the last,
+ * on any threads at any time; it returns what `finish` needs to wait for the task, or NULL when all was run already. `finish`
+ * returns when every range was run. Nothing depends on how the ranges are cut. `user` is handed to both. */
+typedef void (*fascia_task_range)(uint32_t first, uint32_t end, void* context);
+typedef struct fascia_tasks {
+  uint32_t struct_size;
+  uint32_t reserved;
+  void* (*begin)(fascia_task_range run, uint32_t count, uint32_t least, void* context, void* user);
+  void (*finish)(void* task, void* user);
+  void* user;
+} fascia_tasks;
+
+/* Lets `seconds` (0 to 1) pass for many faces at once: each as fascia_face_step, with the same result to the last bit,
+ * through the host's tasks, or one after the other on this thread when `tasks` is NULL. The faces may be of different assets; none
+ * may be listed twice or used elsewhere until this returns. FASCIA_ERROR_DIVERGED when any face was put back. */
+FASCIA_API fascia_result fascia_faces_step(fascia_face* const* faces, uint32_t count, float seconds,
+                                           const fascia_tasks* tasks);
+
 /* Takes all motion out and stands the face at rest under its present jaw: after a cut or a teleport. */
 FASCIA_API fascia_result fascia_face_reset(fascia_face* face);
 
