@@ -55,7 +55,7 @@ void hand_out_vectors(const std::vector<fascia::rig::Vec3f>& vectors, fascia_vec
 extern "C" {
 
 fascia_face_options fascia_default_face_options(void) {
-  return {sizeof(fascia_face_options), FASCIA_SPACE_MESH, FASCIA_SOLVER_OWN, -1};
+  return {sizeof(fascia_face_options), FASCIA_SPACE_MESH, FASCIA_SOLVER_OWN, -1, 0};
 }
 
 fascia_result fascia_face_create(fascia_asset* asset, const fascia_face_options* options, fascia_face** face) {

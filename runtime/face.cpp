@@ -28,7 +28,7 @@ Face::Face(std::shared_ptr<const Asset> asset, const fascia_face_options& option
     : asset_(std::move(asset)), level_(chosen_level(*asset_, options.level)) {
   const std::size_t channels = asset_->channel_names.size();
   model_ = &asset_->model(level_);
-  solver_ = make_solver(options.solver, *asset_, level_);
+  solver_ = make_solver(options, *asset_, level_);
   values_ = effective_ = asset_->channel_rest;
   curve_channels_.assign(channels, 0.0F);
   members_.assign(asset_->members().size(), 0.0F);

@@ -13,11 +13,11 @@ namespace fascia::runtime {
 namespace {
 
 /// Fascia's own solver: in real time, or the reference, whose faces speak alike.
-template <class Face>
+template <class Face, class StepOptions>
 class FaceSolver : public Solver {
  public:
-  template <class Model>
-  FaceSolver(const Model& model, std::size_t channels, int pose_iterations) : face_(model, channels) {
+  template <class Model, class Options>
+  FaceSolver(const Model& model, std::size_t channels, int pose_iterations, const Options& step) : face_(model, channels), step_(step) {
     pose_.solver.iterations = pose_iterations;
   }
 
@@ -26,7 +26,7 @@ class FaceSolver : public Solver {
     face_.displacements(displacements);
   }
   bool step(double seconds, const sim::Drive& drive, std::span<sim::Vec3f> displacements) override {
-    const sim::StepResult result = face_.step(seconds, drive);
+    const sim::StepResult result = face_.step(seconds, drive, step_);
     face_.displacements(displacements);
     return result.status == sim::StepStatus::done;
   }
@@ -37,6 +37,7 @@ class FaceSolver : public Solver {
 
  private:
   Face face_;
+  StepOptions step_;
   sim::PoseOptions pose_;
 };
 
@@ -98,11 +99,18 @@ sim::MakeSolver bullet_entry() {
 
 }  // namespace
 
-std::unique_ptr<Solver> make_solver(fascia_solver kind, const Asset& asset, std::size_t level) {
+std::unique_ptr<Solver> make_solver(const fascia_face_options& options, const Asset& asset, std::size_t level) {
   const std::size_t channels = asset.channel_names.size();
-  if (kind == FASCIA_SOLVER_OWN) return std::make_unique<FaceSolver<sim::realtime::Face>>(asset.realtime_model(level), channels, 2000);
+  const fascia_solver kind = options.solver;
+  require(options.iterations >= 0 && options.iterations <= 32, "iterations must lie between 0 and 32");
+  if (kind == FASCIA_SOLVER_OWN) {
+    sim::realtime::StepOptions step;
+    if (options.iterations > 0) step.iterations = options.iterations;
+    return std::make_unique<FaceSolver<sim::realtime::Face, sim::realtime::StepOptions>>(asset.realtime_model(level), channels, 2000, step);
+  }
   const sim::FaceModel& model = asset.model(level);
-  if (kind == FASCIA_SOLVER_REFERENCE) return std::make_unique<FaceSolver<sim::Face>>(model, channels, 200);
+  if (kind == FASCIA_SOLVER_REFERENCE)
+    return std::make_unique<FaceSolver<sim::Face, sim::StepOptions>>(model, channels, 200, sim::StepOptions{});
   require(kind == FASCIA_SOLVER_BULLET, "unknown solver");
   std::unique_ptr<sim::Solver> solver(bullet_entry()(&model, channels));
   if (!solver) throw Failure(FASCIA_ERROR_MODULE, "the module libfascia_bullet could not make a solver of this rig");

@@ -20,7 +20,8 @@ class Solver {
 
 class Asset;
 
-/// Makes a solver on a level of `asset`, which must outlive it. Throws Failure when the module of `kind` is not there.
-std::unique_ptr<Solver> make_solver(fascia_solver kind, const Asset& asset, std::size_t level);
+/// Makes a solver on a level of `asset`, which must outlive it. Throws Failure when the options are at fault or the solver's module is
+/// not there.
+std::unique_ptr<Solver> make_solver(const fascia_face_options& options, const Asset& asset, std::size_t level);
 
 }  // namespace fascia::runtime

@@ -7,9 +7,11 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <stdexcept>
 #include <thread>
 
 #include "bench/sim/clock.h"
+#include "fascia/fascia.h"
 #include "runtime/asset.h"
 #include "sim/face.h"
 #include "sim/realtime/face.h"
@@ -80,8 +82,9 @@ void measure_level(const runtime::Asset& asset, size_t level, int frames) {
       exact.displacements(truth);
       gap += mean_gap(now, truth) / compared;
     }
-    std::printf("  %d iterations a substep: %.2f ms a frame; last move %.3f mm; off the converged motion by %.3f mm in the mean\n", iterations,
-                bench::median(times), 1e3 * move, 1e3 * gap);
+    const double a_node = 1e6 * bench::median(times) / static_cast<double>(nodes);
+    std::printf("  %d iterations a substep: %.2f ms a frame, %.0f ns a node; last move %.3f mm; off the converged motion by %.3f mm in the mean\n", iterations,
+                bench::median(times), a_node, 1e3 * move, 1e3 * gap);
   }
   sim::PoseOptions tight;
   tight.solver.iterations = 1000;
@@ -96,41 +99,78 @@ void measure_level(const runtime::Asset& asset, size_t level, int frames) {
   warm.contact_rounds = 1;
   double spent = 0.0, left = 1.0;
   int iterations = 0;
-  while (left > 0.01 && iterations < 200) {  // one iteration at a time, each from the last: no corrections kept, so an upper bound
-    warm.solver.iterations = 1;
+  while (left > 0.01 && iterations < 400) {  // the fewest iterations that do, each try from the frame before
+    warm.solver.iterations = ++iterations;
+    sim::realtime::Face trial = posed;
     begin = bench::thread_milliseconds();
-    posed.static_pose(next, warm, now);
-    spent += bench::thread_milliseconds() - begin;
-    ++iterations;
+    trial.static_pose(next, warm, now);
+    spent = bench::thread_milliseconds() - begin;
     left = mean_gap(now, truth) / size;
   }
   std::printf("  static pose from the frame before: %.2f %% off after %d iterations, %.1f ms\n", 100.0 * left, iterations, spent);
 }
 
-/// Milliseconds of the slowest frame's median for `count` faces on `threads` threads, wall clock.
-double crowd(const runtime::Asset& asset, size_t count, size_t threads, std::vector<std::vector<Vec3f>>& end) {
-  const sim::realtime::Model& model = asset.realtime_model(0);
-  std::vector<sim::realtime::Face> faces;
-  for (size_t i = 0; i < count; ++i) faces.emplace_back(model, asset.channel_names.size());
-  sim::realtime::StepOptions options;
-  options.iterations = 1;
+/// A host with two threads.
+void* begin_halves(fascia_task_range run, uint32_t count, uint32_t, void* context, void*) {
+  auto* other = new std::thread(run, count / 2, count, context);
+  run(0, count / 2, context);
+  return other;
+}
+void finish_halves(void* task, void*) {
+  auto* other = static_cast<std::thread*>(task);
+  other->join();
+  delete other;
+}
+
+double wall_milliseconds() {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
+}
+
+/// A hundred faces of one asset at the coarsest level, through the C interface: median milliseconds a frame by the wall clock, and
+/// where the last face's skin ends.
+double crowd(fascia_asset* asset, const runtime::Asset& names, int iterations, bool two_threads, std::vector<float>& end) {
+  constexpr uint32_t count = 100;
+  fascia_face_options options = fascia_default_face_options();
+  options.level = 0;
+  options.iterations = iterations;
+  std::vector<fascia_face*> faces(count);
+  for (fascia_face*& face : faces)
+    if (fascia_face_create(asset, &options, &face) != FASCIA_OK) throw std::runtime_error(fascia_last_message());
+  const fascia_tasks tasks{sizeof(fascia_tasks), 0, begin_halves, finish_halves, nullptr};
+  Motion motion(names);
   std::vector<double> times;
-  for (int frame = 0; frame < 20; ++frame) {
-    timespec begin{}, done{};
-    clock_gettime(CLOCK_MONOTONIC, &begin);
-    const auto work = [&](size_t first) {
-      Motion motion(asset);
-      for (size_t i = first; i < count; i += threads) faces[i].step(1.0 / 60.0, motion.at(frame / 60.0 + static_cast<double>(i), 0.2F), options);
-    };
-    std::vector<std::thread> others;
-    for (size_t t = 1; t < threads; ++t) others.emplace_back(work, t);
-    work(0);
-    for (std::thread& other : others) other.join();
-    clock_gettime(CLOCK_MONOTONIC, &done);
-    times.push_back(1e3 * static_cast<double>(done.tv_sec - begin.tv_sec) + 1e-6 * static_cast<double>(done.tv_nsec - begin.tv_nsec));
+  for (int frame = 0; frame < 30; ++frame) {
+    for (uint32_t i = 0; i < count; ++i) {
+      motion.at(frame / 60.0 + i, 0.2F);
+      std::copy(motion.values.begin(), motion.values.end(), fascia_face_values(faces[i]));
+    }
+    const double begin = wall_milliseconds();
+    fascia_faces_step(faces.data(), count, 1.0F / 60.0F, two_threads ? &tasks : nullptr);
+    times.push_back(wall_milliseconds() - begin);
   }
-  for (const auto& face : faces) face.displacements(end.emplace_back(model.face().rest().size()));
+  fascia_vectors positions{};
+  positions.struct_size = sizeof positions;
+  for (const uint32_t i : {0U, 49U, 99U}) {
+    fascia_face_positions(faces[i], 0, &positions);
+    end.insert(end.end(), positions.data, positions.data + 3 * static_cast<size_t>(positions.count));
+  }
+  for (fascia_face* face : faces) fascia_face_release(face);
   return bench::median(times);
+}
+
+void measure_crowd(const std::vector<char>& bytes, const runtime::Asset& names) {
+  fascia_asset* asset = nullptr;
+  if (fascia_asset_load(bytes.data(), bytes.size(), &asset) != FASCIA_OK) throw std::runtime_error(fascia_last_message());
+  std::printf("\n100 faces at the coarsest level through fascia_faces_step, wall clock a frame\n");
+  for (const int iterations : {1, 2}) {
+    std::vector<float> one, two;
+    const double alone = crowd(asset, names, iterations, false, one), together = crowd(asset, names, iterations, true, two);
+    std::printf("  %d iterations a substep: %.1f ms on one thread, %.1f ms on two; %s\n", iterations, alone, together,
+                one == two ? "the same bits" : "NOT the same bits");
+  }
+  fascia_asset_release(asset);
 }
 
 }  // namespace
@@ -146,10 +186,7 @@ int main(int argc, char** argv) {
     const runtime::Asset asset(std::span(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()));
     const int frames = argc > 2 ? std::max(2, std::atoi(argv[2])) : 240;
     for (size_t level = 0; level < asset.rig().tissue.levels.size(); ++level) measure_level(asset, level, frames);
-    std::vector<std::vector<Vec3f>> one, two;
-    const double alone = crowd(asset, 100, 1, one), together = crowd(asset, 100, 2, two);
-    std::printf("\n100 faces at the coarsest level, wall clock a frame: %.0f ms on one thread, %.0f ms on two; %s\n", alone, together,
-                one == two ? "the same bits" : "NOT the same bits");
+    measure_crowd(bytes, asset);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "bench_face: %s\n", error.what());
     return 1;
