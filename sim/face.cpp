@@ -9,7 +9,9 @@ Face::Face(const FaceModel& model, size_t channels)
     : model_(&model), frame_(model.make_frame()), pose_frame_(frame_), position_(model.rest()), previous_(position_),
       velocity_(position_.size(), Vec3::Zero()), carried_(position_), pose_(position_),
       pose_offset_(position_.size(), Vec3::Zero()), start_(position_), work_(position_.size()), excitations_(channels),
-      last_excitations_(channels), activations_(channels), workspace_(position_.size(), model.unknowns().size()) {}
+      last_excitations_(channels), activations_(channels), workspace_(position_.size(), model.unknowns().size()) {
+  model.step_factor();  // made now, so that no step allocates
+}
 
 MinimiseResult Face::find_pose(const PoseOptions& options) {
   const auto energy = [this](const Vec3* x, Vec3* gradient) { return model_->energy(pose_frame_, x, gradient); };

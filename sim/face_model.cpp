@@ -134,14 +134,20 @@ bool FaceModel::make_factors() {
     if (unknown >= 0) matrix.coeffRef(unknown, unknown) += 0.1 * options_.contact.globe_stiffness;
   }
   stiffness_ = matrix;
-  if (!pose_factor_.compute(matrix)) return false;
-  const double h = options_.substep;
-  Eigen::SparseMatrix<double> step = (1.0 + options_.stiffness_damping / h) * matrix;
-  for (size_t i = 0; i < unknowns_.size(); ++i) {
-    const auto k = static_cast<int>(i);
-    step.coeffRef(k, k) += masses_[unknowns_[i]] * (1.0 / (h * h) + options_.mass_damping / h);
-  }
-  return step_factor_.compute(step);
+  return pose_factor_.compute(matrix);
+}
+
+const RestFactor& FaceModel::step_factor() const {
+  std::call_once(step_once_, [this] {
+    const double h = options_.substep;
+    Eigen::SparseMatrix<double> step = (1.0 + options_.stiffness_damping / h) * stiffness_;
+    for (size_t i = 0; i < unknowns_.size(); ++i) {
+      const auto k = static_cast<int>(i);
+      step.coeffRef(k, k) += masses_[unknowns_[i]] * (1.0 / (h * h) + options_.mass_damping / h);
+    }
+    step_factor_.compute(step);  // as the pose's is positive definite, so is this
+  });
+  return step_factor_;
 }
 
 }  // namespace fascia::sim

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <mutex>
 #include <span>
 #include <string>
 #include <vector>
@@ -106,7 +107,7 @@ class FaceModel {
   bool prescribed(size_t node) const { return unknown_of_node_[node] < 0; }  ///< moves with its bone alone
   const std::vector<double>& masses() const { return masses_; }        ///< #nodes
   const RestFactor& pose_factor() const { return pose_factor_; }       ///< rest stiffness
-  const RestFactor& step_factor() const { return step_factor_; }       ///< mass, damping and stiffness of a substep
+  const RestFactor& step_factor() const;  ///< mass, damping and stiffness of a substep; made on first use, any thread may ask
   const Eigen::SparseMatrix<double, Eigen::RowMajor>& stiffness() const { return stiffness_; }  ///< over unknowns
   const Contacts& contacts() const { return contacts_; }
   const std::vector<double>& column_areas() const { return column_areas_; }  ///< #columns, of the skin's triangles around each
@@ -156,7 +157,9 @@ class FaceModel {
   std::vector<double> column_areas_;
   Positions balance_;  // gradient at rest: what is subtracted so that rest is rest to the last bit
   Eigen::SparseMatrix<double, Eigen::RowMajor> stiffness_;
-  RestFactor pose_factor_, step_factor_;
+  RestFactor pose_factor_;
+  mutable std::once_flag step_once_;
+  mutable RestFactor step_factor_;
 };
 
 }  // namespace fascia::sim
