@@ -8,47 +8,20 @@
 namespace fascia::sim {
 namespace {
 
-/// Where a place may lie that sees a facing surface, metres.
-struct Sight {
-  double reach;  ///< before the surface
-  double depth;  ///< behind it: what lies deeper has come from somewhere else
-  double slip;   ///< beside it
-};
-constexpr Sight lips = {0.006, 0.0025, 0.0015};
-constexpr Sight lids = {0.014, 0.0040, 0.0040};  // edges that meet head on across the whole fissure
-
-/// Weights of the point of a triangle that is closest to `p` (Ericson 2005, section 5.1.5).
-Vec3 closest_weights(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 ab = b - a, ac = c - a, ap = p - a;
-  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
-  if (d1 <= 0.0 && d2 <= 0.0) return {1, 0, 0};
-  const Vec3 bp = p - b;
-  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
-  if (d3 >= 0.0 && d4 <= d3) return {0, 1, 0};
-  const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) {
-    const double v = d1 / (d1 - d3);
-    return {1 - v, v, 0};
-  }
-  const Vec3 cp = p - c;
-  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
-  if (d6 >= 0.0 && d5 <= d6) return {0, 0, 1};
-  const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) {
-    const double w = d2 / (d2 - d6);
-    return {1 - w, 0, w};
-  }
-  const double va = d3 * d6 - d5 * d4;
-  if (va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0) {
-    const double w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-    return {0, 1 - w, w};
-  }
-  const double whole = va + vb + vc;
-  if (!(whole > 0.0)) return {1, 0, 0};
-  return {va / whole, vb / whole, vc / whole};
+/// Puts neighbours next to one another: halves across the longest side, and halves again.
+void order_in_space(std::span<uint32_t> list, const std::vector<Vec3>& places) {
+  if (list.size() <= 8) return;
+  Eigen::AlignedBox3d box;
+  for (const uint32_t i : list) box.extend(places[i]);
+  Eigen::Index axis = 0;
+  box.sizes().maxCoeff(&axis);
+  const auto middle = list.begin() + static_cast<std::ptrdiff_t>(list.size() / 2);
+  std::nth_element(list.begin(), middle, list.end(), [&](uint32_t a, uint32_t b) {
+    return places[a][axis] != places[b][axis] ? places[a][axis] < places[b][axis] : a < b;
+  });
+  order_in_space(list.first(list.size() / 2), places);
+  order_in_space(list.subspan(list.size() / 2), places);
 }
-
-Vec3 area_of(const std::array<uint32_t, 3>& t, const Vec3* x) { return (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]); }
 
 }  // namespace
 
@@ -115,7 +88,15 @@ Contacts::Contacts(const Lattice& lattice, const std::vector<Vec3>& rest, const 
     bone_margins_.push_back(std::min(options.thickness, distance));
   }
   std::array<std::map<uint32_t, uint32_t>, 6> fans;  // node -> its place in the side's fans
-  for (size_t f = 0; f < lattice.facing_prism.size(); ++f) {
+  std::vector<uint32_t> facing(lattice.facing_prism.size());
+  std::vector<Vec3> facing_places;
+  for (uint32_t f = 0; f < facing.size(); ++f) {
+    facing[f] = f;
+    const auto& t = lattice.triangles[lattice.facing_prism[f]];
+    facing_places.push_back((rest[t[0]] + rest[t[1]] + rest[t[2]]) / 3.0);
+  }
+  order_in_space(facing, facing_places);
+  for (const uint32_t f : facing) {
     Side& side = sides_[lattice.facing_side[f]];
     auto& known = fans[lattice.facing_side[f]];
     const auto triangle = static_cast<uint32_t>(side.triangles.size());
@@ -136,9 +117,10 @@ Contacts::Contacts(const Lattice& lattice, const std::vector<Vec3>& rest, const 
       facing_fans_.push_back(fan);
     }
   for (const uint8_t side : facing_sides_) facing_margins_.push_back(side < 2 ? options.thickness : options.lid_thickness);
+  FacingSearch search = make_search();
   for (size_t i = 0; i < facing_nodes_.size(); ++i) {
     FacingPair pair;
-    pair_of(i, rest.data(), pair);
+    pair_of(i, rest.data(), search, pair);
     if (pair.is_found()) facing_margins_[i] = std::min(facing_margins_[i], pair.gap(rest.data()));
     // Where a mesh's closed lips run into each other at rest there is no telling what is before what.
     if (facing_margins_[i] < -0.0005) facing_fans_[i] = FacingPair::none;
@@ -228,60 +210,6 @@ void Contacts::add_curvature(const RigidTransform& mandible, std::span<const Fac
   }
 }
 
-Vec3 Contacts::fan_area(const Side& side, uint32_t fan, const Vec3* x) {
-  Vec3 area = Vec3::Zero();
-  for (const uint32_t t : side.fans[fan]) area += area_of(side.triangles[t], x);
-  return area;
-}
-
-void Contacts::pair_of(size_t contact, const Vec3* x, FacingPair& pair) const {
-  pair.node = facing_nodes_[contact];
-  pair.corners.fill(FacingPair::none);
-  pair.margin = facing_margins_[contact];
-  const uint8_t side = facing_sides_[contact];
-  const Side& other = sides_[side ^ 1U];
-  const Sight& sight = side < 2 ? lips : lids;
-  if (facing_fans_[contact] == FacingPair::none) return;
-  Vec3 facing = fan_area(sides_[side], facing_fans_[contact], x);
-  if (facing.squaredNorm() < 1e-30) return;
-  facing.normalize();
-  const Vec3& p = x[pair.node];
-  constexpr double longest = 0.012;  // metres: no edge there is is longer
-  double best = sight.reach * sight.reach, within = sight.reach + longest;
-  for (size_t i = 0; i < other.triangles.size(); ++i) {
-    const auto& t = other.triangles[i];
-    if ((x[t[0]] - p).squaredNorm() > within * within) continue;
-    const Vec3 weights = closest_weights(p, x[t[0]], x[t[1]], x[t[2]]);
-    const Vec3 away = p - (weights[0] * x[t[0]] + weights[1] * x[t[1]] + weights[2] * x[t[2]]);
-    const double distance = away.squaredNorm();
-    if (distance >= best || area_of(t, x).squaredNorm() < 1e-30) continue;
-    // Between the corners' normals: where a surface turns about an edge, as a lid does, its triangles' own would lead past it.
-    Vec3 normal = Vec3::Zero();
-    for (size_t k = 0; k < 3; ++k) normal += weights[static_cast<int>(k)] * fan_area(other, other.corners[i][k], x).stableNormalized();
-    const double size = normal.norm();
-    if (size < 0.1 || normal.dot(facing) > 0.2 * size) continue;  // its back, or a surface that runs along
-    normal /= size;
-    const double along = normal.dot(away);
-    if (along < -sight.depth || (away - along * normal).squaredNorm() > sight.slip * sight.slip) continue;
-    best = distance;
-    within = std::sqrt(best) + longest;
-    pair.corners = t;
-    pair.weights = weights;
-    pair.normal = normal;
-  }
-}
-
-double Contacts::find_facing(const Vec3* x, std::span<FacingPair> pairs) const {
-  double change = 0.0;
-  for (size_t i = 0; i < facing_nodes_.size() && i < pairs.size(); ++i) {
-    const FacingPair before = pairs[i];
-    pair_of(i, x, pairs[i]);
-    const auto lack = [x](const FacingPair& pair) { return pair.is_found() ? std::max(0.0, pair.margin - pair.gap(x)) : 0.0; };
-    change = std::max(change, std::abs(lack(pairs[i]) - lack(before)));
-  }
-  return change;
-}
-
 size_t Contacts::find_grips(const RigidTransform& mandible, const RigidTransform& mandible_step, std::span<const FacingPair> pairs,
                             const Vec3* before, const Vec3* x, std::span<Grip> grips, const std::vector<uint32_t>* near_bones) const {
   size_t count = 0;
@@ -345,8 +273,9 @@ double Contacts::deepest(const RigidTransform& mandible, const Vec3* x) const {
   for (size_t c = 0; c < globe_nodes_.size(); ++c) most = std::max(most, globe_touch(c, x).depth);
   for (size_t c = 0; c < bone_nodes_.size(); ++c) most = std::max(most, bone_touch(c, mandible, x).depth);
   FacingPair pair;
+  FacingSearch search = make_search();
   for (size_t i = 0; i < facing_nodes_.size(); ++i) {
-    pair_of(i, x, pair);
+    pair_of(i, x, search, pair);
     if (pair.is_found()) most = std::max(most, pair.margin - pair.gap(x));
   }
   return most;

@@ -63,6 +63,15 @@ struct Grip {
   double stiffness = 0.0, normal_stiffness = 0.0;
 };
 
+/// Work memory of a search for what faces what.
+struct FacingSearch {
+  size_t side = 6;              ///< whose triangles these are; 6: nobody's yet
+  size_t bundle = 8;            ///< neighbouring triangles a bundle
+  std::vector<Vec3> centres;    ///< of each bundle
+  std::vector<double> radii, squared;
+  std::vector<Vec3> normals;    ///< of the side's nodes, unit
+};
+
 /// All contact of a face; made once, shared by every instance.
 class Contacts {
  public:
@@ -81,7 +90,9 @@ class Contacts {
 
   /// Finds for each facing node the nearest place of the other side as the face stands in `x`. #facing nodes; the
   /// largest change of a gap against the pairs before, metres, is returned.
-  double find_facing(const Vec3* x, std::span<FacingPair> pairs) const;
+  double find_facing(const Vec3* x, std::span<FacingPair> pairs, FacingSearch& search) const;
+  /// Memory enough for a search.
+  FacingSearch make_search() const;
   /// What grips after a step from `before` to `x`, both #nodes, for the step to come; returns how many of `grips`.
   /// Bones' own motion of the coming step is `mandible_step`; `near_bones` are the contacts with bone to look at, else all.
   size_t find_grips(const RigidTransform& mandible, const RigidTransform& mandible_step, std::span<const FacingPair> pairs,
@@ -114,7 +125,8 @@ class Contacts {
   Touch globe_touch(size_t contact, const Vec3* x) const;
   Touch bone_touch(size_t contact, const RigidTransform& mandible, const Vec3* x) const;
   static Vec3 fan_area(const Side& side, uint32_t fan, const Vec3* x);
-  void pair_of(size_t contact, const Vec3* x, FacingPair& pair) const;
+  void look_at_side(size_t side, const Vec3* x, FacingSearch& search) const;
+  void pair_of(size_t contact, const Vec3* x, FacingSearch& search, FacingPair& pair) const;
 
   ContactOptions options_;
   std::vector<uint32_t> globe_nodes_;

@@ -117,6 +117,7 @@ Frame FaceModel::make_frame() const {
   frame.fibre_pulls.resize(lattice_.fibre_count());
   frame.pressures.resize(lattice_.pressure_prism.size());
   frame.facing.resize(contacts_.facing_count());
+  frame.facing_search = contacts_.make_search();
   frame.grips.resize(contacts_.grip_capacity());
   place({}, frame);
   return frame;

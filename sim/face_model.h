@@ -57,6 +57,7 @@ struct Frame {
   Vec3 acceleration = Vec3::Zero();
   RigidTransform mandible;
   std::vector<FacingPair> facing;   ///< lip before lip, lid before lid: see FaceModel::face_up
+  FacingSearch facing_search;
   std::vector<Grip> grips;          ///< capacity of them; friction, in steps of time
   size_t grip_count = 0;
   std::span<const NodeForce> touches;
@@ -78,7 +79,7 @@ class FaceModel {
   void place(const Drive& drive, Frame& frame) const;
 
   /// Finds what lips and lids face as the face stands in `x`; returns the largest change against before, metres.
-  double face_up(const Vec3* x, Frame& frame) const { return contacts_.find_facing(x, frame.facing); }
+  double face_up(const Vec3* x, Frame& frame) const { return contacts_.find_facing(x, frame.facing, frame.facing_search); }
 
   /// Joules of the configuration `x` (#nodes), above those of the rest pose; writes the gradient in
   /// newtons (#nodes, zero where a node is prescribed). One set of energies for pose and step.

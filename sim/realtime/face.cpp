@@ -249,7 +249,7 @@ MinimiseResult Face::static_pose(const Drive& drive, const PoseOptions& options,
   if (options.from_last_pose && pose_offset_.size() > 0) model_->loops().add(1.0F, pose_offset_.data(), x, model_->places());
   const Contacts& contacts = model_->face().contacts();
   fill_nodes(x, work->nodes);
-  contacts.find_facing(work->nodes.data(), facing_);
+  contacts.find_facing(work->nodes.data(), facing_, work->facing_search);
   MinimiseResult result;
   for (int round = 0; round < options.contact_rounds; ++round) {
     const int before = result.iterations;
@@ -257,7 +257,7 @@ MinimiseResult Face::static_pose(const Drive& drive, const PoseOptions& options,
     result.iterations += before;
     if (facing_.empty()) break;
     fill_nodes(x, work->nodes);
-    if (contacts.find_facing(work->nodes.data(), facing_) < options.contact_tolerance) break;
+    if (contacts.find_facing(work->nodes.data(), facing_, work->facing_search) < options.contact_tolerance) break;
   }
   if (pose_offset_.size() == 0) pose_offset_ = Floats(model_->places());
   for (size_t i = 0; i < model_->places(); ++i) pose_offset_.data()[i] = x[i] - work->carried.data()[i];
@@ -316,7 +316,7 @@ MinimiseResult Face::substep(double share, bool is_first, const Drive& drive, co
   float* const velocity = velocity_.data();
   if (!facing_.empty() || !reach_.empty()) {
     fill_nodes(x, work.nodes);
-    if (is_first) contacts.find_facing(work.nodes.data(), facing_);
+    if (is_first) contacts.find_facing(work.nodes.data(), facing_, work.facing_search);
     if (contacts.options().friction > 0.0 || contacts.options().stickiness > 0.0) {
       for (size_t i = 0; i < work.nodes.size(); ++i) work.nodes_before[i] = work.nodes[i] - h * place_at(velocity, model_->slot_of(i));
       RigidTransform turn;

@@ -184,6 +184,7 @@ std::unique_ptr<Workspace> Model::borrow() const {
     for (size_t k = 0; k < Workspace::history; ++k) list->emplace_back(unknown_floats_);
   work->nodes.resize(face_->rest().size());
   work->nodes_before.resize(face_->rest().size());
+  work->facing_search = face_->contacts().make_search();
   work->near_bones.reserve(face_->contacts().bone_nodes().size());
   work->values.resize(channels_);
   return work;

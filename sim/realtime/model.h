@@ -22,6 +22,7 @@ struct Workspace {
   Positions nodes, nodes_before;                                                       // #nodes, for contact
   std::vector<float> values;                                                           // by channel
   std::vector<Grip> grips;
+  FacingSearch facing_search;
   std::vector<uint32_t> near_bones;  // contacts that may touch
 };
 

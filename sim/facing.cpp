@@ -1,0 +1,161 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "sim/contact.h"
+
+// Which place of the other lip or lid a node faces.
+
+namespace fascia::sim {
+namespace {
+
+/// Where a place may lie that sees a facing surface, metres.
+struct Sight {
+  double reach;  ///< before the surface
+  double depth;  ///< behind it: what lies deeper has come from somewhere else
+  double slip;   ///< beside it
+};
+constexpr Sight lips = {0.006, 0.0025, 0.0015};
+constexpr Sight lids = {0.014, 0.0040, 0.0040};  // edges that meet head on across the whole fissure
+
+/// Weights of the point of a triangle that is closest to `p` (Ericson 2005, section 5.1.5).
+Vec3 closest_weights(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 ab = b - a, ac = c - a, ap = p - a;
+  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
+  if (d1 <= 0.0 && d2 <= 0.0) return {1, 0, 0};
+  const Vec3 bp = p - b;
+  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
+  if (d3 >= 0.0 && d4 <= d3) return {0, 1, 0};
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) {
+    const double v = d1 / (d1 - d3);
+    return {1 - v, v, 0};
+  }
+  const Vec3 cp = p - c;
+  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
+  if (d6 >= 0.0 && d5 <= d6) return {0, 0, 1};
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) {
+    const double w = d2 / (d2 - d6);
+    return {1 - w, 0, w};
+  }
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0) {
+    const double w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+    return {0, 1 - w, w};
+  }
+  const double whole = va + vb + vc;
+  if (!(whole > 0.0)) return {1, 0, 0};
+  return {va / whole, vb / whole, vc / whole};
+}
+
+Vec3 area_of(const std::array<uint32_t, 3>& t, const Vec3* x) { return (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]); }
+
+}  // namespace
+
+Vec3 Contacts::fan_area(const Side& side, uint32_t fan, const Vec3* x) {
+  Vec3 area = Vec3::Zero();
+  for (const uint32_t t : side.fans[fan]) area += area_of(side.triangles[t], x);
+  return area;
+}
+
+FacingSearch Contacts::make_search() const {
+  FacingSearch search;
+  size_t triangles = 0, nodes = 0;
+  for (const Side& side : sides_) {
+    triangles = std::max(triangles, side.triangles.size());
+    nodes = std::max(nodes, side.fans.size());
+  }
+  const size_t bundles = (triangles + search.bundle - 1) / search.bundle;
+  search.centres.reserve(bundles);
+  search.radii.reserve(bundles);
+  search.squared.resize(bundles);
+  search.normals.reserve(nodes);
+  return search;
+}
+
+void Contacts::look_at_side(size_t index, const Vec3* x, FacingSearch& search) const {
+  const Side& side = sides_[index];
+  search.side = index;
+  search.centres.clear();
+  search.radii.clear();
+  search.normals.clear();
+  for (size_t first = 0; first < side.triangles.size(); first += search.bundle) {
+    const std::span bundle = std::span(side.triangles).subspan(first, std::min(search.bundle, side.triangles.size() - first));
+    Vec3 centre = Vec3::Zero();
+    for (const auto& t : bundle) centre += x[t[0]] / static_cast<double>(bundle.size());
+    double squared = 0.0;
+    for (const auto& t : bundle)
+      for (const uint32_t corner : t) squared = std::max(squared, (x[corner] - centre).squaredNorm());
+    search.centres.push_back(centre);
+    search.radii.push_back(std::sqrt(squared));
+  }
+  for (uint32_t fan = 0; fan < side.fans.size(); ++fan) search.normals.push_back(fan_area(side, fan, x).stableNormalized());
+}
+
+void Contacts::pair_of(size_t contact, const Vec3* x, FacingSearch& search, FacingPair& pair) const {
+  pair.node = facing_nodes_[contact];
+  pair.corners.fill(FacingPair::none);
+  pair.margin = facing_margins_[contact];
+  const uint8_t side = facing_sides_[contact];
+  const Side& other = sides_[side ^ 1U];
+  const Sight& sight = side < 2 ? lips : lids;
+  if (facing_fans_[contact] == FacingPair::none || other.triangles.empty()) return;
+  if (search.side != (side ^ 1U)) look_at_side(side ^ 1U, x, search);
+  Vec3 facing = fan_area(sides_[side], facing_fans_[contact], x);
+  if (facing.squaredNorm() < 1e-30) return;
+  facing.normalize();
+  const Vec3& p = x[pair.node];
+  double best = sight.reach * sight.reach;
+  const auto look_at = [&](size_t i) {
+    const auto& t = other.triangles[i];
+    const Vec3 weights = closest_weights(p, x[t[0]], x[t[1]], x[t[2]]);
+    const Vec3 away = p - (weights[0] * x[t[0]] + weights[1] * x[t[1]] + weights[2] * x[t[2]]);
+    const double distance = away.squaredNorm();
+    if (distance >= best || area_of(t, x).squaredNorm() < 1e-30) return;
+    // Between the corners' normals: where a surface turns about an edge, as a lid does, its triangles' own would lead past it.
+    Vec3 normal = Vec3::Zero();
+    for (size_t k = 0; k < 3; ++k) normal += weights[static_cast<int>(k)] * search.normals[other.corners[i][k]];
+    const double size = normal.norm();
+    if (size < 0.1 || normal.dot(facing) > 0.2 * size) return;  // its back, or a surface that runs along
+    normal /= size;
+    const double along = normal.dot(away);
+    if (along < -sight.depth || (away - along * normal).squaredNorm() > sight.slip * sight.slip) return;
+    best = distance;
+    pair.corners = t;
+    pair.weights = weights;
+    pair.normal = normal;
+  };
+  const auto look_through = [&](size_t bundle) {
+    const size_t first = bundle * search.bundle, end = std::min(first + search.bundle, other.triangles.size());
+    for (size_t i = first; i < end; ++i) look_at(i);
+  };
+  // The bundle in whose middle the node is most first: what it finds rules most others out.
+  size_t nearest = 0;
+  for (size_t b = 0; b < search.centres.size(); ++b) {
+    search.squared[b] = (search.centres[b] - p).squaredNorm();
+    if (search.squared[b] < search.squared[nearest]) nearest = b;
+  }
+  look_through(nearest);
+  double within = std::sqrt(best);
+  for (size_t b = 0; b < search.centres.size(); ++b) {
+    const double reach = search.radii[b] + within;
+    if (b == nearest || search.squared[b] >= reach * reach) continue;
+    look_through(b);
+    within = std::sqrt(best);
+  }
+}
+
+double Contacts::find_facing(const Vec3* x, std::span<FacingPair> pairs, FacingSearch& search) const {
+  double change = 0.0;
+  search.side = sides_.size();  // what was known of a side is of another time
+  for (size_t i = 0; i < facing_nodes_.size() && i < pairs.size(); ++i) {
+    const FacingPair before = pairs[i];
+    pair_of(i, x, search, pairs[i]);
+    const auto lack = [x](const FacingPair& pair) { return pair.is_found() ? std::max(0.0, pair.margin - pair.gap(x)) : 0.0; };
+    change = std::max(change, std::abs(lack(pairs[i]) - lack(before)));
+  }
+  return change;
+}
+
+}  // namespace fascia::sim
