@@ -1,9 +1,13 @@
 // What the machine can do at most: floats multiplied and added a second by one thread, and bytes moved from memory and from the
-// second-level cache. Then the sheet and how near it comes.
+// second-level cache. Then how near the sheet comes, and the loops of a face.
+//
+//   bench_machine [RIG.glb]
 #include <cstdio>
+#include <exception>
 #include <vector>
 
 #include "bench/sim/clock.h"
+#include "bench/sim/face_limit.h"
 #include "sim/sheet/sheet.h"
 
 namespace {
@@ -47,7 +51,7 @@ double gigabytes_a_second(size_t floats, int rounds) {
 
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
   std::vector<double> times;
   volatile float keep = 0.0F;
   constexpr long rounds = 2000000;
@@ -74,5 +78,11 @@ int main() {
   const double seconds = 1e-3 * bench::median(times);
   std::printf("sheet %.2f ms a frame: %.1f GFLOP/s, %.0f %% of the arithmetic; %.1f GB/s read and written, neighbours' from the first-level cache\n",
               1e3 * seconds, 1e-9 * flops / seconds, 1e-7 * flops / seconds / peak, 1e-9 * bytes / seconds);
+  if (argc > 1) try {
+      bench::print_face_limits(argv[1], {peak, near, far});
+    } catch (const std::exception& error) {
+      std::fprintf(stderr, "bench_machine: %s: %s\n", argv[1], error.what());
+      return 1;
+    }
   return keep == 0.5F ? 1 : 0;
 }
