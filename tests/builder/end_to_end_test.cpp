@@ -1,9 +1,12 @@
 // The embedded head from file to pose, and the numbers of its poses as a snapshot.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "cli/demo_curves.h"
 #include "formats/scene.h"
@@ -54,6 +57,18 @@ TEST_F(EmbeddedHead, BuildsTheSameBytesAgain) {
   EXPECT_EQ(formats::read_bytes(again.rig_path()), formats::read_bytes(face_->rig_path()));
 }
 
+/// Distances between the vertices of two faces of one rig, ascending, millimetres.
+std::vector<double> gaps(cli::Face& a, cli::Face& b) {
+  std::vector<double> list;
+  for (size_t m = 0; m < a.meshes().size(); ++m) {
+    const auto p = a.positions(m), q = b.positions(m);
+    for (size_t i = 0; i + 2 < p.size(); i += 3) list.push_back(1e3 * static_cast<double>(std::hypot(p[i] - q[i], p[i + 1] - q[i + 1], p[i + 2] - q[i + 2])));
+  }
+  std::sort(list.begin(), list.end());
+  return list;
+}
+double mean(const std::vector<double>& list) { return std::accumulate(list.begin(), list.end(), 0.0) / static_cast<double>(list.size()); }
+
 /// Poses and landmarks whose motion the snapshot keeps; millimetres.
 const std::vector<std::pair<std::string, PosedFace::Values>>& snapshot_poses() {
   static const std::vector<std::pair<std::string, PosedFace::Values>> poses = {
@@ -96,6 +111,36 @@ TEST_F(EmbeddedHead, PosesAsInTheSnapshot) {
       for (int k = 0; k < 3; ++k)
         EXPECT_NEAR(now[name][landmark][k].get<double>(), wanted[name][landmark][k].get<double>(), tolerance_mm)
             << name << " " << landmark << " axis " << k;
+}
+
+TEST_F(EmbeddedHead, TheFastSolverPosesAndMovesAsTheReference) {
+  cli::Face own(face_->rig_path(), {FASCIA_SPACE_METRES, "own", "low"}), reference(face_->rig_path(), {FASCIA_SPACE_METRES, "reference", "low"});
+  for (const auto& [name, values] : snapshot_poses()) {
+    for (cli::Face* face : {&own, &reference}) {
+      face->clear();
+      face->reset();
+      for (const auto& [channel, value] : values) face->set(channel, value);
+      face->pose();
+    }
+    const std::vector<double> list = gaps(own, reference);
+    EXPECT_LT(mean(list), 0.02) << name;
+    EXPECT_LT(list[list.size() * 99 / 100], 0.05) << name;
+  }
+  for (cli::Face* face : {&own, &reference}) {
+    face->clear();
+    face->reset();
+  }
+  double worst = 0.0;
+  for (int frame = 0; frame < 30; ++frame) {
+    for (cli::Face* face : {&own, &reference}) {
+      face->set("arkit:mouthSmileLeft", 0.5 - 0.5 * std::cos(0.2 * frame));
+      face->set("arkit:jawOpen", 0.2 - 0.2 * std::cos(0.15 * frame));
+      face->set("arkit:browInnerUp", 0.5 - 0.5 * std::cos(0.1 * frame));
+      face->step(1.0 / 60.0);
+    }
+    worst = std::max(worst, mean(gaps(own, reference)));
+  }
+  EXPECT_LT(worst, 0.05);
 }
 
 }  // namespace
