@@ -26,12 +26,13 @@ SweptFace::SweptFace(std::shared_ptr<const runtime::Asset> asset, size_t level)
       face_(asset_->realtime_model(level), asset_->channel_names.size()), values_(asset_->channel_rest),
       displacements_(model_->rest().size(), sim::Vec3f::Zero()) {
   const rig::TissueLevel& tissue = asset_->rig().tissue.levels[level];
+  bones_.displacements = displacements_;
   lattice_ = std::make_unique<Crossings>(skin_layer(tissue), column_sides(tissue));
   std::vector<uint8_t> sides;
   for (size_t i = 0; i < asset_->primitives().size(); ++i) {
     const rig::Binding* binding = asset_->binding(level, i);
     if (binding == nullptr || binding->part != "skin") continue;
-    meshes_.emplace_back(asset_->primitives()[i], binding, asset_->rig().input_to_metres, FASCIA_SPACE_METRES);
+    meshes_.emplace_back(*asset_->shapes(level, FASCIA_SPACE_METRES)[i]);
     const auto first = static_cast<int>(sides.size());
     const std::vector<uint8_t> own = vertex_sides(*binding, tissue);
     sides.insert(sides.end(), own.begin(), own.end());
@@ -96,10 +97,8 @@ sim::Drive SweptFace::drive() const {
 
 void SweptFace::follow() {
   face_.displacements(displacements_);
-  runtime::BonePose bones;
-  bones.displacements = displacements_;
-  bones.jaw = sim::jaw_transform(model_->jaw(), drive().jaw);
-  for (runtime::BoundMesh& mesh : meshes_) mesh.follow(bones);
+  bones_.jaw = sim::jaw_transform(model_->jaw(), drive().jaw);
+  for (runtime::BoundMesh& mesh : meshes_) mesh.follow(bones_);
 }
 
 void SweptFace::pose() {
@@ -117,8 +116,8 @@ bool SweptFace::step(double seconds) {
 
 TriangleMesh SweptFace::skin() const {
   TriangleMesh mesh{{}, triangles_};
-  for (const runtime::BoundMesh& part : meshes_)
-    for (const sim::Vec3f& p : part.positions()) mesh.vertices.push_back(p.cast<double>());
+  for (runtime::BoundMesh& part : meshes_)
+    for (const sim::Vec3f& p : part.positions(bones_)) mesh.vertices.push_back(p.cast<double>());
   return mesh;
 }
 

@@ -60,7 +60,8 @@ class SweptFace {
   sim::Vec3 acceleration_ = sim::Vec3::Zero();
   std::span<const sim::NodeForce> touches_;
   std::vector<sim::Vec3f> displacements_;
-  std::vector<runtime::BoundMesh> meshes_;  ///< the skin's primitives
+  runtime::BonePose bones_;
+  mutable std::vector<runtime::BoundMesh> meshes_;  ///< the skin's primitives
   std::vector<Triangle> triangles_;         ///< of all of them
   std::unique_ptr<Crossings> lattice_, rendered_;
 };
