@@ -90,7 +90,8 @@ class Contacts {
 
   /// Finds for each facing node the nearest place of the other side as the face stands in `x`. #facing nodes; the
   /// largest change of a gap against the pairs before, metres, is returned.
-  double find_facing(const Vec3* x, std::span<FacingPair> pairs, FacingSearch& search) const;
+  /// With `every` above 1 only the pairs first, first + every, ... are looked at.
+  double find_facing(const Vec3* x, std::span<FacingPair> pairs, FacingSearch& search, size_t first = 0, size_t every = 1) const;
   /// Memory enough for a search.
   FacingSearch make_search() const;
   /// What grips after a step from `before` to `x`, both #nodes, for the step to come; returns how many of `grips`.

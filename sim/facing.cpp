@@ -146,10 +146,10 @@ void Contacts::pair_of(size_t contact, const Vec3* x, FacingSearch& search, Faci
   }
 }
 
-double Contacts::find_facing(const Vec3* x, std::span<FacingPair> pairs, FacingSearch& search) const {
+double Contacts::find_facing(const Vec3* x, std::span<FacingPair> pairs, FacingSearch& search, size_t first, size_t every) const {
   double change = 0.0;
   search.side = sides_.size();  // what was known of a side is of another time
-  for (size_t i = 0; i < facing_nodes_.size() && i < pairs.size(); ++i) {
+  for (size_t i = first; i < facing_nodes_.size() && i < pairs.size(); i += every) {
     const FacingPair before = pairs[i];
     pair_of(i, x, search, pairs[i]);
     const auto lack = [x](const FacingPair& pair) { return pair.is_found() ? std::max(0.0, pair.margin - pair.gap(x)) : 0.0; };

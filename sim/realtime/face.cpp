@@ -282,6 +282,7 @@ void Face::reset(const Drive& drive) {
   last_mandible_ = jaw_transform(model_->face().jaw(), last_jaw_);
   last_acceleration_.setZero();
   left_over_ = 0.0;
+  turn_ = 0;
   model_->give_back(std::move(work));
 }
 
@@ -295,7 +296,7 @@ MinimiseResult Face::settle(const Drive& drive, const PoseOptions& options) {
   return result;
 }
 
-MinimiseResult Face::substep(double share, bool is_first, const Drive& drive, const StepOptions& options, Workspace& work) {
+MinimiseResult Face::substep(double share, const Drive& drive, const StepOptions& options, Workspace& work) {
   const FaceModel& face = model_->face();
   const double h = face.options().substep;
   for (size_t c = 0; c < excitations_.size(); ++c) {
@@ -316,7 +317,10 @@ MinimiseResult Face::substep(double share, bool is_first, const Drive& drive, co
   float* const velocity = velocity_.data();
   if (!facing_.empty() || !reach_.empty()) {
     fill_nodes(x, work.nodes);
-    if (is_first) contacts.find_facing(work.nodes.data(), facing_, work.facing_search);
+    // Who faces whom changes slowly, and is known from afar: after the first time, a quarter of them a substep.
+    if (turn_ == 0) contacts.find_facing(work.nodes.data(), facing_, work.facing_search);
+    else contacts.find_facing(work.nodes.data(), facing_, work.facing_search, turn_ % 4, 4);
+    ++turn_;
     if (contacts.options().friction > 0.0 || contacts.options().stickiness > 0.0) {
       for (size_t i = 0; i < work.nodes.size(); ++i) work.nodes_before[i] = work.nodes[i] - h * place_at(velocity, model_->slot_of(i));
       RigidTransform turn;
@@ -377,7 +381,7 @@ StepResult Face::step(double seconds, const Drive& drive, const StepOptions& opt
   const int substeps = std::min(static_cast<int>(due / h + 1e-9), options.largest_number_of_substeps);
   for (int k = 0; k < substeps && result.status == StepStatus::done; ++k) {
     // The drive at this substep's own time: before it lie last frame's left-over and k whole substeps.
-    const MinimiseResult solved = substep(std::clamp(((k + 1) * h - left_over_) / seconds, 0.0, 1.0), k == 0, drive, options, *work);
+    const MinimiseResult solved = substep(std::clamp(((k + 1) * h - left_over_) / seconds, 0.0, 1.0), drive, options, *work);
     ++result.substeps;
     result.iterations += solved.iterations;
     result.move = solved.move;

@@ -48,7 +48,7 @@ class Face {
   double evaluate(Solve& solve, const float* x);
   float left_to_go(const Workspace& work) const;
   MinimiseResult minimise(Solve& solve, const MinimiseOptions& options, bool checks_last, float* x);
-  MinimiseResult substep(double share, bool is_first, const Drive& drive, const StepOptions& options, Workspace& work);
+  MinimiseResult substep(double share, const Drive& drive, const StepOptions& options, Workspace& work);
   bool sound(const float* carried, double largest) const;
 
   const Model* model_;
@@ -64,6 +64,7 @@ class Face {
   RigidTransform last_mandible_;
   Vec3 last_acceleration_ = Vec3::Zero();
   double left_over_ = 0.0;
+  uint32_t turn_ = 0;  ///< substeps since the last reset
 };
 
 }  // namespace fascia::sim::realtime
