@@ -78,12 +78,15 @@ void Face::gather() {
   std::fill(curve_members_.begin(), curve_members_.end(), 0.0F);
 }
 
-sim::Drive Face::drive() const {
+sim::JawPose Face::wanted_jaw() const {
   const BoneChannels& channels = asset_->bones();
+  return sim::clamped(asset_->jaw_muscles().moved({effective(channels.jaw_open), effective(channels.jaw_forward), effective(channels.jaw_lateral)}, effective_));
+}
+
+sim::Drive Face::drive() const {
   sim::Drive drive;
   drive.activations = effective_;
-  drive.jaw = {effective(channels.jaw_open), effective(channels.jaw_forward), effective(channels.jaw_lateral)};
-  drive.jaw = asset_->jaw_muscles().moved(drive.jaw, effective_);
+  drive.jaw = jaw_;
   drive.acceleration = acceleration_ + inertia_;
   drive.touches = touches_;
   return drive;
@@ -91,7 +94,7 @@ sim::Drive Face::drive() const {
 
 void Face::follow() {
   const BoneChannels& channels = asset_->bones();
-  bones_.jaw = sim::jaw_transform(model_->jaw(), drive().jaw);
+  bones_.jaw = sim::jaw_transform(model_->jaw(), jaw_);
   for (std::size_t eye = 0; eye < 2; ++eye)
     bones_.eyes[eye] = eye_rotation(effective(channels.eye_yaw[eye]), effective(channels.eye_pitch[eye]));
   for (BoundMesh& mesh : meshes_)
@@ -149,6 +152,7 @@ void Face::pose() {
   head_.known = 0;
   inertia_.setZero();
   gather();
+  jaw_ = wanted_jaw();
   solver_->pose(drive(), displacements_);
   follow();
 }
@@ -156,6 +160,7 @@ void Face::pose() {
 bool Face::step(double seconds) {
   inertia_ = inertia(seconds);
   gather();
+  if (std::isfinite(seconds)) jaw_ = sim::approached(jaw_, wanted_jaw(), seconds);
   const bool sound = solver_->step(seconds, drive(), displacements_);
   follow();
   return sound;
@@ -165,6 +170,7 @@ void Face::reset() {
   head_.known = 0;
   inertia_.setZero();
   gather();
+  jaw_ = wanted_jaw();
   solver_->reset(drive(), displacements_);
   follow();
 }

@@ -52,6 +52,8 @@ class Face {
   /// Adds up own values, members and curves into `effective_` and uses the curves up.
   void gather();
   sim::Drive drive() const;
+  /// Where channels and masticatory muscles want the jaw.
+  sim::JawPose wanted_jaw() const;
   /// What the head's own motion over `seconds` does to loose tissue, m/s^2 in its frame.
   sim::Vec3 inertia(double seconds);
   /// Takes displacements, jaw and eyes to the meshes.
@@ -79,6 +81,7 @@ class Face {
   std::vector<Vec3f> compression_;
   std::vector<Vec3f> displacements_, fibre_points_;
   BonePose bones_;
+  sim::JawPose jaw_;
   std::vector<BoundMesh> meshes_;
 };
 

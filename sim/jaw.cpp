@@ -13,6 +13,12 @@ JawPose clamped(const JawPose& pose) {
   return {within(pose.open, 0.0F), within(pose.forward, 0.0F), within(pose.lateral, -1.0F)};
 }
 
+JawPose approached(const JawPose& from, const JawPose& to, double seconds) {
+  const auto most = static_cast<float>(std::max(0.0, seconds) / quickest_travel);
+  const auto go = [most](float a, float b) { return a + std::clamp(b - a, -most, most); };
+  return {go(from.open, to.open), go(from.forward, to.forward), go(from.lateral, to.lateral)};
+}
+
 RigidTransform jaw_transform(const Jaw& jaw, const JawPose& pose, double share) {
   RigidTransform result;
   if (pose.at_rest() || share == 0.0) return result;

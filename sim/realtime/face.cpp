@@ -345,12 +345,14 @@ MinimiseResult Face::substep(double share, const Drive& drive, const StepOptions
   const float* carried = work.carried.data();
   float* const before = work.start.data();
   std::copy(x, x + model_->places(), before);
+  std::copy(carried, carried + model_->places(), work.begun_places.data());
   const auto& slots = model_->slots();
   const float seconds = f(h);
-  model_->loops().set_out({slots.size(), slots.data(), velocity, carried, carried_.data(), trust_.data(), seconds, x, work.ballistic.data(), work.begun.data()});
+  model_->loops().set_out({slots.size(), slots.data(), velocity, carried, carried_.data(), trust_.data(), seconds, x, work.ballistic.data(), work.begun.data(), work.begun_places.data()});
   for (const int32_t at : model_->prescribed_slots()) std::copy(carried + at, carried + at + 4, x + at);
   std::copy(carried, carried + model_->places(), carried_.data());
   const MinimiseResult result = minimise(solve, {options.iterations, options.tolerance}, options.checks_last, x);
+  turn_back(work, x);
   for (size_t i = 0; i < model_->places(); ++i) velocity[i] = (x[i] - before[i]) / seconds;
   return result;
 }

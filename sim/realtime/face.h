@@ -49,6 +49,9 @@ class Face {
   float left_to_go(const Workspace& work) const;
   MinimiseResult minimise(Solve& solve, const MinimiseOptions& options, bool checks_last, float* x);
   MinimiseResult substep(double share, const Drive& drive, const StepOptions& options, Workspace& work);
+  /// Takes the nodes of prisms that a substep of few iterations has turned inside out back towards where it began; returns how
+  /// many prisms that were.
+  int turn_back(Workspace& work, float* x) const;
   bool sound(const float* carried, double largest) const;
 
   const Model* model_;

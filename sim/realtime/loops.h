@@ -553,6 +553,7 @@ void set_out(const Outset& o) {
     const float trust = o.trust[k], share = trust < 1.0F ? inertia_else * trust : inertia_trusted;
     store_quad(o.ballistic + 4 * k, ballistic);
     store_quad(o.begun + 4 * k, begun);
+    store_quad(o.begun_places + at, begun);
     store_quad(o.x + at, begun + share * (ballistic - begun));
   }
 }

@@ -173,7 +173,7 @@ std::unique_ptr<Workspace> Model::borrow() const {
     }
   }
   auto work = std::make_unique<Workspace>();
-  for (Floats* list : {&work->carried, &work->start, &work->gradient}) *list = Floats(packed_.places);
+  for (Floats* list : {&work->carried, &work->start, &work->begun_places, &work->gradient}) *list = Floats(packed_.places);
   work->tether_normals = Floats(3 * wide * tethers_.size());
   work->carrier_pulls = Floats(3 * wide * carriers_.size());
   work->fibre_scratch = Floats(3 * wide * longest_fibre_);

@@ -15,7 +15,7 @@ namespace fascia::sim::realtime {
 /// What a solve needs of memory beside a face's own state; handed from face to face.
 struct Workspace {
   static constexpr size_t history = 6;
-  Floats carried, start, gradient, tether_normals, carrier_pulls, fibre_scratch;      // places and batches
+  Floats carried, start, begun_places, gradient, tether_normals, carrier_pulls, fibre_scratch;      // places and batches
   Floats solve_scratch;
   Floats packed, direction, moved, damped, last_gradient, begun, ballistic, answer;    // unknowns
   std::vector<Floats> steps, changes;                                                  // `history` of unknowns

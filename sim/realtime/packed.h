@@ -172,7 +172,9 @@ struct Outset {
   const int32_t* slot;
   const float *velocity, *carried, *carried_before, *trust;
   float seconds;
-  float *x, *ballistic, *begun;  ///< places that unknowns leave for the first guess; by unknown
+  float* x;                        ///< places that unknowns leave for the first guess
+  float *ballistic, *begun;        ///< by unknown
+  float* begun_places;             ///< as `begun`, by place
 };
 
 struct Loops {

@@ -84,12 +84,18 @@ void SweptFace::draw(std::mt19937& random) {
   }
 }
 
-sim::Drive SweptFace::drive() const {
+sim::JawPose SweptFace::wanted_jaw() const {
   const runtime::BoneChannels& bones = asset_->bones();
   const auto value = [&](int32_t channel) { return channel < 0 ? 0.0F : values_[static_cast<size_t>(channel)]; };
+  return sim::clamped(asset_->jaw_muscles().moved({value(bones.jaw_open), value(bones.jaw_forward), value(bones.jaw_lateral)}, values_));
+}
+
+void SweptFace::pass(double seconds) { jaw_ = sim::approached(jaw_, wanted_jaw(), seconds); }
+
+sim::Drive SweptFace::drive() const {
   sim::Drive drive;
   drive.activations = values_;
-  drive.jaw = asset_->jaw_muscles().moved({value(bones.jaw_open), value(bones.jaw_forward), value(bones.jaw_lateral)}, values_);
+  drive.jaw = jaw_;
   drive.acceleration = acceleration_;
   drive.touches = touches_;
   return drive;
@@ -97,11 +103,12 @@ sim::Drive SweptFace::drive() const {
 
 void SweptFace::follow() {
   face_.displacements(displacements_);
-  bones_.jaw = sim::jaw_transform(model_->jaw(), drive().jaw);
+  bones_.jaw = sim::jaw_transform(model_->jaw(), jaw_);
   for (runtime::BoundMesh& mesh : meshes_) mesh.follow(bones_);
 }
 
 void SweptFace::pose() {
+  jaw_ = wanted_jaw();
   sim::PoseOptions options;
   options.solver.iterations = 400;
   face_.settle(drive(), options);
@@ -109,6 +116,7 @@ void SweptFace::pose() {
 }
 
 bool SweptFace::step(double seconds) {
+  pass(seconds);
   const bool is_sound = face_.step(seconds, drive()).status == sim::StepStatus::done;
   follow();
   return is_sound;

@@ -26,6 +26,8 @@ class SweptFace {
   /// Nothing as what drives it.
   void relax();
   sim::Drive drive() const;
+  /// Lets the jaw go towards where the drive wants it; `step` does it itself.
+  void pass(double seconds);
 
   void pose();                         ///< where the drive's forces balance
   bool step(double seconds);           ///< false when the watchdog put the face back
@@ -49,6 +51,7 @@ class SweptFace {
   const sim::FaceModel& model() const { return *model_; }
 
  private:
+  sim::JawPose wanted_jaw() const;
   void add(const runtime::Target& target, float value);
   void follow();
 
@@ -57,6 +60,7 @@ class SweptFace {
   const sim::FaceModel* model_;
   sim::realtime::Face face_;
   std::vector<float> values_;
+  sim::JawPose jaw_;
   sim::Vec3 acceleration_ = sim::Vec3::Zero();
   std::span<const sim::NodeForce> touches_;
   std::vector<sim::Vec3f> displacements_;
