@@ -36,7 +36,7 @@ JawPose clamped(const JawPose& pose);
 
 /// Where a mandible gets from `from` towards `to` in so many seconds: no motion of the joint goes from one end to the other in less
 /// than `quickest_travel`, so that a channel that jumps does not tear the tissue. Both within the joint's limits.
-inline constexpr double quickest_travel = 0.08;
+inline constexpr double quickest_travel = 0.12;
 JawPose approached(const JawPose& from, const JawPose& to, double seconds);
 
 /// Where the share `share` (0..1) of the pose takes a point of the mandible. At share 1 this is the

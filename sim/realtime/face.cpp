@@ -352,7 +352,7 @@ MinimiseResult Face::substep(double share, const Drive& drive, const StepOptions
   for (const int32_t at : model_->prescribed_slots()) std::copy(carried + at, carried + at + 4, x + at);
   std::copy(carried, carried + model_->places(), carried_.data());
   const MinimiseResult result = minimise(solve, {options.iterations, options.tolerance}, options.checks_last, x);
-  turn_back(work, x);
+  for (int more = 0; !turn_back(work, x) && more < 4; ++more) minimise(solve, {2, options.tolerance}, false, x);
   for (size_t i = 0; i < model_->places(); ++i) velocity[i] = (x[i] - before[i]) / seconds;
   return result;
 }

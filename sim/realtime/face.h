@@ -49,9 +49,11 @@ class Face {
   float left_to_go(const Workspace& work) const;
   MinimiseResult minimise(Solve& solve, const MinimiseOptions& options, bool checks_last, float* x);
   MinimiseResult substep(double share, const Drive& drive, const StepOptions& options, Workspace& work);
-  /// Takes the nodes of prisms that a substep of few iterations has turned inside out back towards where it began; returns how
-  /// many prisms that were.
-  int turn_back(Workspace& work, float* x) const;
+  /// Takes the nodes of prisms that a substep of few iterations has turned inside out back towards where it began; false when
+  /// some are left.
+  bool turn_back(Workspace& work, float* x) const;
+  /// False when a prism was not upright; its nodes are then taken back if that helps, and marked.
+  bool is_upright(Workspace& work, size_t layer, size_t triangle, float* x) const;
   bool sound(const float* carried, double largest) const;
 
   const Model* model_;

@@ -6,9 +6,10 @@ namespace fascia::sim::realtime {
 namespace {
 
 constexpr double least = 0.01;  // of a prism's volume at rest, that is left to it
-constexpr double thin = 5e-10;  // cubic metres: what may turn in one go
+constexpr float touched = 1e30F; // stiffness that marks nodes taken back
 constexpr int passes = 24;      // over neighbours that a node's way back may turn in their stead
 
+float f(double value) { return static_cast<float>(value); }
 Vec3 place_at(const float* list, size_t at) { return {list[at], list[at + 1], list[at + 2]}; }
 
 /// A prism on its way through one substep.
@@ -29,50 +30,58 @@ struct Way {
 
 }  // namespace
 
-int Face::turn_back(Workspace& work, float* x) const {
+bool Face::is_upright(Workspace& work, size_t layer, size_t triangle, float* x) const {
   const FaceModel& face = model_->face();
-  const auto& triangles = face.lattice().triangles;
-  const auto& prisms = face.prisms();
-  float* const stiffer = work.gradient.data() + 3;  // where the last look at the energies found walls standing
-  const float* const before = work.start.data();
-  const float* const begun = work.begun_places.data();
-  int moved = 0;
-  for (int pass = 0; pass < passes; ++pass) {
-    bool is_sound = true;
-    for (size_t t = 0; t < triangles.size(); ++t) {
-      std::array<bool, 3> risk{};
-      for (size_t layer = 0; layer < 3; ++layer)
-        for (const uint32_t column : triangles[t]) risk[layer] = risk[layer] || stiffer[16 * static_cast<size_t>(column) + 4 * layer] > 0.0F;
-      for (size_t layer = 0; layer < 2; ++layer) {
-        const Prism& prism = prisms[layer * triangles.size() + t];
-        const double room = least * prism.volume;
-        if ((!risk[layer] && !risk[layer + 1] && prism.volume > thin) || !(room > 0.0)) continue;
-        std::array<size_t, 6> at{};
-        Way way;
-        for (size_t k = 0; k < 6; ++k) {
-          at[k] = 16 * static_cast<size_t>(triangles[t][k % 3]) + 4 * (layer + k / 3);
-          way.now[k] = way.corners[k] = place_at(x, at[k]);
-        }
-        if (way.volume() > room) continue;
-        // Carried along as one it keeps the volume it had, or has that of its bones alone; nodes on bones stay where they are.
-        const auto go_back = [&](const float* from, const float* to, const float* shape) {
-          Vec3 shift = Vec3::Zero();
-          for (const size_t slot : at) shift += (place_at(to, slot) - place_at(from, slot)) / 6.0;
-          for (size_t k = 0; k < 6; ++k) way.back[k] = face.prescribed(prism.nodes[k]) ? way.now[k] : Vec3(place_at(shape, at[k]) + shift);
-          return way.go_back(room);
-        };
-        if (!go_back(before, begun, before) && !go_back(work.carried.data(), x, work.carried.data())) continue;
-        for (size_t k = 0; k < 6; ++k) {
-          for (size_t axis = 0; axis < 3; ++axis) x[at[k] + axis] = static_cast<float>(way.corners[k][static_cast<int>(axis)]);
-          stiffer[at[k]] = 1.0F;
-        }
-        is_sound = false;
-        ++moved;
-      }
-    }
-    if (is_sound) break;
+  const auto& corners = face.lattice().triangles[triangle];
+  const Prism& prism = face.prisms()[layer * face.lattice().triangles.size() + triangle];
+  const double room = least * prism.volume;
+  if (!(room > 0.0)) return true;
+  std::array<size_t, 6> at{};
+  Way way;
+  for (size_t k = 0; k < 6; ++k) {
+    at[k] = 16 * static_cast<size_t>(corners[k % 3]) + 4 * (layer + k / 3);
+    way.now[k] = way.corners[k] = place_at(x, at[k]);
   }
-  return moved;
+  if (way.volume() > room) return true;
+  // Carried along as one it keeps the volume it had, or has that of its bones alone; nodes on bones stay where they are.
+  const auto go_back = [&](const float* from, const float* to, const float* shape) {
+    Vec3 shift = Vec3::Zero();
+    for (const size_t slot : at) shift += (place_at(to, slot) - place_at(from, slot)) / 6.0;
+    for (size_t k = 0; k < 6; ++k) way.back[k] = face.prescribed(prism.nodes[k]) ? way.now[k] : Vec3(place_at(shape, at[k]) + shift);
+    return way.go_back(room);
+  };
+  const float* const before = work.start.data();
+  const bool goes = go_back(before, work.begun_places.data(), before) || go_back(work.carried.data(), x, work.carried.data());
+  for (size_t k = 0; k < 6; ++k) {
+    work.gradient.data()[at[k] + 3] = touched;
+    for (size_t axis = 0; goes && axis < 3; ++axis) x[at[k] + axis] = f(way.corners[k][static_cast<int>(axis)]);
+  }
+  return false;
+}
+
+bool Face::turn_back(Workspace& work, float* x) const {
+  const auto& triangles = model_->face().lattice().triangles;
+  bool all_upright = true;
+  for (size_t b = 0; b < work.risk.size(); ++b) {
+    if (work.risk[b] == 0 && model_->thin_batches()[b] == 0) continue;
+    float shares[2 * batch_width];
+    model_->loops().shares_left(model_->packed(), b, x, shares);
+    for (size_t i = 0; i < 2 * batch_width; ++i)
+      if (const size_t t = model_->triangle_at(b, i % batch_width); !(shares[i] > 1.5F * f(least)) && t < triangles.size())
+        all_upright = is_upright(work, i / batch_width, t, x) && all_upright;
+  }
+  // Nodes taken back may have turned their neighbours.
+  for (int pass = 1; pass < passes && !all_upright; ++pass) {
+    all_upright = true;
+    for (size_t t = 0; t < triangles.size(); ++t)
+      for (size_t layer = 0; layer < 2; ++layer) {
+        bool is_near = false;
+        for (const uint32_t column : triangles[t])
+          for (size_t k = 0; k < 2; ++k) is_near = is_near || work.gradient.data()[16 * static_cast<size_t>(column) + 4 * (layer + k) + 3] == touched;
+        if (is_near) all_upright = is_upright(work, layer, t, x) && all_upright;
+      }
+  }
+  return all_upright;
 }
 
 }  // namespace fascia::sim::realtime

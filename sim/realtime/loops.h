@@ -19,6 +19,8 @@ FASCIA_INLINE Lanes channel_values(const float* values, const SixteenAt& channel
 }
 /// Bounds an element's curvature by that of its corners alone: neighbours pull along.
 constexpr float corner_bound = 2.0F;
+/// Share of its volume below which a prism may be turned by what is not looked at any more.
+constexpr float risk_begin = 0.6F;
 
 FASCIA_INLINE Lanes positive(const Lanes& a) { return greater(a, splat(0.0F)); }
 
@@ -86,7 +88,7 @@ FASCIA_INLINE Lanes prism_volume(const Lanes3* p, const Lanes3* q, Lanes3* by_p,
 }
 
 FASCIA_INLINE void prism(const PrismBatch& m, const Packed& packed, const Lanes3* p, const Lanes3* q, Lanes3* by_p, Lanes3* by_q,
-                         Lanes* stiffer_p, Lanes* stiffer_q, Lanes& energy) {
+                         Lanes* stiffer_p, Lanes* stiffer_q, Lanes& energy, bool& at_risk) {
   Lanes3 outer[3], inner[3];
   const Lanes volume = prism_volume<true>(p, q, outer, inner);
   const Lanes inverse = load(m.inverse_volume), excess = volume - load(m.volume);
@@ -94,6 +96,7 @@ FASCIA_INLINE void prism(const PrismBatch& m, const Packed& packed, const Lanes3
   energy += 0.5F * stiff * excess;
   Lanes pressure = stiff * (1.0F / 6.0F);
   const Lanes ratio = volume * inverse;
+  at_risk |= any_below(ratio, splat(risk_begin));
   if (any_below(ratio, splat(packed.turn_begin))) {
     const Wall wall = wall_at(packed.turn_begin, packed.turn_end, ratio);
     energy += guard * wall.value * greater(load(m.volume), 0.0F);
@@ -110,7 +113,17 @@ FASCIA_INLINE void prism(const PrismBatch& m, const Packed& packed, const Lanes3
   }
 }
 
-Lanes triangle_energy(const Packed& packed, const float* x, float* gradient) {
+void shares_left(const Packed& packed, size_t b, const float* x, float* shares) {
+  const TriangleBatch& batch = packed.triangles[b];
+  Lanes3 place[3][3], by_outer[3], by_inner[3];
+  for (size_t layer = 0; layer < 3; ++layer)
+    for (size_t k = 0; k < 3; ++k) place[layer][k] = gather(x + 4 * layer, batch.column[k]);
+  for (size_t layer = 0; layer < 2; ++layer)
+    store(shares + batch_width * layer,
+          prism_volume<true>(place[layer], place[layer + 1], by_outer, by_inner) * load(batch.prism[layer].inverse_volume));
+}
+
+Lanes triangle_energy(const Packed& packed, const Driven& driven, const float* x, float* gradient) {
   Lanes energy = splat(0.0F);
   for (size_t b = 0; b < packed.triangle_batches; ++b) {
     const TriangleBatch& batch = packed.triangles[b];
@@ -122,11 +135,13 @@ Lanes triangle_energy(const Packed& packed, const float* x, float* gradient) {
         force[layer][k] = Lanes3{splat(0.0F), splat(0.0F), splat(0.0F)};
         stiffer[layer][k] = splat(0.0F);
       }
+    bool at_risk = false;
     for (size_t layer = 0; layer < 2; ++layer) {
       membrane(batch.membrane[layer], packed, place[layer], force[layer], stiffer[layer], energy);
       prism(batch.prism[layer], packed, place[layer], place[layer + 1], force[layer], force[layer + 1], stiffer[layer],
-            stiffer[layer + 1], energy);
+            stiffer[layer + 1], energy, at_risk);
     }
+    driven.risk[b] = at_risk ? 1 : 0;
     for (size_t layer = 0; layer < 3; ++layer)
       for (size_t k = 0; k < 3; ++k) scatter_add(gradient + 4 * layer, batch.column[k], force[layer][k], stiffer[layer][k]);
   }
@@ -309,7 +324,7 @@ Lanes fibre_energy(const Packed& packed, const Driven& driven, const float* x, f
 
 double total_energy(const Packed& packed, const Driven& driven, const float* x, float* gradient) {
   for (size_t i = 0; i < packed.places; i += 16) store(gradient + i, splat(0.0F));
-  double energy = static_cast<double>(total(triangle_energy(packed, x, gradient)));
+  double energy = static_cast<double>(total(triangle_energy(packed, driven, x, gradient)));
   energy += static_cast<double>(total(edge_energy(packed, x, gradient)));
   energy += static_cast<double>(total(spring_energy(packed, x, gradient)));
   energy += static_cast<double>(total(held_energy(packed, driven, x, gradient)));
@@ -589,7 +604,7 @@ float largest(const float* a, size_t count) {
 }  // namespace
 
 const Loops& FASCIA_LOOPS() {
-  static constexpr Loops loops{place, total_energy, multiply, subtract, collect, scale, solve, stride, set_out, dot_of, add, largest};
+  static constexpr Loops loops{place, total_energy, shares_left, multiply, subtract, collect, scale, solve, stride, set_out, dot_of, add, largest};
   return loops;
 }
 

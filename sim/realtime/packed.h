@@ -113,6 +113,7 @@ struct Driven {
   float* tether_normals;     ///< 3 x 16 a batch
   float* carrier_pulls;      ///< 3 x 16 a batch
   float* fibre_scratch;      ///< 3 x 16 a point of the longest batch
+  uint8_t* risk;             ///< by batch of triangles: written by each look at the energies, 1 where a prism may be turned soon
 };
 
 /// A matrix over unknowns that x, y and z share, rows of 4-float places. Rows are filled up to a multiple of four entries.
@@ -183,6 +184,8 @@ struct Loops {
   /// Energy of everything but contact with bones and lips at `x` (places), joules; writes the gradient (places), and in each
   /// place's fourth float by how much it is stiffer than at rest, newton per metre: where walls stand and springs have stiffened.
   double (*energy)(const Packed&, const Driven&, const float* x, float* gradient);
+  /// What is left of the volume of a batch's prisms at `x`, as shares of that at rest: 16 outer ones, then 16 inner ones.
+  void (*shares_left)(const Packed&, size_t batch, const float* x, float* shares);
   /// out = matrix * x over unknowns.
   void (*multiply)(const SparseRows&, const float* x, float* out);
   /// What unknowns have moved from where bones alone would bring them.
