@@ -62,8 +62,7 @@ bool Face::is_upright(Workspace& work, size_t layer, size_t triangle, float* x) 
 bool Face::turn_back(Workspace& work, float* x) const {
   const auto& triangles = model_->face().lattice().triangles;
   bool all_upright = true;
-  for (size_t b = 0; b < work.risk.size(); ++b) {
-    if (work.risk[b] == 0 && model_->thin_batches()[b] == 0) continue;
+  for (size_t b = 0; b < model_->packed().triangle_batches; ++b) {
     float shares[2 * batch_width];
     model_->loops().shares_left(model_->packed(), b, x, shares);
     for (size_t i = 0; i < 2 * batch_width; ++i)

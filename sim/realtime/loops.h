@@ -19,8 +19,6 @@ FASCIA_INLINE Lanes channel_values(const float* values, const SixteenAt& channel
 }
 /// Bounds an element's curvature by that of its corners alone: neighbours pull along.
 constexpr float corner_bound = 2.0F;
-/// Share of its volume below which a prism may be turned by what is not looked at any more.
-constexpr float risk_begin = 0.6F;
 
 FASCIA_INLINE Lanes positive(const Lanes& a) { return greater(a, splat(0.0F)); }
 
@@ -88,7 +86,7 @@ FASCIA_INLINE Lanes prism_volume(const Lanes3* p, const Lanes3* q, Lanes3* by_p,
 }
 
 FASCIA_INLINE void prism(const PrismBatch& m, const Packed& packed, const Lanes3* p, const Lanes3* q, Lanes3* by_p, Lanes3* by_q,
-                         Lanes* stiffer_p, Lanes* stiffer_q, Lanes& energy, bool& at_risk) {
+                         Lanes* stiffer_p, Lanes* stiffer_q, Lanes& energy) {
   Lanes3 outer[3], inner[3];
   const Lanes volume = prism_volume<true>(p, q, outer, inner);
   const Lanes inverse = load(m.inverse_volume), excess = volume - load(m.volume);
@@ -96,7 +94,6 @@ FASCIA_INLINE void prism(const PrismBatch& m, const Packed& packed, const Lanes3
   energy += 0.5F * stiff * excess;
   Lanes pressure = stiff * (1.0F / 6.0F);
   const Lanes ratio = volume * inverse;
-  at_risk |= any_below(ratio, splat(risk_begin));
   if (any_below(ratio, splat(packed.turn_begin))) {
     const Wall wall = wall_at(packed.turn_begin, packed.turn_end, ratio);
     energy += guard * wall.value * greater(load(m.volume), 0.0F);
@@ -123,7 +120,7 @@ void shares_left(const Packed& packed, size_t b, const float* x, float* shares) 
           prism_volume<true>(place[layer], place[layer + 1], by_outer, by_inner) * load(batch.prism[layer].inverse_volume));
 }
 
-Lanes triangle_energy(const Packed& packed, const Driven& driven, const float* x, float* gradient) {
+Lanes triangle_energy(const Packed& packed, const float* x, float* gradient) {
   Lanes energy = splat(0.0F);
   for (size_t b = 0; b < packed.triangle_batches; ++b) {
     const TriangleBatch& batch = packed.triangles[b];
@@ -135,13 +132,11 @@ Lanes triangle_energy(const Packed& packed, const Driven& driven, const float* x
         force[layer][k] = Lanes3{splat(0.0F), splat(0.0F), splat(0.0F)};
         stiffer[layer][k] = splat(0.0F);
       }
-    bool at_risk = false;
     for (size_t layer = 0; layer < 2; ++layer) {
       membrane(batch.membrane[layer], packed, place[layer], force[layer], stiffer[layer], energy);
       prism(batch.prism[layer], packed, place[layer], place[layer + 1], force[layer], force[layer + 1], stiffer[layer],
-            stiffer[layer + 1], energy, at_risk);
+            stiffer[layer + 1], energy);
     }
-    driven.risk[b] = at_risk ? 1 : 0;
     for (size_t layer = 0; layer < 3; ++layer)
       for (size_t k = 0; k < 3; ++k) scatter_add(gradient + 4 * layer, batch.column[k], force[layer][k], stiffer[layer][k]);
   }
@@ -324,7 +319,7 @@ Lanes fibre_energy(const Packed& packed, const Driven& driven, const float* x, f
 
 double total_energy(const Packed& packed, const Driven& driven, const float* x, float* gradient) {
   for (size_t i = 0; i < packed.places; i += 16) store(gradient + i, splat(0.0F));
-  double energy = static_cast<double>(total(triangle_energy(packed, driven, x, gradient)));
+  double energy = static_cast<double>(total(triangle_energy(packed, x, gradient)));
   energy += static_cast<double>(total(edge_energy(packed, x, gradient)));
   energy += static_cast<double>(total(spring_energy(packed, x, gradient)));
   energy += static_cast<double>(total(held_energy(packed, driven, x, gradient)));

@@ -143,7 +143,6 @@ Driven Model::driven(Workspace& work) const {
   d.tether_normals = work.tether_normals.data();
   d.carrier_pulls = work.carrier_pulls.data();
   d.fibre_scratch = work.fibre_scratch.data();
-  d.risk = work.risk.data();
   return d;
 }
 
@@ -178,7 +177,6 @@ std::unique_ptr<Workspace> Model::borrow() const {
   work->tether_normals = Floats(3 * wide * tethers_.size());
   work->carrier_pulls = Floats(3 * wide * carriers_.size());
   work->fibre_scratch = Floats(3 * wide * longest_fibre_);
-  work->risk.resize(triangles_.size());
   work->solve_scratch = Floats(pose_factor_.scratch());
   for (Floats* list : {&work->packed, &work->direction, &work->moved, &work->damped, &work->last_gradient, &work->begun, &work->ballistic, &work->answer})
     *list = Floats(unknown_floats_);

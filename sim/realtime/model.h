@@ -21,7 +21,6 @@ struct Workspace {
   std::vector<Floats> steps, changes;                                                  // `history` of unknowns
   Positions nodes, nodes_before;                                                       // #nodes, for contact
   std::vector<float> values;                                                           // by channel
-  std::vector<uint8_t> risk;                                                           // by batch of triangles
   std::vector<Grip> grips;
   FacingSearch facing_search;
   std::vector<uint32_t> near_bones;  // contacts that may touch
@@ -61,8 +60,6 @@ class Model {
   }
   /// Triangles of columns as they lie in the batches, lane after lane: element of batch b and lane l, or one past the last.
   size_t triangle_at(size_t batch, size_t lane) const { return lane * packed_.triangle_batches + batch; }
-  /// 1 for batches with a prism so thin that it may turn before the risk is seen.
-  const std::vector<uint8_t>& thin_batches() const { return thin_batches_; }
   size_t factor_entries() const { return pose_factor_.entries(); }
   bool valid() const { return valid_; }
 
@@ -87,7 +84,6 @@ class Model {
   const Loops* loops_;
   Packed packed_{};
   std::vector<TriangleBatch> triangles_;
-  std::vector<uint8_t> thin_batches_;
   std::vector<EdgeBatch> edges_;
   std::vector<LooseSpringBatch> springs_;
   std::vector<TetherBatch> tethers_;

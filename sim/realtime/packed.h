@@ -113,7 +113,6 @@ struct Driven {
   float* tether_normals;     ///< 3 x 16 a batch
   float* carrier_pulls;      ///< 3 x 16 a batch
   float* fibre_scratch;      ///< 3 x 16 a point of the longest batch
-  uint8_t* risk;             ///< by batch of triangles: written by each look at the energies, 1 where a prism may be turned soon
 };
 
 /// A matrix over unknowns that x, y and z share, rows of 4-float places. Rows are filled up to a multiple of four entries.

@@ -61,12 +61,6 @@ void Model::pack_triangles() {
       prism.guard[lane] = counts && p.volume > 0.0 ? f(turn_modulus) : 0.0F;
     }
   });
-  constexpr double thin = 5e-10;  // cubic metres
-  thin_batches_.assign(triangles_.size(), 0);
-  for (size_t b = 0; b < triangles_.size(); ++b)
-    for (const PrismBatch& prism : triangles_[b].prism)
-      for (const float volume : prism.volume)
-        if (volume > 0.0F && static_cast<double>(volume) < thin) thin_batches_[b] = 1;
   packed_.triangles = triangles_.data();
   packed_.triangle_batches = triangles_.size();
 }
