@@ -44,7 +44,7 @@ double apex_of(const TissueInputs& inputs, bool left, const Fissure& f) {
 }
 
 /// What skin between columns near an opening needs over a ball of `radius`: several times the height of a chord as long as they
-/// stand apart, for triangles span more than that.
+/// stand apart, for triangles span more than that, and what contact and the evening out of skin give way.
 double chord_room(const Columns& c, const std::vector<double>& opening, double radius) {
   double area = 0.0;
   int count = 0;
@@ -53,7 +53,7 @@ double chord_room(const Columns& c, const std::vector<double>& opening, double r
     area += c.area[v];
     ++count;
   }
-  return 1e-4 + 4.0 * area / std::max(1, count) / (8.0 * radius);
+  return 5e-4 + 5.0 * area / std::max(1, count) / (8.0 * radius);
 }
 
 /// An eye's lids: nodes near the fissure, and what each channel does to them.
