@@ -60,7 +60,7 @@ const std::vector<Expectation>& expectations() {
       {"lip_roll_lower", 1, "labiale_inferius_laterale_left", {0, 0.6, -1}, 2, 9},
       {"lip_roll_lower", -1, "labiale_inferius_laterale_left", {0, -0.6, 1}, 1, 7},
       {"buccal_pressure", 1, "buccale_left", {1, 0, 0.3}, 4, 16},
-      {"buccal_pressure", -1, "buccale_left", {-1, 0, -0.3}, 2, 12},
+      {"buccal_pressure", -0.4, "buccale_left", {-1, 0, -0.3}, 2, 12},
   };
   return all;
 }
