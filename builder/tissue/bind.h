@@ -1,6 +1,9 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <limits>
+#include <map>
 
 #include "builder/tissue/columns.h"
 
@@ -13,6 +16,13 @@ struct Follow {
   std::array<float, influences> weights{};
   float jaw = 0.0F;
 };
+
+/// What a place follows: column -> weight, in the columns' order, and `jaw_entry` for the jaw's own motion.
+using Row = std::map<uint32_t, double>;
+constexpr uint32_t jaw_entry = std::numeric_limits<uint32_t>::max();
+
+/// The strongest entries of `row`, their sum and their mean place kept; `places`: of the columns.
+Follow pack(const Row& row, const std::vector<Vec3>& places);
 
 /// How every vertex of the welded skin follows the columns of one level.
 ///

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -31,21 +32,51 @@ rig::Binding empty_binding(const PartMesh& part) {
   return binding;
 }
 
-/// The skin of the region, to find what a lash or brow stands on.
-struct OuterSkin {
-  const FaceRegion& region;
-  spatial::SurfaceQuery query;
-  explicit OuterSkin(const FaceRegion& r) : region(r), query(r.mesh) {}
-  struct Place {
-    int skin_vertex;
-    double distance;
-  };
-  Place at(const Vec3& p) const {
-    const spatial::ClosestPoint hit = query.closest(p);
-    int corner = 0;
-    hit.surface.barycentric.maxCoeff(&corner);
-    const int vertex = region.mesh.triangles[static_cast<size_t>(hit.surface.triangle)][static_cast<size_t>(corner)];
-    return {region.skin_vertex[static_cast<size_t>(vertex)], hit.distance};
+/// A place on the skin: what a lash, a brow or a hair stands on.
+struct SkinPlace {
+  std::array<int, 3> vertices{-1, -1, -1};  ///< of the skin
+  Vec3 weights = Vec3::Zero();
+  double distance = 0.0;
+};
+
+/// Finds the nearest place on a part of the skin, all of it or the region alone.
+class SkinQuery {
+ public:
+  /// `skin_vertex`: of each vertex of `mesh`, the skin's; empty when they are the same.
+  explicit SkinQuery(const TriangleMesh& mesh, std::vector<int> skin_vertex = {})
+      : mesh_(mesh), skin_vertex_(std::move(skin_vertex)), query_(mesh) {}
+  SkinPlace at(const Vec3& p) const {
+    const spatial::ClosestPoint hit = query_.closest(p);
+    SkinPlace place;
+    place.weights = hit.surface.barycentric;
+    place.distance = hit.distance;
+    for (size_t k = 0; k < 3; ++k) {
+      const int v = mesh_.triangles[static_cast<size_t>(hit.surface.triangle)][k];
+      place.vertices[k] = skin_vertex_.empty() ? v : skin_vertex_[static_cast<size_t>(v)];
+    }
+    return place;
+  }
+
+ private:
+  const TriangleMesh& mesh_;
+  std::vector<int> skin_vertex_;
+  spatial::SurfaceQuery query_;
+};
+
+/// The skin's motion, to be asked for anywhere on it.
+struct MovingSkin {
+  const std::vector<Follow>& vertices;
+  const std::vector<Vec3>& columns;  // their places at rest
+  Follow at(const SkinPlace& place) const {
+    Row row;
+    for (size_t k = 0; k < 3; ++k) {
+      const Follow& corner = vertices[static_cast<size_t>(place.vertices[k])];
+      const double share = place.weights[static_cast<int>(k)];
+      for (size_t i = 0; i < Follow::influences; ++i)
+        if (corner.weights[i] > 0.0F && share > 0.0) row[corner.nodes[i]] += share * static_cast<double>(corner.weights[i]);
+      if (corner.jaw > 0.0F) row[jaw_entry] += share * static_cast<double>(corner.jaw);
+    }
+    return pack(row, columns);
   }
 };
 
@@ -71,11 +102,12 @@ struct Pieces {
   }
 };
 
-/// Lashes and brows: each vertex follows the skin at the root that is nearest along its own piece, a small piece at one root.
-void follow_roots(const PartMesh& part, const OuterSkin& outer, const std::vector<Follow>& skin, rig::Binding& binding) {
-  constexpr double small = 0.014, root_depth = 0.0008, reach = 0.02;  // metres
+/// Lashes and brows: each vertex follows the skin at the root that is nearest along its own piece, a small piece at one root. Roots
+/// are what lies at most `root_depth` (metres) farther from the skin than the nearest of the piece.
+void follow_roots(const PartMesh& part, const SkinQuery& outer, const MovingSkin& skin, double root_depth, rig::Binding& binding) {
+  constexpr double small = 0.014, reach = 0.02;  // metres
   const Pieces pieces(part);
-  std::vector<OuterSkin::Place> place;
+  std::vector<SkinPlace> place;
   std::vector<double> nearest(pieces.size.size(), 1e9);
   for (size_t v = 0; v < pieces.mesh.vertices.size(); ++v) {
     place.push_back(outer.at(pieces.mesh.vertices[v]));
@@ -97,26 +129,20 @@ void follow_roots(const PartMesh& part, const OuterSkin& outer, const std::vecto
   for (size_t v = 0; v < part.vertices.size(); ++v) {
     const auto w = static_cast<size_t>(pieces.vertex_map[v]);
     const int root = way.seed[w];
-    const OuterSkin::Place& at = root >= 0 ? place[static_cast<size_t>(roots[static_cast<size_t>(root)].vertex)] : place[w];
-    if (at.skin_vertex >= 0 && at.distance < reach) put(binding, v, skin[static_cast<size_t>(at.skin_vertex)]);
+    const SkinPlace& at = root >= 0 ? place[static_cast<size_t>(roots[static_cast<size_t>(root)].vertex)] : place[w];
+    if (at.distance < reach) put(binding, v, skin.at(at));
   }
 }
 
 /// Hair: a strand goes with the skin at its root, so a moustache with the lip and the scalp's hair with nothing. What is larger, a
 /// cap or a whole beard, clings to the skin it lies on and less the farther off.
-void follow_scalp(const PartMesh& part, const TissueInputs& inputs, const spatial::SurfaceQuery& whole, const std::vector<Follow>& skin,
-                  rig::Binding& binding) {
+void follow_scalp(const PartMesh& part, const SkinQuery& whole, const MovingSkin& skin, rig::Binding& binding) {
   constexpr double strand = 0.06, near = 0.008, far = 0.02;  // metres
-  const auto skin_at = [&](const spatial::ClosestPoint& hit) {
-    int corner = 0;
-    hit.surface.barycentric.maxCoeff(&corner);
-    return static_cast<size_t>(inputs.skin.triangles[static_cast<size_t>(hit.surface.triangle)][static_cast<size_t>(corner)]);
-  };
   const Pieces pieces(part);
-  std::vector<spatial::ClosestPoint> place;
+  std::vector<SkinPlace> place;
   std::vector<size_t> root(pieces.size.size(), pieces.mesh.vertices.size());
   for (size_t v = 0; v < pieces.mesh.vertices.size(); ++v) {
-    place.push_back(whole.closest(pieces.mesh.vertices[v]));
+    place.push_back(whole.at(pieces.mesh.vertices[v]));
     if (pieces.piece[v] < 0) continue;
     size_t& best = root[static_cast<size_t>(pieces.piece[v])];
     if (best == pieces.mesh.vertices.size() || place[v].distance < place[best].distance) best = v;
@@ -126,9 +152,9 @@ void follow_scalp(const PartMesh& part, const TissueInputs& inputs, const spatia
     if (pieces.piece[w] < 0) continue;
     const auto p = static_cast<size_t>(pieces.piece[w]);
     const bool is_strand = pieces.size[p] < strand;
-    const spatial::ClosestPoint& at = place[is_strand ? root[p] : w];
+    const SkinPlace& at = place[is_strand ? root[p] : w];
     const double share = std::clamp((far - at.distance) / (far - near), 0.0, 1.0);
-    if (share > 0.0) put(binding, v, skin[skin_at(at)], share);
+    if (share > 0.0) put(binding, v, skin.at(at), share);
   }
 }
 
@@ -165,40 +191,36 @@ std::vector<float> between_the_jaws(const PartMesh& part, const TissueInputs& in
 
 }  // namespace
 
-std::vector<rig::Binding> bind_parts(const TissueInputs& inputs, const FaceRegion& region, const Columns&,
+std::vector<rig::Binding> bind_parts(const TissueInputs& inputs, const FaceRegion& region, const Columns& columns,
                                      const std::vector<Follow>& skin) {
   std::vector<rig::Binding> bindings;
-  const OuterSkin outer(region);
-  std::optional<spatial::SurfaceQuery> whole;
+  const SkinQuery outer(region.mesh, region.skin_vertex);
+  std::optional<SkinQuery> whole;
+  const MovingSkin moving{skin, columns.mesh.vertices};
   for (const PartMesh& part : inputs.parts) {
     rig::Binding binding = empty_binding(part);
     if (part.part == "skin" && part.skin_vertices.size() == part.vertices.size()) {
       for (size_t v = 0; v < part.vertices.size(); ++v) put(binding, v, skin[static_cast<size_t>(part.skin_vertices[v])]);
     } else if (part.part == "skin") {
       if (!whole) whole.emplace(inputs.skin);
-      for (size_t v = 0; v < part.vertices.size(); ++v) {
-        const spatial::ClosestPoint hit = whole->closest(part.vertices[v]);
-        int corner = 0;
-        hit.surface.barycentric.maxCoeff(&corner);
-        put(binding, v, skin[static_cast<size_t>(inputs.skin.triangles[static_cast<size_t>(hit.surface.triangle)][static_cast<size_t>(corner)])]);
-      }
+      for (size_t v = 0; v < part.vertices.size(); ++v) put(binding, v, moving.at(whole->at(part.vertices[v])));
     } else if (part.part == "teeth_lower" || part.part == "gums_lower" || part.part == "tongue") {
       std::fill(binding.jaw_weights.begin(), binding.jaw_weights.end(), 1.0F);
     } else if (part.part == "eye_left" || part.part == "eye_right") {
       std::fill(binding.eye.begin(), binding.eye.end(), static_cast<uint8_t>(part.part == "eye_left" ? 1 : 2));
     } else if (part.part == "lashes" || part.part == "brows") {
-      follow_roots(part, outer, skin, binding);
+      follow_roots(part, outer, moving, part.part == "lashes" ? 0.0008 : 0.003, binding);  // brows lie flat
     } else if (part.part == "hair") {
       if (!whole) whole.emplace(inputs.skin);
-      follow_scalp(part, inputs, *whole, skin, binding);
+      follow_scalp(part, *whole, moving, binding);
     } else if (part.part == "mouth_interior") {
       binding.jaw_weights = between_the_jaws(part, inputs);
     } else if (part.part == "other" || part.part == "eye_surround") {
       // Tear film, caruncle, stubble: whatever clings to the face goes with it, the rest stays.
       for (size_t v = 0; v < part.vertices.size(); ++v) {
-        const OuterSkin::Place place = outer.at(part.vertices[v]);
+        const SkinPlace place = outer.at(part.vertices[v]);
         const double share = std::clamp((0.004 - place.distance) / 0.003, 0.0, 1.0);
-        if (share > 0.0) put(binding, v, skin[static_cast<size_t>(place.skin_vertex)], share);
+        if (share > 0.0) put(binding, v, moving.at(place), share);
       }
     }
     bindings.push_back(std::move(binding));

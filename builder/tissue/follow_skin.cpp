@@ -14,9 +14,6 @@
 namespace fascia::tissue {
 namespace {
 
-using Row = std::map<uint32_t, double>;  // node -> weight, in node order
-constexpr uint32_t jaw_entry = std::numeric_limits<uint32_t>::max();  // in a row, for the jaw's own motion
-
 double smoothstep(double low, double high, double x) {
   const double t = std::clamp((x - low) / (high - low), 0.0, 1.0);
   return t * t * (3.0 - 2.0 * t);
@@ -161,24 +158,17 @@ void keep_place(const std::vector<std::pair<double, uint32_t>>& entries, size_t 
   for (double& weight : weights) weight *= wanted / std::max(sum, 1e-12);
 }
 
-/// The strongest entries, their sum and their mean place kept.
-Follow pack(const Row& row, const std::vector<Vec3>& places) {
-  std::vector<std::pair<double, uint32_t>> order;
-  Follow follow;
-  for (const auto& [node, weight] : row) {
-    if (node == jaw_entry) follow.jaw = static_cast<float>(weight);
-    else order.emplace_back(-weight, node);
-  }
-  std::sort(order.begin(), order.end());
-  const size_t kept = std::min(order.size(), Follow::influences);
-  std::vector<double> weights;
-  for (size_t k = 0; k < kept; ++k) weights.push_back(-order[k].first);
-  if (kept < order.size()) keep_place(order, kept, places, weights);
-  for (size_t k = 0; k < kept; ++k) {
-    follow.nodes[k] = order[k].second;
-    follow.weights[k] = static_cast<float>(weights[k]);
-  }
-  return follow;
+/// How much of the lattice's motion each vertex of the region takes: none in the lower band of the neck and all around the face,
+/// where what is not simulated begins or another mesh may join on.
+std::vector<double> share_from_rim(const FaceRegion& region) {
+  constexpr double still = 0.004, full = 0.014;  // metres from the rim
+  std::vector<DistanceSeed> rim;
+  for (const auto& loop : boundary_loops(region.mesh, connectivity(region.mesh)))
+    for (const int v : loop)
+      if (region.outer[static_cast<size_t>(v)]) rim.push_back({v});
+  std::vector<double> share = surface_distances(region.mesh, rim, 2.0 * full).distance;
+  for (double& value : share) value = smoothstep(still, full, value);
+  return share;
 }
 
 /// What lies deeper in the mouth than the simulated lining: the walls of the vestibule go with the cheek or lip in front of
@@ -236,15 +226,35 @@ void smooth_deep(const std::vector<std::vector<int>>& neighbours, const std::vec
 
 }  // namespace
 
+Follow pack(const Row& row, const std::vector<Vec3>& places) {
+  std::vector<std::pair<double, uint32_t>> order;
+  Follow follow;
+  for (const auto& [node, weight] : row) {
+    if (node == jaw_entry) follow.jaw = static_cast<float>(weight);
+    else order.emplace_back(-weight, node);
+  }
+  std::sort(order.begin(), order.end());
+  const size_t kept = std::min(order.size(), Follow::influences);
+  std::vector<double> weights;
+  for (size_t k = 0; k < kept; ++k) weights.push_back(-order[k].first);
+  if (kept < order.size()) keep_place(order, kept, places, weights);
+  for (size_t k = 0; k < kept; ++k) {
+    follow.nodes[k] = order[k].second;
+    follow.weights[k] = static_cast<float>(weights[k]);
+  }
+  return follow;
+}
+
 std::vector<Follow> follow_skin(const TissueInputs& inputs, const FaceRegion& region, const Columns& c) {
   std::vector<Row> rows = rows_of_region(region, c);
   smooth(region.mesh, c, 2, rows);
   ease(region.mesh, easing(inputs, region), rows);
   std::vector<Row> skin(inputs.skin.vertices.size());
   std::vector<DistanceSeed> edge;
+  const std::vector<double> share = share_from_rim(region);
   for (size_t v = 0; v < rows.size(); ++v) {
     const auto s = static_cast<size_t>(region.skin_vertex[v]);
-    skin[s] = rows[v];
+    add(rows[v], share[v], skin[s]);
     if (region.opening[s] != Opening::none) edge.push_back({region.skin_vertex[v]});
   }
   // Deeper than the simulated lining: carried on from its edge.
@@ -255,9 +265,9 @@ std::vector<Follow> follow_skin(const TissueInputs& inputs, const FaceRegion& re
   for (size_t v = 0; v < skin.size(); ++v) {
     if (!deep[v] || beyond.seed[v] < 0) continue;
     deep_mouth[v] = region.opening[v] == Opening::mouth;
-    const double share = 1.0 - smoothstep(0.0, deep_mouth[v] ? 0.018 : 0.008, beyond.distance[v]);
-    add(skin[static_cast<size_t>(edge[static_cast<size_t>(beyond.seed[v])].vertex)], share, skin[v]);
-    if (deep_mouth[v]) add(mouth.row(v, inputs.skin.vertices[v], beyond.distance[v]), 1.0 - share, skin[v]);
+    const double lining = 1.0 - smoothstep(0.0, deep_mouth[v] ? 0.018 : 0.008, beyond.distance[v]);
+    add(skin[static_cast<size_t>(edge[static_cast<size_t>(beyond.seed[v])].vertex)], lining, skin[v]);
+    if (deep_mouth[v]) add(mouth.row(v, inputs.skin.vertices[v], beyond.distance[v]), 1.0 - lining, skin[v]);
   }
   smooth_deep(vertex_neighbours(inputs.skin), deep_mouth, 10, skin);
   std::vector<Follow> follow(skin.size());

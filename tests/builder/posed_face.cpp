@@ -8,9 +8,11 @@
 
 namespace fascia::testing {
 
-PosedFace::PosedFace(const std::filesystem::path& head, const std::filesystem::path& landmarks, const std::string& name) {
+PosedFace::PosedFace(const std::filesystem::path& head, const std::filesystem::path& landmarks, const std::string& name, const std::string& detail) {
   const formats::Scene scene = formats::read(head);
-  rigging::BuildResult built = rigging::build_rig(scene, formats::read_landmarks(landmarks), anatomy::load_generic());
+  rigging::BuildOptions options;
+  options.detail = detail;
+  rigging::BuildResult built = rigging::build_rig(scene, formats::read_landmarks(landmarks), anatomy::load_generic(), options);
   const auto bytes = rig::write(rigging::gltf_source(scene, built.report.input_to_metres), built.rig);
   rig_path_ = std::filesystem::temp_directory_path() / ("fascia_" + name + ".glb");
   formats::write_bytes(rig_path_, bytes.data(), bytes.size());

@@ -13,7 +13,7 @@ namespace fascia::testing {
 /// A rig built in this process, and a face of it to pose; measures in millimetres in the rig's axes.
 class PosedFace {
  public:
-  PosedFace(const std::filesystem::path& head, const std::filesystem::path& landmarks, const std::string& name);
+  PosedFace(const std::filesystem::path& head, const std::filesystem::path& landmarks, const std::string& name, const std::string& detail = "medium");
   ~PosedFace();
 
   using Values = std::map<std::string, double>;
