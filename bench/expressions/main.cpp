@@ -229,17 +229,16 @@ void run_copies(const std::string& person, const std::string& level) {
   for (const char* kind : {"half", "uneven"}) {
     const RemeshedCopy copy = remeshed_copy(scene, "head", kind);
     const Subject subject(copy.scene, landmarks, person + "_" + kind, level);
-    const auto is_face = [&](size_t v) { return copy.head[v].vertices[0] < face_vertices; };
-    std::printf("%s, %s: %zu vertices instead of %zu\n%-22s %9s %9s %12s %9s\n", person.c_str(), kind, copy.head.size(), head_mesh(scene).positions.size(),
+    std::printf("%s, %s: %zu vertices instead of %zu\n%-22s %9s %9s %12s %9s\n", person.c_str(), kind, copy.head_vertices, head_mesh(scene).positions.size(),
                 "shape", "explained", "original", "apart: mean", "95 % mm");
     double sum[4] = {};
     for (const auto& [name, goal] : shapes) {
-      const std::vector<Vec3> own = carried_over(copy, simulated_displacement(*original.face, goal.values));
-      const std::vector<Vec3> truth = carried_over(copy, goal.truth), simulated = simulated_displacement(*subject.face, goal.values);
+      const std::vector<Vec3> own = simulated_displacement(*original.face, goal.values);
+      const std::vector<Vec3> simulated = carried_over(copy, simulated_displacement(*subject.face, goal.values));
+      const std::vector<Vec3>& truth = goal.truth;
       double all = 0.0, miss[2] = {}, mean = 0.0;
       std::vector<double> apart;
-      for (size_t v = 0; v < truth.size(); ++v) {
-        if (!is_face(v)) continue;
+      for (size_t v = 0; v < face_vertices; ++v) {
         all += truth[v].squaredNorm();
         miss[0] += (simulated[v] - truth[v]).squaredNorm();
         miss[1] += (own[v] - truth[v]).squaredNorm();
