@@ -14,7 +14,7 @@ double smoothstep(double low, double high, double x) {
 }
 
 // Shares of the fissure's height that a lid is driven at full value; what the skin's resistance takes is added, towards the
-// canthi most. Where lids meet they stop each other.
+// inner canthus most. Where lids meet they stop each other.
 constexpr double closing = 1.06, raising = 0.28;
 constexpr double canthal = 0.10;       // radians
 constexpr double opening_wide = 0.32;  // of closing: the levator lifts the lid some 3 mm above rest
@@ -105,7 +105,7 @@ void add_eye(const TissueInputs& inputs, const TissueOptions& options, const Fac
         if (channel >= 0) carry(level, channel, node, f, axis, angle, stiffness, reverse);
       };
       const double coarse = std::max(0.0, std::sqrt(c.area[v]) - 0.002);  // metres: few columns give way to their neighbours more
-      const double lid = (closing + 60.0 * coarse) * gap + canthal * std::abs(2.0 * place - 1.0);
+      const double lid = (closing + 60.0 * coarse) * gap + canthal * std::max(0.0, (left ? -1.0 : 1.0) * (2.0 * place - 1.0));
       if (is_upper) turn(close, f.lateral, lid * unfolding, -opening_wide * lid * fade);
       else turn(raise, f.lateral, -raising * gap * fade, raising * gap * fade);
       const double follows = (is_upper ? 0.75 : 0.4) * fade;

@@ -10,7 +10,7 @@
 namespace fascia::testing {
 namespace {
 
-constexpr double deepest = 0.006;  // metres: farther behind lies another part of the face
+constexpr double deepest = 0.003;  // metres: what has crossed farther has neighbours that are less deep; farther behind lies another part of the face
 
 /// One side of an opening as a mesh of its own.
 struct SideSurface {
@@ -47,16 +47,16 @@ struct SideSurface {
 
 }  // namespace
 
-std::vector<uint8_t> column_sides(const rig::TissueLevel& level) {
+std::vector<uint8_t> column_sides(const rig::TissueLevel& level, int rings) {
   std::vector<uint8_t> sides(level.columns, no_side);
   for (size_t f = 0; f < level.facing_prism.size(); ++f)
     for (const uint32_t column : level.triangles[level.facing_prism[f]]) sides[column] = level.facing_side[f];
-  for (int ring = 0; ring < 1; ++ring) {
+  for (int ring = 0; ring < rings; ++ring) {
     std::vector<std::array<int, 6>> votes(level.columns, std::array<int, 6>{});
     for (const auto& t : level.triangles)
       for (const uint32_t from : t)
         for (const uint32_t to : t)
-          if (sides[from] != no_side && sides[to] == no_side) ++votes[to][sides[from]];
+          if (sides[from] < 2 && sides[to] == no_side) ++votes[to][sides[from]];
     for (uint32_t c = 0; c < level.columns; ++c) {
       const auto best = std::max_element(votes[c].begin(), votes[c].end());
       if (*best > 0) sides[c] = static_cast<uint8_t>(best - votes[c].begin());
@@ -66,14 +66,14 @@ std::vector<uint8_t> column_sides(const rig::TissueLevel& level) {
 }
 
 std::vector<uint8_t> vertex_sides(const rig::Binding& binding, const rig::TissueLevel& level) {
-  const std::vector<uint8_t> columns = column_sides(level);
+  const std::vector<uint8_t> columns = column_sides(level, 1);
   std::vector<uint8_t> sides(binding.vertex_count, no_side);
   for (uint32_t v = 0; v < binding.vertex_count; ++v) {
     std::array<float, 6> share{};
     for (uint32_t k = v * binding.influences; k < (v + 1) * binding.influences; ++k)
       if (binding.nodes[k] < level.columns && columns[binding.nodes[k]] != no_side) share[columns[binding.nodes[k]]] += binding.weights[k];
     const auto best = std::max_element(share.begin(), share.end());
-    if (*best > 0.4F) sides[v] = static_cast<uint8_t>(best - share.begin());
+    if (*best > 0.75F) sides[v] = static_cast<uint8_t>(best - share.begin());
   }
   return sides;
 }
@@ -123,6 +123,8 @@ std::vector<double> Crossings::depths(const std::vector<Vec3>& vertices, int ope
       if (sides_[v] != side || (at_rest_.size() > static_cast<size_t>(opening) && !at_rest_[static_cast<size_t>(opening)].empty() && at_rest_[static_cast<size_t>(opening)][v] >= 1.0)) continue;
       const spatial::ClosestPoint hit = query.closest(now.vertices[v], deepest);
       if (!hit.found() || hit.signed_distance >= 0.0 || hit.pseudonormal.dot(normals[v]) > 0.0 || facing.is_border(hit.surface)) continue;
+      // Beside an edge of the other side, not behind it.
+      if ((now.vertices[v] - hit.position).dot(hit.pseudonormal) > -0.8 * hit.distance) continue;
       // What lies behind a lip but outside of its flesh, as the far side of the mouth, has skin in between.
       if (!whole) whole.emplace(now);
       constexpr double skip = 2e-5;

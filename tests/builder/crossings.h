@@ -11,9 +11,9 @@ namespace fascia::testing {
 /// Sides as in rig::TissueLevel::facing_side; what belongs to no lip or lid is `no_side`.
 inline constexpr uint8_t no_side = 255;
 
-/// Which lip or lid each column of `level` belongs to: those the lattice says may touch, and a few rows around them, so that the
+/// Which lip or lid each column of `level` belongs to: those the lattice says may touch, and `rings` rows around the lips, so that their
 /// corners are shared out between both sides.
-std::vector<uint8_t> column_sides(const rig::TissueLevel& level);
+std::vector<uint8_t> column_sides(const rig::TissueLevel& level, int rings);
 
 /// The same of a mesh's vertices, by the columns they follow most.
 std::vector<uint8_t> vertex_sides(const rig::Binding& binding, const rig::TissueLevel& level);

@@ -21,20 +21,19 @@ TriangleMesh skin_layer(const rig::TissueLevel& level) {
 
 }  // namespace
 
-SweptFace::SweptFace(std::shared_ptr<const runtime::Asset> asset, size_t level)
+SweptFace::SweptFace(std::shared_ptr<const runtime::Asset> asset, size_t level, const rig::TissueLevel& marks)
     : asset_(std::move(asset)), level_(level), model_(&asset_->model(level)),
       face_(asset_->realtime_model(level), asset_->channel_names.size()), values_(asset_->channel_rest),
       displacements_(model_->rest().size(), sim::Vec3f::Zero()) {
-  const rig::TissueLevel& tissue = asset_->rig().tissue.levels[level];
   bones_.displacements = displacements_;
-  lattice_ = std::make_unique<Crossings>(skin_layer(tissue), column_sides(tissue));
+  lattice_ = std::make_unique<Crossings>(skin_layer(marks), column_sides(marks, 0));
   std::vector<uint8_t> sides;
   for (size_t i = 0; i < asset_->primitives().size(); ++i) {
     const rig::Binding* binding = asset_->binding(level, i);
     if (binding == nullptr || binding->part != "skin") continue;
     meshes_.emplace_back(*asset_->shapes(level, FASCIA_SPACE_METRES)[i]);
     const auto first = static_cast<int>(sides.size());
-    const std::vector<uint8_t> own = vertex_sides(*binding, tissue);
+    const std::vector<uint8_t> own = vertex_sides(*binding, marks);
     sides.insert(sides.end(), own.begin(), own.end());
     for (const auto& t : asset_->primitives()[i].triangles)
       triangles_.push_back({first + static_cast<int>(t[0]), first + static_cast<int>(t[1]), first + static_cast<int>(t[2])});

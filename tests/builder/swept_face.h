@@ -15,7 +15,9 @@ namespace fascia::testing {
 class SweptFace {
  public:
   /// `level` is an index into the rig's levels of detail.
-  SweptFace(std::shared_ptr<const runtime::Asset> asset, size_t level);
+  SweptFace(std::shared_ptr<const runtime::Asset> asset, size_t level) : SweptFace(asset, level, asset->rig().tissue.levels[level]) {}
+  /// The same; what faces what is read from `marks`, of the same columns.
+  SweptFace(std::shared_ptr<const runtime::Asset> asset, size_t level, const rig::TissueLevel& marks);
 
   /// A drive by chance: half of the time a few members of the ARKit set together, else a quarter of all channels, each anywhere
   /// in its range. Stays as it is until the next.
