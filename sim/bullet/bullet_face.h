@@ -8,9 +8,9 @@ namespace fascia::sim {
 
 struct BulletOptions {
   double substep = 1.0 / 2400.0;  ///< seconds; Bullet's links are stiff as asked only while steps are short
-  double damping = 0.005;         ///< share of velocity lost a substep
+  double damping = 0.02;          ///< share of velocity lost a substep
   double length_scale = 100.0;    ///< Bullet units a metre: its margins are made for bodies of some units' size
-  double settle_seconds = 2.0;    ///< how long a static pose is waited for at most
+  double settle_seconds = 3.0;    ///< how long a static pose is waited for at most
   double settle_speed = 5e-5;     ///< metres a second below which it is reached
 };
 
