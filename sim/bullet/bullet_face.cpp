@@ -89,7 +89,7 @@ struct BulletFace::World {
     for (size_t i = 0; i < unknowns.size(); ++i) {
       double stiffness = contact;
       for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator e(model.stiffness(), static_cast<int>(i)); e; ++e) stiffness += std::abs(e.value());
-      masses[unknowns[i]] = std::max(masses[unknowns[i]], 10.0 * h * h * stiffness);
+      masses[unknowns[i]] = std::max(masses[unknowns[i]], 30.0 * h * h * stiffness);
     }
   }
 
