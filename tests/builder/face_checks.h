@@ -64,6 +64,29 @@ inline void expect_face_moves_as_anatomy_says(PosedFace& face) {
   EXPECT_GT(face.moved("buccale_left").norm(), 2.0) << "the cheeks follow";
   EXPECT_LT(face.moved("buccale_left").norm(), 30.0);
 
+  face.pose({{"levator_palpebrae_superioris_left", 1}, {"levator_palpebrae_superioris_right", 1}});
+  for (const char* lid : {"palpebrale_superius_left", "palpebrale_superius_right"}) {
+    EXPECT_GT(face.moved(lid)[1], 0.5) << lid;
+    EXPECT_LT(face.moved(lid)[1], 5.0) << lid;
+  }
+
+  face.pose({{"lid_upper_left", 1}, {"lid_upper_right", 1}});
+  const double left_lid = -face.moved("palpebrale_superius_left")[1], right_lid = -face.moved("palpebrale_superius_right")[1];
+  EXPECT_GT(left_lid, 6.0) << "the eye closes";
+  EXPECT_NEAR(left_lid, right_lid, 0.2 * left_lid) << "one eye as the other";
+
+  face.pose({{"buccal_pressure_left", 1}, {"buccal_pressure_right", 1}});
+  EXPECT_GT(face.moved("buccale_left")[0], 3.0) << "the cheek fills";
+  EXPECT_LT(face.moved("buccale_right")[0], -3.0);
+
+  face.pose({{"lip_roll_upper_left", 1}, {"lip_roll_upper_right", 1}});
+  EXPECT_LT(face.moved("labiale_superius")[2], -1.0) << "the lip rolls in";
+  EXPECT_LT(face.moved("labiale_superius").norm(), 9.0);
+  EXPECT_LT(face.moved("alare_left").norm(), 1.5) << "the nostrils stay";
+
+  face.pose({{"depressor_anguli_oris_left", 1}});
+  EXPECT_LT(face.moved("cheilion_left")[1], -2.0) << "the corner goes down";
+
   face.pose({{"zygomaticus_major_left", 1}});
   EXPECT_GT(face.moved("cheilion_left").norm(), 4.0);
   EXPECT_LT(face.moved("cheilion_right").norm(), 1.0) << "one side stays one side";
