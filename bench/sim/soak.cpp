@@ -1,10 +1,10 @@
 // Minutes of random drive on a whole head: does anything become not a number, does the watchdog put the face back, does a prism
 // turn inside out, and does it turn back?
 //
-//   bench_soak RIG.glb [--level INDEX] [--seconds S] [--solver own|reference] [--iterations N] [--pull NEWTON] [--shake M/S2] [--seed N]
+//   bench_soak RIG.glb [--level INDEX] [--seconds S] [--solver own|reference] [--iterations N] [--pull NEWTON] [--shake M/S2] [--seed N] [--rates]
 //
 // Every quarter of a second all channels jump to other values; `--pull` presses a finger on a node of skin chosen anew with each
-// jump, `--shake` moves the head.
+// jump, `--shake` moves the head. `--rates` compares frame rates and iterations instead.
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -13,6 +13,7 @@
 
 #include "bench/sim/clock.h"
 #include "sim/face.h"
+#include "tests/builder/played.h"
 #include "tests/builder/swept_face.h"
 
 namespace {
@@ -25,7 +26,7 @@ struct Request {
   double seconds = 600.0, pull = 0.0, shake = 0.0;
   int iterations = 2;
   unsigned seed = 1;
-  bool is_reference = false, is_named = false;
+  bool is_reference = false, is_named = false, compares_rates = false;
 };
 
 /// What a soak has seen.
@@ -107,6 +108,26 @@ Tally soak(Face& face, const Options& options, const Request& request, testing::
   return tally;
 }
 
+/// The same two seconds at other frame rates and with other numbers of iterations, beside 60 Hz converged.
+void compare_rates(const runtime::Asset& asset, size_t level) {
+  sim::realtime::StepOptions options;
+  const auto row = [](const char* name, int number, const testing::Apart& apart) {
+    std::printf("%4d %s: %.2f %% of the motion off, at most %.2f mm\n", number, name, 100.0 * apart.share, 1e3 * apart.most);
+  };
+  options.iterations = 60;
+  options.tolerance = 1e-6;
+  options.checks_last = true;
+  const auto truth = testing::played(asset, level, 60, options);
+  for (const int rate : {30, 120}) row("Hz, converged", rate, testing::apart(testing::played(asset, level, rate, options), truth));
+  const auto usual = testing::played(asset, level, 60, {});
+  for (const int rate : {30, 120}) row("Hz, two iterations, beside 60 Hz alike", rate, testing::apart(testing::played(asset, level, rate, {}), usual));
+  for (const int iterations : {1, 2, 4, 8, 16}) {
+    sim::realtime::StepOptions few;
+    few.iterations = iterations;
+    row("iterations a substep, 60 Hz", iterations, testing::apart(testing::played(asset, level, 60, few), truth));
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -121,10 +142,11 @@ int main(int argc, char** argv) {
     else if (!std::strcmp(argv[i], "--shake")) request.shake = std::atof(value());
     else if (!std::strcmp(argv[i], "--seed")) request.seed = static_cast<unsigned>(std::atoi(value()));
     else if (!std::strcmp(argv[i], "--names")) request.is_named = true;
+    else if (!std::strcmp(argv[i], "--rates")) request.compares_rates = true;
     else request.rig = argv[i];
   }
   if (request.rig == nullptr) {
-    std::fprintf(stderr, "usage: bench_soak RIG.glb [--level INDEX] [--seconds S] [--solver own|reference] [--iterations N] [--pull NEWTON] [--shake M/S2] [--seed N] [--names]\n");
+    std::fprintf(stderr, "usage: bench_soak RIG.glb [--level INDEX] [--seconds S] [--solver own|reference] [--iterations N] [--pull NEWTON] [--shake M/S2] [--seed N] [--names] [--rates]\n");
     return 2;
   }
   std::ifstream file(request.rig, std::ios::binary);
@@ -132,6 +154,10 @@ int main(int argc, char** argv) {
   try {
     const auto asset = std::make_shared<const runtime::Asset>(std::span(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()));
     if (request.level >= asset->rig().tissue.levels.size()) throw std::runtime_error("the rig has no such level");
+    if (request.compares_rates) {
+      compare_rates(*asset, request.level);
+      return 0;
+    }
     testing::SweptFace drives(asset, request.level);
     const size_t channels = asset->channel_names.size();
     if (request.is_reference) {

@@ -8,6 +8,7 @@
 #include "formats/landmark_file.h"
 #include "formats/scene.h"
 #include "rig/write/write.h"
+#include "tests/builder/played.h"
 #include "tests/builder/swept_face.h"
 
 namespace fascia::testing {
@@ -120,6 +121,21 @@ TEST(Sweep, NeitherLipsNorLidsPassThroughEachOther) {
     crossed = std::max(crossed, without.lattice[opening].depth);
   }
   EXPECT_GT(crossed, 1.2e-3);  // the same drives, were there no contact
+}
+
+TEST(Rates, NeitherFrameRateNorIterationsChangeTheMotion) {
+  const runtime::Asset& head = *embedded_head();
+  sim::realtime::StepOptions many, more;
+  many.iterations = 12;
+  more.iterations = 24;
+  const auto at_60 = played(head, 0, 60, many);
+  EXPECT_LT(apart(played(head, 0, 30, many), at_60).share, 0.01);
+  EXPECT_LT(apart(played(head, 0, 120, many), at_60).share, 0.01);
+  EXPECT_LT(apart(played(head, 0, 60, more), at_60).share, 0.01);
+  // As it runs by default.
+  const auto usual = played(head, 0, 60, {});
+  EXPECT_LT(apart(played(head, 0, 120, {}), usual).share, 0.02);
+  EXPECT_LT(apart(usual, at_60).share, 0.07);
 }
 
 }  // namespace
