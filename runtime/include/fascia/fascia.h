@@ -219,6 +219,7 @@ FASCIA_API const float* fascia_face_effective_values(const fascia_face* face);
 FASCIA_API fascia_result fascia_face_pose(fascia_face* face);
 
 /* Lets `seconds` (0 to 1) pass. Any frame rate gives nearly the same motion; a very long frame loses time.
+ * The jaw takes 0.12 s from shut to wide open at least, whatever its channels do.
  * FASCIA_ERROR_DIVERGED says that the simulation became unsound and the face stands at its bones again: it may be
  * stepped on. Curves applied since the last pose or step are used up. */
 FASCIA_API fascia_result fascia_face_step(fascia_face* face, float seconds);
