@@ -536,7 +536,7 @@ void stride(const Stride& s) {
     Lanes trust = load(s.trust + k);
     const Lanes3 last = gather(s.last + 4 * k, at);
     Lanes3 way = gather(s.direction + 4 * k, at);
-    if (s.onward > 0.0F) way += where_below(trust, one, none, splat(s.onward)) * gather(s.before + 4 * k, at);
+    if (s.onward > 0.0F) way += (s.onward * positive(4.0F * trust - 3.0F)) * gather(s.before + 4 * k, at);
     const Lanes squared = dot(way, way), along = dot(way, last);
     const Lanes back = where_below(along, none, where_below(splat(noise * noise), squared, one, none), none);
     const Lanes more = lesser(1.2F * trust, one), less = greater(0.5F * trust, least_trust);
@@ -560,7 +560,7 @@ void set_out(const Outset& o) {
     const int32_t at = o.slot[k];
     const Quad x = load_quad(o.x + at), ballistic = x + o.seconds * load_quad(o.velocity + at);
     const Quad begun = x + (load_quad(o.carried + at) - load_quad(o.carried_before + at));
-    const float trust = o.trust[k], share = trust < 1.0F ? inertia_else * trust : inertia_trusted;
+    const float trust = o.trust[k], sure = 2.0F * trust - 1.0F, share = trust * (inertia_else + (inertia_trusted - inertia_else) * (sure > 0.0F ? sure : 0.0F));
     store_quad(o.ballistic + 4 * k, ballistic);
     store_quad(o.begun + 4 * k, begun);
     store_quad(o.begun_places + at, begun);
