@@ -5,6 +5,8 @@
 // Included once by each source that is compiled for one unit, which defines FASCIA_LANES_NAMESPACE before. Everything here is
 // local to the including source, so that nothing compiled for a wider unit can be called by accident.
 
+#pragma once
+
 #include <cstddef>
 #include <cstdint>
 #if defined(__SSE2__)
@@ -250,29 +252,21 @@ FASCIA_INLINE void interleave(const Lanes3& value, const Lanes& fourth, float* t
 
 FASCIA_INLINE void interleave(const Lanes3& value, float* to) { interleave(value, splat(0.0F), to); }
 
-/// Lets `join(place, value)` make anew the place at base + at[lane], lane after lane: places may be named twice.
-template <class Join>
-FASCIA_INLINE void scatter(float* base, const int32_t* at, const Lanes3& value, const Lanes& fourth, Join&& join) {
+/// Adds each lane's value to the place at base + at[lane], lane after lane: places may be named twice.
+FASCIA_INLINE void scatter_add(float* base, const int32_t* at, const Lanes3& value, const Lanes& fourth) {
   for (size_t p = 0; p < part_count; ++p, at += part_width) {
     const PartPlaces places = places_of(value.x.part[p], value.y.part[p], value.z.part[p], fourth.part[p]);
-    const auto put = [&](int32_t to, Quad quad) { store_quad(base + to, join(load_quad(base + to), quad)); };
-#define FASCIA_PUT(j)                                  \
-  put(at[4 * (j)], FASCIA_QUARTER(places.quad[0], j));     \
-  put(at[4 * (j) + 1], FASCIA_QUARTER(places.quad[1], j)); \
-  put(at[4 * (j) + 2], FASCIA_QUARTER(places.quad[2], j)); \
-  put(at[4 * (j) + 3], FASCIA_QUARTER(places.quad[3], j));
-    FASCIA_EACH_QUARTER(FASCIA_PUT)
-#undef FASCIA_PUT
+    const auto add = [base](int32_t to, Quad quad) { store_quad(base + to, load_quad(base + to) + quad); };
+#define FASCIA_ADD(j)                                      \
+  add(at[4 * (j)], FASCIA_QUARTER(places.quad[0], j));     \
+  add(at[4 * (j) + 1], FASCIA_QUARTER(places.quad[1], j)); \
+  add(at[4 * (j) + 2], FASCIA_QUARTER(places.quad[2], j)); \
+  add(at[4 * (j) + 3], FASCIA_QUARTER(places.quad[3], j));
+    FASCIA_EACH_QUARTER(FASCIA_ADD)
+#undef FASCIA_ADD
   }
 }
-FASCIA_INLINE void scatter_add(float* base, const int32_t* at, const Lanes3& value, const Lanes& fourth) {
-  scatter(base, at, value, fourth, [](Quad place, Quad quad) { return place + quad; });
-}
 FASCIA_INLINE void scatter_add(float* base, const int32_t* at, const Lanes3& value) { scatter_add(base, at, value, splat(0.0F)); }
-FASCIA_INLINE void scatter_subtract(float* base, const int32_t* at, const Lanes3& value) {
-  scatter(base, at, value, splat(0.0F), [](Quad place, Quad quad) { return place - quad; });
-}
-
 /// Four places one behind the other, and four floats, each four times.
 FASCIA_INLINE Lanes four_places(const float* base, const int32_t* at) {
   Lanes out;
