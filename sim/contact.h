@@ -69,6 +69,8 @@ struct FacingSearch {
   size_t bundle = 8;            ///< neighbouring triangles a bundle
   std::vector<Vec3> centres;    ///< of each bundle
   std::vector<double> radii, squared;
+  std::vector<Vec3> middles;    ///< of each triangle
+  std::vector<double> reaches;  ///< of each triangle, from its middle to its farthest corner
   std::vector<Vec3> normals;    ///< of the side's nodes, unit
 };
 

@@ -70,6 +70,8 @@ FacingSearch Contacts::make_search() const {
   search.centres.reserve(bundles);
   search.radii.reserve(bundles);
   search.squared.resize(bundles);
+  search.middles.reserve(triangles);
+  search.reaches.reserve(triangles);
   search.normals.reserve(nodes);
   return search;
 }
@@ -80,6 +82,14 @@ void Contacts::look_at_side(size_t index, const Vec3* x, FacingSearch& search) c
   search.centres.clear();
   search.radii.clear();
   search.normals.clear();
+  search.middles.clear();
+  search.reaches.clear();
+  for (const auto& t : side.triangles) {
+    search.middles.emplace_back((x[t[0]] + x[t[1]] + x[t[2]]) / 3.0);
+    double squared = 0.0;
+    for (const uint32_t corner : t) squared = std::max(squared, (x[corner] - search.middles.back()).squaredNorm());
+    search.reaches.push_back(std::sqrt(squared));
+  }
   for (size_t first = 0; first < side.triangles.size(); first += search.bundle) {
     const std::span bundle = std::span(side.triangles).subspan(first, std::min(search.bundle, side.triangles.size() - first));
     Vec3 centre = Vec3::Zero();
@@ -106,9 +116,13 @@ void Contacts::pair_of(size_t contact, const Vec3* x, FacingSearch& search, Faci
   if (facing.squaredNorm() < 1e-30) return;
   facing.normalize();
   const Vec3& p = x[pair.node];
-  double best = sight.reach * sight.reach;
+  double best = sight.reach * sight.reach, within = sight.reach;
   const auto look_at = [&](size_t i) {
     const auto& t = other.triangles[i];
+    const double reach = within + search.reaches[i];
+    if ((search.middles[i] - p).squaredNorm() >= reach * reach) return;
+    const auto turns_away = [&](uint32_t corner) { return search.normals[corner].dot(facing) > 0.2; };
+    if (std::all_of(other.corners[i].begin(), other.corners[i].end(), turns_away)) return;  // so does any place between
     const Vec3 weights = closest_weights(p, x[t[0]], x[t[1]], x[t[2]]);
     const Vec3 away = p - (weights[0] * x[t[0]] + weights[1] * x[t[1]] + weights[2] * x[t[2]]);
     const double distance = away.squaredNorm();
@@ -122,6 +136,7 @@ void Contacts::pair_of(size_t contact, const Vec3* x, FacingSearch& search, Faci
     const double along = normal.dot(away);
     if (along < -sight.depth || (away - along * normal).squaredNorm() > sight.slip * sight.slip) return;
     best = distance;
+    within = std::sqrt(best);
     pair.corners = t;
     pair.weights = weights;
     pair.normal = normal;
@@ -137,12 +152,10 @@ void Contacts::pair_of(size_t contact, const Vec3* x, FacingSearch& search, Faci
     if (search.squared[b] < search.squared[nearest]) nearest = b;
   }
   look_through(nearest);
-  double within = std::sqrt(best);
   for (size_t b = 0; b < search.centres.size(); ++b) {
     const double reach = search.radii[b] + within;
     if (b == nearest || search.squared[b] >= reach * reach) continue;
     look_through(b);
-    within = std::sqrt(best);
   }
 }
 
