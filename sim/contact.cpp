@@ -116,6 +116,11 @@ Contacts::Contacts(const Lattice& lattice, const std::vector<Vec3>& rest, const 
       facing_sides_.push_back(static_cast<uint8_t>(s));
       facing_fans_.push_back(fan);
     }
+  soft_nodes_ = globe_nodes_;
+  for (const Side& side : sides_)
+    for (const auto& t : side.triangles) soft_nodes_.insert(soft_nodes_.end(), t.begin(), t.end());
+  std::sort(soft_nodes_.begin(), soft_nodes_.end());
+  soft_nodes_.erase(std::unique(soft_nodes_.begin(), soft_nodes_.end()), soft_nodes_.end());
   for (const uint8_t side : facing_sides_) facing_margins_.push_back(side < 2 ? options.thickness : options.lid_thickness);
   FacingSearch search = make_search();
   for (size_t i = 0; i < facing_nodes_.size(); ++i) {

@@ -105,6 +105,7 @@ class Contacts {
   size_t grip_capacity() const { return globe_nodes_.size() + bone_nodes_.size() + facing_nodes_.size(); }
   std::span<const uint32_t> globe_nodes() const { return globe_nodes_; }
   std::span<const uint32_t> bone_nodes() const { return bone_nodes_; }
+  std::span<const uint32_t> soft_nodes() const { return soft_nodes_; }  ///< against eyeballs, and of surfaces that face others
   std::span<const double> bone_margins() const { return bone_margins_; }
   bool bone_moves(size_t contact) const { return field_bones_[bone_fields_[contact]] == 1; }  ///< with the mandible
   const DistanceField& bone_field(size_t contact) const { return fields_[bone_fields_[contact]]; }
@@ -140,6 +141,7 @@ class Contacts {
   std::vector<uint32_t> bone_nodes_, bone_fields_;
   std::vector<double> bone_margins_;
   std::array<Side, 6> sides_;
+  std::vector<uint32_t> soft_nodes_;
   std::vector<uint32_t> facing_nodes_;
   std::vector<uint8_t> facing_sides_;
   std::vector<double> facing_margins_;

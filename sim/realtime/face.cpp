@@ -316,20 +316,28 @@ MinimiseResult Face::substep(double share, const Drive& drive, const StepOptions
   float* const x = position_.data();
   float* const velocity = velocity_.data();
   if (!facing_.empty() || !reach_.empty()) {
-    fill_nodes(x, work.nodes);
+    // Only what may touch is looked at.
+    const auto bring = [&](uint32_t node) {
+      const int32_t at = model_->slot_of(node);
+      work.nodes[node] = place_at(x, at);
+      work.nodes_before[node] = work.nodes[node] - h * place_at(velocity, at);
+    };
+    for (const uint32_t node : contacts.soft_nodes()) bring(node);
     // Who faces whom changes slowly, and is known from afar: after the first time, a quarter of them a substep.
     if (turn_ == 0) contacts.find_facing(work.nodes.data(), facing_, work.facing_search);
     else contacts.find_facing(work.nodes.data(), facing_, work.facing_search, turn_ % 4, 4);
     ++turn_;
     if (contacts.options().friction > 0.0 || contacts.options().stickiness > 0.0) {
-      for (size_t i = 0; i < work.nodes.size(); ++i) work.nodes_before[i] = work.nodes[i] - h * place_at(velocity, model_->slot_of(i));
       RigidTransform turn;
       turn.rotation = solve.mandible.rotation * last_mandible_.rotation.transpose();
       turn.translation = solve.mandible.translation - turn.rotation * last_mandible_.translation;
       work.grips.resize(contacts.grip_capacity());
       work.near_bones.clear();
       for (uint32_t c = 0; c < reach_.size(); ++c)
-        if (!(reach_[c].free > 0.0F)) work.near_bones.push_back(c);
+        if (!(reach_[c].free > 0.0F)) {
+          work.near_bones.push_back(c);
+          bring(contacts.bone_nodes()[c]);
+        }
       const size_t grips = contacts.find_grips(last_mandible_, turn, facing_, work.nodes_before.data(), work.nodes.data(), work.grips, &work.near_bones);
       solve.grips = std::span(work.grips).first(grips);
     }

@@ -185,8 +185,13 @@ void Model::pack_fibres() {
   const auto points_of = [&](uint32_t fibre) { return lattice.fibre_offsets[fibre + 1] - lattice.fibre_offsets[fibre]; };
   for (uint32_t fibre = 0; fibre < lattice.fibre_count(); ++fibre)
     if (points_of(fibre) > 1 && face_->fibre_lengths()[fibre] > 0.0) order.push_back(fibre);
-  // Of like length together, so that few lanes idle.
-  std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return points_of(a) < points_of(b); });
+  // A muscle's together, so that those at rest are passed over; of muscles, those of like length, so that few lanes idle.
+  std::map<uint32_t, uint32_t> longest;
+  for (const uint32_t fibre : order) longest[lattice.fibre_channel[fibre]] = std::max(longest[lattice.fibre_channel[fibre]], points_of(fibre));
+  std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+    const uint32_t channel_a = lattice.fibre_channel[a], channel_b = lattice.fibre_channel[b];
+    return std::make_pair(longest[channel_a], channel_a) < std::make_pair(longest[channel_b], channel_b);
+  });
   fibres_.resize((order.size() + wide - 1) / wide);
   for (size_t b = 0; b < fibres_.size(); ++b) {
     FibreBatch& batch = fibres_[b];
