@@ -72,7 +72,7 @@ struct alignas(64) FibrePointBatch {
   Sixteen mandible;  ///< 1: goes with it
 };
 struct alignas(64) FibreBatch {
-  uint32_t first, count;  ///< of its point batches
+  uint32_t first, count = 0;  ///< of its point batches
   Sixteen length, shortest, strength;
   SixteenAt channel;
 };

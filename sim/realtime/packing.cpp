@@ -197,7 +197,7 @@ void Model::pack_fibres() {
     FibreBatch& batch = fibres_[b];
     const size_t end = std::min((b + 1) * wide, order.size());
     batch.first = static_cast<uint32_t>(fibre_points_.size());
-    batch.count = points_of(order[end - 1]);
+    for (size_t i = b * wide; i < end; ++i) batch.count = std::max(batch.count, points_of(order[i]));
     longest_fibre_ = std::max<size_t>(longest_fibre_, batch.count);
     fibre_points_.resize(fibre_points_.size() + batch.count);
     for (size_t lane = 0; lane < wide; ++lane) {

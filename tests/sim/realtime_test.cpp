@@ -25,6 +25,7 @@ struct Everything : ::testing::Test {
     options.across = 12;
     options.along = 8;
     level = make_patch(options);
+    add_fibre(level, options, 0, 6, 2, 11, 0.3F);  // longer than those it shares a batch with, and before them
     add_fibre(level, options, 0, 4, 1, 5, 0.4F);
     add_fibre(level, options, 1, 4, 11, 7, 0.4F);
     add_fibre(level, options, 1, 2, 2, 9, 0.2F);
