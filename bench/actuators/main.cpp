@@ -13,10 +13,9 @@
 
 #include "anatomy/anatomy.h"
 #include "bench/actuators/expected.h"
+#include "bench/people/person.h"
 #include "builder/rigging/build_rig.h"
 #include "builder/rigging/gltf_source.h"
-#include "builder/spatial/surface_query.h"
-#include "cli/demo_curves.h"
 #include "cli/picture.h"
 #include "formats/landmark_file.h"
 #include "formats/scene.h"
@@ -29,8 +28,6 @@ namespace fascia::bench {
 namespace {
 
 namespace fs = std::filesystem;
-
-const fs::path measured = fs::path(FASCIA_MEASURED_DATA) / "data/ict";
 
 struct Request {
   std::vector<std::string> people;
@@ -50,38 +47,8 @@ struct BuiltRig {
   }
 };
 
-formats::SceneMesh& head_mesh(formats::Scene& scene) {
-  for (formats::SceneMesh& mesh : scene.meshes)
-    if (mesh.name == "head") return mesh;
-  throw Error("the scene has no mesh 'head'");
-}
-
-/// The landmarks placed on the mean head, at the same places of another person's mesh.
-formats::LandmarkFile landmarks_on(formats::Scene& person) {
-  formats::LandmarkFile file = formats::read_landmarks(fs::path(FASCIA_TEST_DATA) / "ict_neutral_landmarks.json");
-  formats::Scene neutral = formats::read(measured / "neutral.glb");
-  const formats::SceneMesh& from = head_mesh(neutral);
-  const spatial::SurfaceQuery surface({from.positions, from.triangles});
-  const TriangleMesh to{head_mesh(person).positions, head_mesh(person).triangles};
-  for (auto& [name, p] : file.points) p = position(to, surface.closest(p).surface);
-  return file;
-}
-
 std::unique_ptr<BuiltRig> build(const std::string& person, const fs::path& keep) {
-  formats::Scene scene;
-  formats::LandmarkFile landmarks;
-  if (person == "embedded") {
-    const fs::path head = fs::temp_directory_path() / "fascia_actuators_head.obj";
-    const fs::path points = fs::temp_directory_path() / "fascia_actuators_landmarks.json";
-    cli::write_embedded_head(head, points);
-    scene = formats::read(head);
-    landmarks = formats::read_landmarks(points);
-    fs::remove(head);
-    fs::remove(points);
-  } else {
-    scene = formats::read(measured / (person + ".glb"));
-    landmarks = landmarks_on(scene);
-  }
+  const auto [scene, landmarks] = read_person(person);
   const rigging::BuildResult built = rigging::build_rig(scene, landmarks, anatomy::load_generic(), {});
   for (const std::string& warning : built.report.warnings) std::printf("%s: %s\n", person.c_str(), warning.c_str());
   const std::vector<uint8_t> bytes = rig::write(rigging::gltf_source(scene, built.report.input_to_metres), built.rig);
@@ -198,8 +165,8 @@ int main(int argc, char** argv) {
   if (request.people.empty()) request.people = {"embedded"};
   try {
     for (const std::string& person : request.people) {
-      if (person != "embedded" && !std::filesystem::exists(fascia::bench::measured)) {
-        std::printf("skipped %s: the measured heads are not at %s\n", person.c_str(), fascia::bench::measured.c_str());
+      if (person != "embedded" && !fascia::bench::has_measured_people()) {
+        std::printf("skipped %s: the measured heads are not beside the project\n", person.c_str());
         continue;
       }
       fascia::bench::run(person, request);

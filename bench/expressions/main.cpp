@@ -21,6 +21,7 @@
 #include "anatomy/anatomy.h"
 #include "bench/expressions/measured_shapes.h"
 #include "bench/expressions/remeshed.h"
+#include "bench/people/person.h"
 #include "builder/rigging/build_rig.h"
 #include "builder/rigging/gltf_source.h"
 #include "builder/spatial/surface_query.h"
@@ -48,23 +49,6 @@ struct Score {
   double best_scale = 0.0, at_best_scale = 0.0;  ///< of the face
   int turned = 0;  ///< triangles that the simulation turns over and the reference does not
 };
-
-const formats::SceneMesh& head_mesh(const formats::Scene& scene) {
-  for (const formats::SceneMesh& mesh : scene.meshes)
-    if (mesh.name == "head") return mesh;
-  throw Error("the scene has no mesh 'head'");
-}
-
-/// The landmarks placed on the mean head, at the same places of another person's mesh.
-formats::LandmarkFile landmarks_on(const formats::Scene& person) {
-  formats::LandmarkFile file = formats::read_landmarks(fs::path(FASCIA_TEST_DATA) / "ict_neutral_landmarks.json");
-  const formats::Scene neutral = formats::read(measured / "neutral.glb");
-  const formats::SceneMesh& from = head_mesh(neutral);
-  const spatial::SurfaceQuery surface({from.positions, from.triangles});
-  const TriangleMesh to{head_mesh(person).positions, head_mesh(person).triangles};
-  for (auto& [name, p] : file.points) p = position(to, surface.closest(p).surface);
-  return file;
-}
 
 Score score(const std::vector<Vec3>& rest, const std::vector<Triangle>& triangles, const std::vector<Vec3>& simulated,
             const std::vector<Vec3>& truth) {
@@ -187,8 +171,8 @@ std::map<std::string, Goal> goals() {
 }
 
 void run_person(const std::string& person, const std::string& level, const std::string& sheet, const std::string& rigs) {
-  const formats::Scene scene = formats::read(measured / (person + ".glb"));
-  const Subject subject(scene, landmarks_on(scene), person, level, rigs.empty() ? fs::path() : fs::path(rigs) / (person + ".glb"));
+  const auto [scene, landmarks] = read_person(person);
+  const Subject subject(scene, landmarks, person, level, rigs.empty() ? fs::path() : fs::path(rigs) / (person + ".glb"));
   if (!rigs.empty()) return;
   const formats::SceneMesh& head = head_mesh(scene);
   std::printf("%s\n%-22s %9s %9s %9s %7s %10s %10s\n", person.c_str(), "shape", "explained", "all skin", "error mm", "turned",
@@ -222,8 +206,7 @@ void run_person(const std::string& person, const std::string& level, const std::
 
 /// The same head in other triangles: its score, and how far its poses lie from the original's.
 void run_copies(const std::string& person, const std::string& level) {
-  const formats::Scene scene = formats::read(measured / (person + ".glb"));
-  const formats::LandmarkFile landmarks = landmarks_on(scene);
+  const auto [scene, landmarks] = read_person(person);
   const Subject original(scene, landmarks, person, level);
   const std::map<std::string, Goal> shapes = goals();
   for (const char* kind : {"half", "uneven"}) {

@@ -11,7 +11,7 @@
 #include <chrono>
 #include <cstdio>
 
-#include "bench/levels/person.h"
+#include "bench/people/person.h"
 #include "cli/posing.h"
 #include "view/image.h"
 #include "view/renderer.h"

@@ -1,4 +1,4 @@
-#include "bench/levels/person.h"
+#include "bench/people/person.h"
 
 #include "anatomy/anatomy.h"
 #include "builder/rigging/build_rig.h"
@@ -27,8 +27,8 @@ formats::LandmarkFile landmarks_on(const formats::Scene& person) {
 }
 
 Person embedded() {
-  const fs::path head = fs::temp_directory_path() / "fascia_levels_head.obj";
-  const fs::path points = fs::temp_directory_path() / "fascia_levels_landmarks.json";
+  const fs::path head = fs::temp_directory_path() / "fascia_bench_head.obj";
+  const fs::path points = fs::temp_directory_path() / "fascia_bench_landmarks.json";
   cli::write_embedded_head(head, points);
   Person person{formats::read(head), formats::read_landmarks(points)};
   fs::remove(head);
