@@ -176,7 +176,7 @@ std::vector<double> share_from_rim(const FaceRegion& region) {
 class DeepMouth {
  public:
   DeepMouth(const TissueInputs& inputs, const FaceRegion& region, const std::vector<Row>& rows)
-      : region_(region), rows_(rows), normals_(vertex_normals(inputs.skin)),
+      : rows_(rows), normals_(vertex_normals(inputs.skin)),
         height_(0.5 * (landmark(inputs, "cheilion_left").y() + landmark(inputs, "cheilion_right").y())) {
     outer_.vertices = region.mesh.vertices;
     for (const fascia::Triangle& t : region.mesh.triangles)
@@ -200,7 +200,6 @@ class DeepMouth {
   }
 
  private:
-  const FaceRegion& region_;
   const std::vector<Row>& rows_;
   std::vector<Vec3> normals_;
   double height_;

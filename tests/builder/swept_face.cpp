@@ -22,7 +22,7 @@ TriangleMesh skin_layer(const rig::TissueLevel& level) {
 }  // namespace
 
 SweptFace::SweptFace(std::shared_ptr<const runtime::Asset> asset, size_t level, const rig::TissueLevel& marks)
-    : asset_(std::move(asset)), level_(level), model_(&asset_->model(level)),
+    : asset_(std::move(asset)), model_(&asset_->model(level)),
       face_(asset_->realtime_model(level), asset_->channel_names.size()), values_(asset_->channel_rest),
       displacements_(model_->rest().size(), sim::Vec3f::Zero()) {
   bones_.displacements = displacements_;

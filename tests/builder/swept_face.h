@@ -58,7 +58,6 @@ class SweptFace {
   void follow();
 
   std::shared_ptr<const runtime::Asset> asset_;
-  size_t level_;
   const sim::FaceModel* model_;
   sim::realtime::Face face_;
   std::vector<float> values_;
