@@ -33,21 +33,41 @@ const TissueDepth* TissueDepthTable::find(std::string_view key) const {
   return nullptr;
 }
 
-const Expression* ExpressionSet::find(std::string_view expression) const { return named(expressions, expression); }
+const Expression* ExpressionSet::find(std::string_view expression) const {
+  return named(expressions, expression);
+}
 
-const Landmark* GenericAnatomy::landmark(std::string_view name) const { return named(landmarks, name); }
-const Curve* GenericAnatomy::curve(std::string_view name) const { return named(curves, name); }
-const TissueDepthTable* GenericAnatomy::depth_table(std::string_view name) const { return named(depth_tables, name); }
-const MeshObject* GenericAnatomy::head_object(std::string_view name) const { return named(head, name); }
-const MeshObject* GenericAnatomy::skull_object(std::string_view name) const { return named(skull, name); }
-const Muscle* GenericAnatomy::muscle(std::string_view name) const { return named(muscles, name); }
-const Actuator* GenericAnatomy::actuator(std::string_view name) const { return named(actuators, name); }
-const Whole* GenericAnatomy::whole(std::string_view name) const { return named(wholes, name); }
+const Landmark* GenericAnatomy::landmark(std::string_view name) const {
+  return named(landmarks, name);
+}
+const Curve* GenericAnatomy::curve(std::string_view name) const {
+  return named(curves, name);
+}
+const TissueDepthTable* GenericAnatomy::depth_table(std::string_view name) const {
+  return named(depth_tables, name);
+}
+const MeshObject* GenericAnatomy::head_object(std::string_view name) const {
+  return named(head, name);
+}
+const MeshObject* GenericAnatomy::skull_object(std::string_view name) const {
+  return named(skull, name);
+}
+const Muscle* GenericAnatomy::muscle(std::string_view name) const {
+  return named(muscles, name);
+}
+const Actuator* GenericAnatomy::actuator(std::string_view name) const {
+  return named(actuators, name);
+}
+const Whole* GenericAnatomy::whole(std::string_view name) const {
+  return named(wholes, name);
+}
 const ExpressionSet* GenericAnatomy::expression_set(std::string_view name) const {
   return named(expression_sets, name);
 }
 
-GenericAnatomy load_generic() { return load(DataFiles()); }
+GenericAnatomy load_generic() {
+  return load(DataFiles());
+}
 
 GenericAnatomy load_generic(const std::filesystem::path& directory) {
   if (!std::filesystem::is_directory(directory))

@@ -24,15 +24,16 @@ struct Landmark {
   std::string abbreviation;  ///< such as zy
   std::string definition;
   Side side = Side::midline;
-  bool craniometric = false;  ///< defined on bone; else cephalometric, defined on skin
-  bool required = false;      ///< of the few a person has to place on a head of theirs
-  std::optional<Vec3> skin;   ///< on the generic head's skin
+  bool craniometric = false;   ///< defined on bone; else cephalometric, defined on skin
+  bool required = false;       ///< of the few a person has to place on a head of theirs
+  std::optional<Vec3> skin;    ///< on the generic head's skin
   Vec3 normal = Vec3::Zero();  ///< unit outward skin normal; zero without a skin point
-  Vec3 tangent = Vec3::Zero();  ///< unit, horizontal within the skin, away from the midplane (left on it); zero likewise
-  std::optional<Vec3> bone;   ///< on the generic skull
+  Vec3 tangent =
+      Vec3::Zero();  ///< unit, horizontal within the skin, away from the midplane (left on it); zero likewise
+  std::optional<Vec3> bone;         ///< on the generic skull
   Vec3 bone_normal = Vec3::Zero();  ///< unit outward normal of the bone; zero without a bone point
-  bool bone_from_depth = false;  ///< bone = skin - depth * normal; else measured on a skull
-  std::string depth;          ///< its key in the tissue depth tables; empty when none knows it
+  bool bone_from_depth = false;     ///< bone = skin - depth * normal; else measured on a skull
+  std::string depth;                ///< its key in the tissue depth tables; empty when none knows it
 };
 
 /// A named curve of the face or the skull, as points in order along it.
@@ -47,9 +48,9 @@ struct Curve {
 
 /// Thickness of the soft tissue over one landmark.
 struct TissueDepth {
-  std::string key;          ///< bone landmark abbreviation, the `depth` of a Landmark
-  double mean = 0.0;        ///< metres
-  double deviation = 0.0;   ///< standard deviation, metres; 0 when the source gives none
+  std::string key;         ///< bone landmark abbreviation, the `depth` of a Landmark
+  double mean = 0.0;       ///< metres
+  double deviation = 0.0;  ///< standard deviation, metres; 0 when the source gives none
 };
 
 struct TissueDepthTable {
@@ -82,10 +83,11 @@ struct Region {
 /// line where the lips (lids) meet, not from the mesh's edge loop. Angles are seen from the front
 /// about the orifice's centre: 0 to the subject's left, pi/2 upward.
 struct OrificeBand {
-  std::string orifice;  ///< mouth, eye_left or eye_right
-  double inner = 0.0, outer = 0.0;        ///< metres
+  std::string orifice;                        ///< mouth, eye_left or eye_right
+  double inner = 0.0, outer = 0.0;            ///< metres
   double begin_angle = 0.0, end_angle = 0.0;  ///< radians, begin < end
-  bool medial_on_bone = false;  ///< the ring's medial end hangs on the canthal ligament and the bone behind it
+  bool medial_on_bone =
+      false;  ///< the ring's medial end hangs on the canthal ligament and the bone behind it
   bool upper() const { return begin_angle + end_angle > 0.0; }
 };
 
@@ -96,9 +98,9 @@ struct Variant {
   std::string name;         ///< absent, bifid, ...
   double prevalence = 0.0;  ///< share of faces, 0..1
   std::string note;
-  bool is_absent = false;                      ///< the muscle is not there
-  double width = 1.0;                          ///< times the usual width
-  Vec3 insertion_offset = Vec3::Zero();        ///< from the usual insertion, metres on the generic head
+  bool is_absent = false;                ///< the muscle is not there
+  double width = 1.0;                    ///< times the usual width
+  Vec3 insertion_offset = Vec3::Zero();  ///< from the usual insertion, metres on the generic head
 };
 
 /// A muscle, or the part of one that has a channel of its own.
@@ -109,8 +111,8 @@ struct Muscle {
   std::string group;  ///< mimic, masticatory or lid
   Side side = Side::midline;
   MuscleKind kind = MuscleKind::strap;
-  Region origin, insertion;        ///< polygons empty for rings and compressors
-  std::vector<Vec3> waypoints;     ///< the central fibre passes through these, in order from the origin
+  Region origin, insertion;         ///< polygons empty for rings and compressors
+  std::vector<Vec3> waypoints;      ///< the central fibre passes through these, in order from the origin
   std::optional<OrificeBand> band;  ///< of sphincter rings and compressors
   /// Depth along the course, evenly spaced from origin to insertion: 0 at the skin .. 1 at the bone.
   std::vector<double> depth_fraction;
@@ -118,8 +120,8 @@ struct Muscle {
   double peak_shortening = 0.2;  ///< share of the rest length at full activation
   /// Physiological cross-section, square metres. Times a muscle stress of about 0.3 MPa it is the force.
   double cross_section = 0.0;
-  int bundles = 1;               ///< sub-bundles side by side that the fibres should make
-  double prevalence = 1.0;       ///< share of faces that have it
+  int bundles = 1;          ///< sub-bundles side by side that the fibres should make
+  double prevalence = 1.0;  ///< share of faces that have it
   std::vector<Variant> variants;
   std::vector<int> action_units;  ///< FACS; negative: relaxes in that unit
   std::string source;
@@ -128,12 +130,12 @@ struct Muscle {
 /// A layer of the soft tissue, from the skin inward.
 struct TissueLayer {
   std::string name;
-  double thickness = 0.0;      ///< metres, typical
+  double thickness = 0.0;                 ///< metres, typical
   double thinnest = 0.0, thickest = 0.0;  ///< metres, over the face
-  double young_modulus = 0.0;  ///< pascal, at small strain
+  double young_modulus = 0.0;             ///< pascal, at small strain
   double stiff_modulus = 0.0;  ///< pascal, beyond `limit_strain`; equal to young_modulus when not biphasic
   double limit_strain = 0.0;
-  double density = 0.0;        ///< kg per cubic metre
+  double density = 0.0;  ///< kg per cubic metre
   std::string source;
 };
 
@@ -167,15 +169,15 @@ struct SmasDepth {
 };
 
 struct Tissue {
-  std::vector<TissueLayer> layers;          ///< from the skin inward
-  double skin_attachment = 0.0;             ///< where no zone says otherwise
-  double glide = 0.0;                       ///< where no zone says otherwise, metres
-  std::vector<SmasDepth> smas_depths;       ///< interpolated between the landmarks
-  std::vector<Zone> skin_attachments;       ///< value: SMAS to skin, 0 gliding .. 1 firm
-  std::vector<Zone> gliding_planes;         ///< value: free travel of the SMAS over bone, metres
-  std::vector<Zone> fat_compartments;       ///< value: thickness, metres
-  std::vector<Zone> aesthetic_units;        ///< value: unused
-  std::vector<Zone> tarsal_plates;          ///< value: Young's modulus, pascal
+  std::vector<TissueLayer> layers;     ///< from the skin inward
+  double skin_attachment = 0.0;        ///< where no zone says otherwise
+  double glide = 0.0;                  ///< where no zone says otherwise, metres
+  std::vector<SmasDepth> smas_depths;  ///< interpolated between the landmarks
+  std::vector<Zone> skin_attachments;  ///< value: SMAS to skin, 0 gliding .. 1 firm
+  std::vector<Zone> gliding_planes;    ///< value: free travel of the SMAS over bone, metres
+  std::vector<Zone> fat_compartments;  ///< value: thickness, metres
+  std::vector<Zone> aesthetic_units;   ///< value: unused
+  std::vector<Zone> tarsal_plates;     ///< value: Young's modulus, pascal
   std::vector<RetainingLigament> ligaments;
 };
 
@@ -184,8 +186,8 @@ struct Actuator {
   std::string name;
   std::string group;  ///< muscle, jaw, eye, lid, lip or pressure
   double minimum = 0.0, maximum = 1.0, rest = 0.0;
-  std::string unit;   ///< "1" or "rad"
-  std::string note;   ///< what the positive direction is
+  std::string unit;        ///< "1" or "rad"
+  std::string note;        ///< what the positive direction is
   bool is_muscle = false;  ///< then a Muscle bears the same name
 };
 
@@ -245,12 +247,13 @@ GenericAnatomy load_generic();
 /// or a reference does not resolve.
 GenericAnatomy load_generic(const std::filesystem::path& directory);
 
-/// Adds a muscle with its channel, and its name to its whole's members. One that bears the name of a muscle there is takes
-/// its place. Throws fascia::Error when the name is that of a channel or whole of another kind.
+/// Adds a muscle with its channel, and its name to its whole's members. One that bears the name of a muscle
+/// there is takes its place. Throws fascia::Error when the name is that of a channel or whole of another
+/// kind.
 void add_muscle(GenericAnatomy& anatomy, Muscle muscle);
 
-/// Adds the muscles of a file of the form of anatomy/data/muscles.json, drawn on the generic head, as `add_muscle` does.
-/// Throws fascia::Error naming the file and the entry at fault.
+/// Adds the muscles of a file of the form of anatomy/data/muscles.json, drawn on the generic head, as
+/// `add_muscle` does. Throws fascia::Error naming the file and the entry at fault.
 void add_muscles(GenericAnatomy& anatomy, const std::filesystem::path& file);
 
 /// Names of the data files built in, such as "landmarks.json" or "expressions/arkit.json".

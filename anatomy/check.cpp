@@ -46,7 +46,8 @@ void check_channels(const GenericAnatomy& anatomy) {
   for (const Muscle& muscle : anatomy.muscles)
     if (muscle.whole != muscle.name) {
       const Whole* whole = anatomy.whole(muscle.whole);
-      if (!whole || std::find(whole->members.begin(), whole->members.end(), muscle.name) == whole->members.end())
+      if (!whole ||
+          std::find(whole->members.begin(), whole->members.end(), muscle.name) == whole->members.end())
         throw Error("muscles.json, " + muscle.name + ": is not a member of its whole " + muscle.whole +
                     " in actuators.json");
     }
@@ -62,7 +63,8 @@ void check_expressions(const GenericAnatomy& anatomy) {
       for (const auto& [name, weight] : expression.weights) {
         const Actuator* actuator = anatomy.actuator(name);
         if (!actuator) throw Error(where + "no channel is called " + name);
-        if (!std::isfinite(weight) || weight == 0.0) throw Error(where + "the weight of " + name + " is zero");
+        if (!std::isfinite(weight) || weight == 0.0)
+          throw Error(where + "the weight of " + name + " is zero");
       }
     }
 }
@@ -72,8 +74,9 @@ void check_tissue(const GenericAnatomy& anatomy) {
   if (tissue.layers.empty()) throw Error("tissue.json: has no layers");
   unique_names(tissue.layers, "tissue.json");
   unique_names(tissue.ligaments, "tissue.json");
-  for (const std::vector<Zone>* zones : {&tissue.skin_attachments, &tissue.gliding_planes,
-                                         &tissue.fat_compartments, &tissue.aesthetic_units, &tissue.tarsal_plates})
+  for (const std::vector<Zone>* zones :
+       {&tissue.skin_attachments, &tissue.gliding_planes, &tissue.fat_compartments, &tissue.aesthetic_units,
+        &tissue.tarsal_plates})
     unique_names(*zones, "tissue.json");
   if (tissue.smas_depths.empty()) throw Error("tissue.json: smas_depths has no sites");
   std::set<std::string> sites;

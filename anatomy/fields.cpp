@@ -10,10 +10,12 @@ namespace {
 constexpr double metres = 1e-3;
 
 Vec3 triple(const Json& value, const Fields& fields, const char* key) {
-  if (!value.is_array() || value.size() != 3) fields.fail(std::string("\"") + key + "\" must be three numbers");
+  if (!value.is_array() || value.size() != 3)
+    fields.fail(std::string("\"") + key + "\" must be three numbers");
   Vec3 point;
   for (int i = 0; i < 3; ++i) {
-    if (!value[static_cast<size_t>(i)].is_number()) fields.fail(std::string("\"") + key + "\" must be three numbers");
+    if (!value[static_cast<size_t>(i)].is_number())
+      fields.fail(std::string("\"") + key + "\" must be three numbers");
     point[i] = value[static_cast<size_t>(i)].get<double>();
   }
   return point;
@@ -53,7 +55,9 @@ Fields::Fields(const Json& object, std::string where) : object_(&object), where_
   if (!object.is_object()) fail("must be a JSON object");
 }
 
-void Fields::fail(const std::string& what) const { throw Error(where_ + ": " + what); }
+void Fields::fail(const std::string& what) const {
+  throw Error(where_ + ": " + what);
+}
 
 const Json& Fields::raw(const char* key) const {
   const auto found = object_->find(key);
@@ -78,7 +82,9 @@ double Fields::number(const char* key) const {
   return value.get<double>();
 }
 
-double Fields::number_or(const char* key, double fallback) const { return has(key) ? number(key) : fallback; }
+double Fields::number_or(const char* key, double fallback) const {
+  return has(key) ? number(key) : fallback;
+}
 
 bool Fields::flag(const char* key) const {
   if (!has(key)) return false;
@@ -98,7 +104,9 @@ std::vector<double> Fields::numbers(const char* key) const {
   return result;
 }
 
-Vec3 Fields::point_mm(const char* key) const { return triple(raw(key), *this, key) * metres; }
+Vec3 Fields::point_mm(const char* key) const {
+  return triple(raw(key), *this, key) * metres;
+}
 
 Vec3 Fields::direction(const char* key) const {
   const Vec3 vector = triple(raw(key), *this, key);
@@ -110,7 +118,8 @@ std::vector<Vec3> Fields::points_mm(const char* key) const {
   const Json& value = raw(key);
   if (!value.is_array()) fail(std::string("\"") + key + "\" must be a list of points");
   std::vector<Vec3> points;
-  for (const Json& element : value) points.push_back(triple(element, *this, key) * metres);
+  for (const Json& element : value)
+    points.push_back(triple(element, *this, key) * metres);
   return points;
 }
 
@@ -128,12 +137,17 @@ std::vector<Fields> Fields::list(const char* key) const {
   return entries;
 }
 
-Fields Fields::object(const char* key) const { return Fields(raw(key), where_ + ", " + key); }
+Fields Fields::object(const char* key) const {
+  return Fields(raw(key), where_ + ", " + key);
+}
 
-Vec3 mirrored(const Vec3& point) { return Vec3(-point.x(), point.y(), point.z()); }
+Vec3 mirrored(const Vec3& point) {
+  return Vec3(-point.x(), point.y(), point.z());
+}
 
 std::vector<Vec3> mirrored(std::vector<Vec3> points) {
-  for (Vec3& point : points) point = mirrored(point);
+  for (Vec3& point : points)
+    point = mirrored(point);
   return points;
 }
 

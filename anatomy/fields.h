@@ -39,7 +39,7 @@ class Fields {
   double number_or(const char* key, double fallback) const;
   bool flag(const char* key) const;
   std::vector<double> numbers(const char* key) const;
-  Vec3 point_mm(const char* key) const;                ///< millimetres in the file, metres here
+  Vec3 point_mm(const char* key) const;  ///< millimetres in the file, metres here
   Vec3 direction(const char* key) const;
   std::vector<Vec3> points_mm(const char* key) const;  ///< millimetres in the file, metres here
   /// The objects of the list `key`, each placed at its name.

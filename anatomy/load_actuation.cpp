@@ -74,7 +74,8 @@ void load_actuation(const DataFiles& files, GenericAnatomy& anatomy) {
   const Json document = files.json("actuators.json");
   const Fields root(document, "actuators.json");
   add_muscles(root, anatomy);
-  for (const Fields& entry : root.list("others")) add_actuators(entry, anatomy.actuators);
+  for (const Fields& entry : root.list("others"))
+    add_actuators(entry, anatomy.actuators);
   for (const Fields& entry : root.list("wholes"))
     for (const Side side : sides_of(entry))
       anatomy.wholes.push_back({with_side(entry.text("name"), side), members_of(entry, side)});

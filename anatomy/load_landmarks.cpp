@@ -55,9 +55,11 @@ void add_curve(const Fields& fields, std::vector<Curve>& curves) {
 void load_landmarks(const DataFiles& files, GenericAnatomy& anatomy) {
   const Json document = files.json("landmarks.json");
   const Fields root(document, "landmarks.json");
-  for (const Fields& entry : root.list("landmarks")) anatomy.landmarks.push_back(landmark_of(entry));
+  for (const Fields& entry : root.list("landmarks"))
+    anatomy.landmarks.push_back(landmark_of(entry));
   if (root.has("curves"))
-    for (const Fields& entry : root.list("curves")) add_curve(entry, anatomy.curves);
+    for (const Fields& entry : root.list("curves"))
+      add_curve(entry, anatomy.curves);
 }
 
 void load_tissue_depths(const DataFiles& files, GenericAnatomy& anatomy) {

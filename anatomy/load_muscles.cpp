@@ -19,13 +19,14 @@ MuscleKind kind_of(const Fields& fields) {
 
 Attachment attachment_of(const Fields& fields) {
   static const std::pair<const char*, Attachment> names[] = {
-      {"cranium", Attachment::cranium}, {"mandible", Attachment::mandible}, {"hyoid", Attachment::hyoid},
-      {"galea", Attachment::galea},     {"smas", Attachment::smas},         {"skin", Attachment::skin},
-      {"modiolus", Attachment::modiolus}, {"tarsus", Attachment::tarsus},   {"fascia", Attachment::fascia}};
+      {"cranium", Attachment::cranium},   {"mandible", Attachment::mandible}, {"hyoid", Attachment::hyoid},
+      {"galea", Attachment::galea},       {"smas", Attachment::smas},         {"skin", Attachment::skin},
+      {"modiolus", Attachment::modiolus}, {"tarsus", Attachment::tarsus},     {"fascia", Attachment::fascia}};
   const std::string on = fields.text("on");
   for (const auto& [name, attachment] : names)
     if (on == name) return attachment;
-  fields.fail("\"on\" must be cranium, mandible, hyoid, galea, smas, skin, modiolus, tarsus or fascia, not " + on);
+  fields.fail("\"on\" must be cranium, mandible, hyoid, galea, smas, skin, modiolus, tarsus or fascia, not " +
+              on);
 }
 
 Region region_of(const Fields& fields) {
@@ -84,7 +85,8 @@ Muscle read_muscle(const Fields& fields) {
     muscle.insertion = region_of(fields.object("insertion"));
   }
   const bool ring = muscle.kind == MuscleKind::sphincter_ring || muscle.kind == MuscleKind::compressor;
-  if (ring != muscle.band.has_value()) fields.fail("rings and compressors have a \"band\", all others regions");
+  if (ring != muscle.band.has_value())
+    fields.fail("rings and compressors have a \"band\", all others regions");
   if (fields.has("waypoints")) muscle.waypoints = fields.points_mm("waypoints");
   muscle.depth_fraction = fields.numbers("depth_fraction");
   if (muscle.depth_fraction.empty()) fields.fail("\"depth_fraction\" needs a value or more");
@@ -101,7 +103,8 @@ Muscle read_muscle(const Fields& fields) {
   if (fields.has("variants"))
     for (const Fields& entry : fields.list("variants"))
       muscle.variants.push_back(variant_of(entry));
-  for (const double unit : fields.numbers("action_units")) muscle.action_units.push_back(static_cast<int>(unit));
+  for (const double unit : fields.numbers("action_units"))
+    muscle.action_units.push_back(static_cast<int>(unit));
   muscle.source = fields.text("source");
   return muscle;
 }
@@ -130,7 +133,8 @@ Muscle on_side(Muscle muscle, Side side) {
   std::reverse(muscle.origin.polygon.begin(), muscle.origin.polygon.end());
   std::reverse(muscle.insertion.polygon.begin(), muscle.insertion.polygon.end());
   muscle.waypoints = mirrored(muscle.waypoints);
-  for (Variant& variant : muscle.variants) variant.insertion_offset = mirrored(variant.insertion_offset);
+  for (Variant& variant : muscle.variants)
+    variant.insertion_offset = mirrored(variant.insertion_offset);
   return muscle;
 }
 
@@ -151,7 +155,8 @@ void load_muscles(const DataFiles& files, GenericAnatomy& anatomy) {
   const Fields root(document, "muscles.json");
   for (const Fields& entry : root.list("muscles")) {
     const Muscle muscle = read_muscle(entry);
-    for (const Side side : sides_of(entry)) anatomy.muscles.push_back(on_side(muscle, side));
+    for (const Side side : sides_of(entry))
+      anatomy.muscles.push_back(on_side(muscle, side));
   }
 }
 
@@ -168,7 +173,8 @@ Actuator muscle_actuator(const Muscle& muscle) {
 void add_muscle(GenericAnatomy& anatomy, Muscle muscle) {
   for (const Actuator& actuator : anatomy.actuators)
     if (actuator.name == muscle.name && !actuator.is_muscle)
-      throw Error(muscle.name + ": there is a channel of that name that is not a muscle's; choose another name");
+      throw Error(muscle.name +
+                  ": there is a channel of that name that is not a muscle's; choose another name");
   if (anatomy.whole(muscle.name))
     throw Error(muscle.name + ": this is the name of several parts together; choose another name");
   put(anatomy.actuators, muscle_actuator(muscle));
@@ -191,7 +197,8 @@ void add_muscles(GenericAnatomy& anatomy, const std::filesystem::path& file) {
   const Fields root(document, where);
   for (const Fields& entry : root.list("muscles")) {
     const Muscle muscle = read_muscle(entry);
-    for (const Side side : sides_of(entry)) add_muscle(anatomy, on_side(muscle, side));
+    for (const Side side : sides_of(entry))
+      add_muscle(anatomy, on_side(muscle, side));
   }
   check_references(anatomy);
 }

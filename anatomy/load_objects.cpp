@@ -10,12 +10,14 @@ namespace fascia::anatomy {
 namespace {
 
 /// One object with only its own vertices, polygons as fans.
-MeshObject object_of(const tinyobj::attrib_t& attributes, const tinyobj::shape_t& shape, const std::string& file) {
+MeshObject object_of(const tinyobj::attrib_t& attributes, const tinyobj::shape_t& shape,
+                     const std::string& file) {
   MeshObject object;
   object.name = shape.name;
   std::unordered_map<int, int> own;
   const auto vertex = [&](const tinyobj::index_t& corner) {
-    const auto [place, added] = own.emplace(corner.vertex_index, static_cast<int>(object.mesh.vertices.size()));
+    const auto [place, added] =
+        own.emplace(corner.vertex_index, static_cast<int>(object.mesh.vertices.size()));
     if (added) {
       const size_t i = 3 * static_cast<size_t>(corner.vertex_index);
       object.mesh.vertices.emplace_back(attributes.vertices[i] * 1e-3, attributes.vertices[i + 1] * 1e-3,
@@ -28,7 +30,8 @@ MeshObject object_of(const tinyobj::attrib_t& attributes, const tinyobj::shape_t
     return Vec2(attributes.texcoords[i], attributes.texcoords[i + 1]);
   };
   bool has_uvs = true;
-  for (const tinyobj::index_t& corner : shape.mesh.indices) has_uvs = has_uvs && corner.texcoord_index >= 0;
+  for (const tinyobj::index_t& corner : shape.mesh.indices)
+    has_uvs = has_uvs && corner.texcoord_index >= 0;
   size_t begin = 0;
   for (const auto corners : shape.mesh.num_face_vertices) {
     for (size_t k = 1; k + 1 < corners; ++k) {
@@ -61,7 +64,8 @@ std::vector<MeshObject> load_objects(const DataFiles& files, const std::string& 
   std::vector<tinyobj::material_t> materials;
   std::string warnings, errors;
   std::istringstream stream(objects_only(files.read(name)));
-  const bool parsed = tinyobj::LoadObj(&attributes, &shapes, &materials, &warnings, &errors, &stream, nullptr, false);
+  const bool parsed =
+      tinyobj::LoadObj(&attributes, &shapes, &materials, &warnings, &errors, &stream, nullptr, false);
   if (!parsed || !errors.empty()) throw Error(name + ": is not a sound OBJ file: " + errors);
   std::vector<MeshObject> objects;
   for (const tinyobj::shape_t& shape : shapes)

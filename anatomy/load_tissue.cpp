@@ -8,7 +8,8 @@ TissueLayer layer_of(const Fields& fields) {
   layer.name = fields.text("name");
   layer.thickness = fields.number("thickness_mm") * 1e-3;
   const std::vector<double> range = fields.numbers("thickness_range_mm");
-  if (range.size() != 2 || range[0] > range[1]) fields.fail("\"thickness_range_mm\" must be two rising numbers");
+  if (range.size() != 2 || range[0] > range[1])
+    fields.fail("\"thickness_range_mm\" must be two rising numbers");
   layer.thinnest = range[0] * 1e-3;
   layer.thickest = range[1] * 1e-3;
   layer.young_modulus = fields.number("young_modulus_pa");
@@ -68,12 +69,14 @@ void load_tissue(const DataFiles& files, GenericAnatomy& anatomy) {
   const Json document = files.json("tissue.json");
   const Fields root(document, "tissue.json");
   Tissue& tissue = anatomy.tissue;
-  for (const Fields& entry : root.list("layers")) tissue.layers.push_back(layer_of(entry));
+  for (const Fields& entry : root.list("layers"))
+    tissue.layers.push_back(layer_of(entry));
   const Fields elsewhere = root.object("elsewhere");
   tissue.skin_attachment = elsewhere.number("skin_attachment");
   tissue.glide = elsewhere.number("glide_mm") * 1e-3;
   for (const Fields& site : root.object("smas_depths").list("sites")) {
-    tissue.smas_depths.push_back({site.text("landmark"), site.number("fraction"), site.number("free_depth_mm") * 1e-3});
+    tissue.smas_depths.push_back(
+        {site.text("landmark"), site.number("fraction"), site.number("free_depth_mm") * 1e-3});
     const SmasDepth& depth = tissue.smas_depths.back();
     if (!(depth.fraction > 0.0 && depth.fraction < 1.0 && depth.free_depth > 0.0))
       site.fail("\"fraction\" lies between 0 and 1, \"free_depth_mm\" is positive");
@@ -83,7 +86,8 @@ void load_tissue(const DataFiles& files, GenericAnatomy& anatomy) {
   tissue.fat_compartments = zones_of(root, "fat_compartments", "thickness_mm", 1e-3);
   tissue.aesthetic_units = zones_of(root, "aesthetic_units", nullptr, 1.0);
   tissue.tarsal_plates = zones_of(root, "tarsal_plates", "young_modulus_pa", 1.0);
-  for (const Fields& entry : root.list("ligaments")) add_ligament(entry, tissue.ligaments);
+  for (const Fields& entry : root.list("ligaments"))
+    add_ligament(entry, tissue.ligaments);
 }
 
 }  // namespace fascia::anatomy

@@ -23,17 +23,20 @@ struct Request {
 std::vector<std::pair<std::string, std::string>> targets(const Face& face, const std::string& shapes) {
   std::vector<std::pair<std::string, std::string>> list;
   if (shapes == "muscles") {
-    for (const std::string& name : face.channel_names()) list.emplace_back(name, name);
+    for (const std::string& name : face.channel_names())
+      list.emplace_back(name, name);
   } else {
     const std::string set = shapes == "visemes" ? "viseme" : shapes;
-    for (const std::string& member : face.set_members(set)) list.emplace_back(member, set + ":" + member);
+    for (const std::string& member : face.set_members(set))
+      list.emplace_back(member, set + ":" + member);
   }
   return list;
 }
 
 void run(const Common& common, const Request& request) {
   const auto started = std::chrono::steady_clock::now();
-  const std::vector<std::string> names = bake_file(common, request.rig, request.shapes, request.output, request.solver, request.level);
+  const std::vector<std::string> names =
+      bake_file(common, request.rig, request.shapes, request.output, request.solver, request.level);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   common.say("wrote " + request.output.string() + ": " + std::to_string(names.size()) + " shapes in " +
              std::to_string(seconds).substr(0, 5) + " s");
@@ -42,10 +45,12 @@ void run(const Common& common, const Request& request) {
 
 }  // namespace
 
-std::vector<std::string> bake_file(const Common& common, const std::filesystem::path& rig, const std::string& shapes,
-                                   const std::filesystem::path& output, const std::string& solver, const std::string& level) {
+std::vector<std::string> bake_file(const Common& common, const std::filesystem::path& rig,
+                                   const std::string& shapes, const std::filesystem::path& output,
+                                   const std::string& solver, const std::string& level) {
   check_output(output);
-  if (output.extension() != ".glb") throw Error("'" + output.string() + "': baked shapes are written as .glb");
+  if (output.extension() != ".glb")
+    throw Error("'" + output.string() + "': baked shapes are written as .glb");
   Face face(rig, {FASCIA_SPACE_MESH, solver, level});
   const BakedShapes baked = bake_shapes(common, face, targets(face, shapes));
   const std::vector<uint8_t> bytes = formats::read_bytes(rig);
@@ -60,8 +65,10 @@ void add_bake(CLI::App& app, Common& common) {
   auto request = std::make_shared<Request>();
   CLI::App* command = app.add_subcommand("bake", "Bake simulated shapes into morph targets");
   command->add_option("RIG", request->rig, "Rig (.glb)")->required();
-  command->add_option("--shapes", request->shapes, "Which shapes")->check(CLI::IsMember({"arkit", "muscles", "visemes"}));
-  command->add_option("--solver", request->solver, "Solver")->check(CLI::IsMember({"own", "reference", "bullet"}));
+  command->add_option("--shapes", request->shapes, "Which shapes")
+      ->check(CLI::IsMember({"arkit", "muscles", "visemes"}));
+  command->add_option("--solver", request->solver, "Solver")
+      ->check(CLI::IsMember({"own", "reference", "bullet"}));
   command->add_option("--level", request->level, "Level of detail: low, medium or high");
   command->add_option("-o,--output", request->output, "File to write (.glb)")->required();
   command->callback([request, &common] { run(common, *request); });

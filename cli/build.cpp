@@ -61,7 +61,9 @@ Json muscles_json(const rigging::BuildReport& report) {
 }
 
 Json eye_json(const prepare::Eyeball& eye) {
-  return {{"centre", {eye.centre[0], eye.centre[1], eye.centre[2]}}, {"radius_mm", 1e3 * eye.radius}, {"gaze", {eye.gaze[0], eye.gaze[1], eye.gaze[2]}}};
+  return {{"centre", {eye.centre[0], eye.centre[1], eye.centre[2]}},
+          {"radius_mm", 1e3 * eye.radius},
+          {"gaze", {eye.gaze[0], eye.gaze[1], eye.gaze[2]}}};
 }
 
 Json report_json(const rigging::BuildReport& report) {
@@ -69,10 +71,14 @@ Json report_json(const rigging::BuildReport& report) {
   Json matrix = Json::array();
   for (int row = 0; row < 4; ++row) {
     Json line = Json::array();
-    for (int column = 0; column < 4; ++column) line.push_back(report.input_to_metres(row, column));
+    for (int column = 0; column < 4; ++column)
+      line.push_back(report.input_to_metres(row, column));
     matrix.push_back(line);
   }
-  json["input"] = {{"units", report.units}, {"input_to_metres", matrix}, {"parts", Json::array()}, {"eyes", Json::object()}};
+  json["input"] = {{"units", report.units},
+                   {"input_to_metres", matrix},
+                   {"parts", Json::array()},
+                   {"eyes", Json::object()}};
   for (const auto& part : report.parts)
     json["input"]["parts"].push_back({{"mesh", part.mesh}, {"part", part.part}, {"vertices", part.vertices}});
   for (const auto& [side, eye] : {std::pair("left", &report.eye_left), std::pair("right", &report.eye_right)})
@@ -80,7 +86,9 @@ Json report_json(const rigging::BuildReport& report) {
   json["stages"] = Json::array();
   for (const rigging::StageTime& stage : report.stages)
     json["stages"].push_back({{"name", stage.name}, {"seconds", stage.seconds}});
-  json["landmarks"] = {{"found", report.landmarks_found}, {"given", report.landmarks_given}, {"low_confidence", report.low_confidence}};
+  json["landmarks"] = {{"found", report.landmarks_found},
+                       {"given", report.landmarks_given},
+                       {"low_confidence", report.low_confidence}};
   json["skull"] = {{"landmark_rms_mm", report.landmark_rms_mm},
                    {"landmark_max_mm", report.landmark_max_mm},
                    {"bone_outside_skin", report.bone_outside_skin},
@@ -101,13 +109,16 @@ Json report_json(const rigging::BuildReport& report) {
                    {"added", report.edits.added},
                    {"absent", report.edits.absent}};
   json["tissue"] = Json::object();
-  for (const auto& level : report.tissue) json["tissue"][level.name] = {{"nodes", level.nodes}, {"springs", level.springs}};
+  for (const auto& level : report.tissue)
+    json["tissue"][level.name] = {{"nodes", level.nodes}, {"springs", level.springs}};
   json["warnings"] = report.warnings;
   return json;
 }
 
-void say_report(const Common& common, const rigging::BuildReport& report, const std::filesystem::path& output) {
-  for (const std::string& warning : report.warnings) common.warn(warning);
+void say_report(const Common& common, const rigging::BuildReport& report,
+                const std::filesystem::path& output) {
+  for (const std::string& warning : report.warnings)
+    common.warn(warning);
   double total = 0.0;
   std::string stages;
   for (const rigging::StageTime& stage : report.stages) {
@@ -115,15 +126,20 @@ void say_report(const Common& common, const rigging::BuildReport& report, const 
     stages += (stages.empty() ? "" : ", ") + stage.name + " " + fixed(stage.seconds, 2);
   }
   size_t fibres = 0;
-  for (const auto& muscle : report.muscles) fibres += static_cast<size_t>(muscle.fibres);
+  for (const auto& muscle : report.muscles)
+    fibres += static_cast<size_t>(muscle.fibres);
   std::map<std::string, int> parts;
-  for (const auto& part : report.parts) parts[part.part] += part.vertices;
+  for (const auto& part : report.parts)
+    parts[part.part] += part.vertices;
   std::string known;
-  for (const auto& [part, vertices] : parts) known += (known.empty() ? "" : ", ") + part + " " + std::to_string(vertices);
+  for (const auto& [part, vertices] : parts)
+    known += (known.empty() ? "" : ", ") + part + " " + std::to_string(vertices);
   common.say("parts (vertices): " + known);
-  common.say("units " + report.units + "; " + std::to_string(report.landmarks_found) + " landmarks found, " + std::to_string(report.landmarks_given) + " given; skull fitted to " +
-             fixed(report.landmark_rms_mm, 1) + " mm; SMAS of " + std::to_string(report.smas_triangles) + " triangles; " +
-             std::to_string(report.muscles.size()) + " muscles, " + std::to_string(fibres) + " fibres");
+  common.say("units " + report.units + "; " + std::to_string(report.landmarks_found) + " landmarks found, " +
+             std::to_string(report.landmarks_given) + " given; skull fitted to " +
+             fixed(report.landmark_rms_mm, 1) + " mm; SMAS of " + std::to_string(report.smas_triangles) +
+             " triangles; " + std::to_string(report.muscles.size()) + " muscles, " + std::to_string(fibres) +
+             " fibres");
   common.say("built in " + fixed(total, 2) + " s (" + stages + ")");
   common.say("wrote " + output.string());
 }
@@ -142,7 +158,8 @@ rigging::BuildReport build_file(const Common& common, const BuildRequest& reques
   rigging::BuildOptions options = request.options;
   if (!request.edits.empty()) options.edits = rigging::read_edits(request.edits);
   options.edits.muscle_files = request.muscles;
-  for (const std::string& variant : request.variants) rigging::set_variant(options.edits, variant);
+  for (const std::string& variant : request.variants)
+    rigging::set_variant(options.edits, variant);
   if (request.fibre_spacing_mm > 0.0) options.edits.fibre_spacing = 1e-3 * request.fibre_spacing_mm;
   if (request.least_prevalence >= 0.0) options.edits.least_prevalence = request.least_prevalence;
   options.progress = [&](const std::string& stage) { common.progress(stage); };
@@ -164,25 +181,44 @@ void add_build(CLI::App& app, Common& common) {
   command->add_option("-o,--output", request->output, "Rig to write (.glb)")->required();
   command->add_option("--landmarks", request->landmarks, "Landmarks on the skin: .mrk.json or JSON");
   command->add_option("--units", request->options.prepare.units, "auto, m, cm, mm, or metres a unit");
-  command->add_option("--up", request->options.prepare.up, "Up axis of the file")->check(CLI::IsMember({"auto", "y", "z"}));
+  command->add_option("--up", request->options.prepare.up, "Up axis of the file")
+      ->check(CLI::IsMember({"auto", "y", "z"}));
   command->add_option("--skin", request->options.prepare.skin, "Name of the mesh that is the skin");
-  command->add_option("--tissue-scale", request->options.tissue_scale, "Scales every tissue depth")->check(CLI::Range(0.2, 3.0));
+  command->add_option("--tissue-scale", request->options.tissue_scale, "Scales every tissue depth")
+      ->check(CLI::Range(0.2, 3.0));
   smas::ReachOptions& reach = request->options.smas.reach;
-  command->add_option("--smas-galea", reach.galea, "How far the SMAS follows the galea: 0 the hairline, 1 the vertex")->check(CLI::Range(0.0, 1.0));
-  command->add_option_function<double>("--smas-neck", [&reach](double millimetres) { reach.neck = 1e-3 * millimetres; },
-                                       "How far it follows the platysma below the chin's angle, mm of an adult")->check(CLI::Range(0.0, 80.0));
-  command->add_flag("--smas-nostrils,!--no-smas-nostrils", reach.nostrils, "Open under the nose, the default, or not");
-  command->add_option("--detail", request->options.detail, "Finest lattice")->check(CLI::IsMember({"low", "medium", "high"}));
-  command->add_option("--edits", request->edits, "Your own landmarks, regions, strengths and muscles (.json), kept over every rebuild");
-  command->add_option("--muscles", request->muscles, "More muscles on the generic head: a file like anatomy/data/muscles.json");
+  command
+      ->add_option("--smas-galea", reach.galea,
+                   "How far the SMAS follows the galea: 0 the hairline, 1 the vertex")
+      ->check(CLI::Range(0.0, 1.0));
+  command
+      ->add_option_function<double>(
+          "--smas-neck", [&reach](double millimetres) { reach.neck = 1e-3 * millimetres; },
+          "How far it follows the platysma below the chin's angle, mm of an adult")
+      ->check(CLI::Range(0.0, 80.0));
+  command->add_flag("--smas-nostrils,!--no-smas-nostrils", reach.nostrils,
+                    "Open under the nose, the default, or not");
+  command->add_option("--detail", request->options.detail, "Finest lattice")
+      ->check(CLI::IsMember({"low", "medium", "high"}));
+  command->add_option("--edits", request->edits,
+                      "Your own landmarks, regions, strengths and muscles (.json), kept over every rebuild");
+  command->add_option("--muscles", request->muscles,
+                      "More muscles on the generic head: a file like anatomy/data/muscles.json");
   command->add_option("--variant", request->variants, "MUSCLE=VARIANT, such as risorius=absent")->take_all();
-  command->add_option("--fibre-spacing", request->fibre_spacing_mm, "Millimetres between fibres (2)")->check(CLI::Range(0.1, 20.0));
-  command->add_option("--least-prevalence", request->least_prevalence, "Leave out muscles that fewer people have, 0..1")->check(CLI::Range(0.0, 1.0));
-  command->add_option("--report", request->report, "Folder for report.html: one page with pictures of every stage and figures");
+  command->add_option("--fibre-spacing", request->fibre_spacing_mm, "Millimetres between fibres (2)")
+      ->check(CLI::Range(0.1, 20.0));
+  command
+      ->add_option("--least-prevalence", request->least_prevalence,
+                   "Leave out muscles that fewer people have, 0..1")
+      ->check(CLI::Range(0.0, 1.0));
+  command->add_option("--report", request->report,
+                      "Folder for report.html: one page with pictures of every stage and figures");
   command->callback([request, &common] {
     const rigging::BuildReport report = build_file(common, *request);
-    if (common.json) common.report(report_json(report));
-    else say_report(common, report, request->output);
+    if (common.json)
+      common.report(report_json(report));
+    else
+      say_report(common, report, request->output);
     if (!request->report.empty()) common.say("wrote " + (request->report / report_name).string());
   });
 }

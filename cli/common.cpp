@@ -33,13 +33,14 @@ void check_output(const std::filesystem::path& path) {
   if (folder.empty()) return;
   std::error_code status;
   std::filesystem::create_directories(folder, status);
-  if (!std::filesystem::is_directory(folder)) throw Error("the folder '" + folder.string() + "' cannot be made");
+  if (!std::filesystem::is_directory(folder))
+    throw Error("the folder '" + folder.string() + "' cannot be made");
 }
 
 void add_to_come(CLI::App& app) {
-  for (const auto& [name, what] : {std::pair{"fit", "fitting activations to a target"},
-                                   std::pair{"batch", "building many heads"},
-                                   std::pair{"view", "the window"}}) {
+  for (const auto& [name, what] :
+       {std::pair{"fit", "fitting activations to a target"}, std::pair{"batch", "building many heads"},
+        std::pair{"view", "the window"}}) {
     CLI::App* command = app.add_subcommand(name, std::string(what) + " (to come)");
     const auto unread = std::make_shared<std::vector<std::string>>();
     command->add_option("ARGUMENTS", *unread, "Not read yet");

@@ -25,7 +25,8 @@ class Clock {
   void say(const std::string& what) {
     const auto now = std::chrono::steady_clock::now();
     char line[160];
-    std::snprintf(line, sizeof line, "%6.2f s  %s", std::chrono::duration<double>(now - last_).count(), what.c_str());
+    std::snprintf(line, sizeof line, "%6.2f s  %s", std::chrono::duration<double>(now - last_).count(),
+                  what.c_str());
     common_.say(line);
     last_ = std::chrono::steady_clock::now();
   }
@@ -52,18 +53,50 @@ std::vector<SheetPose> sheet_poses() {
       {"muscles", "front", "skull,muscles", {}},
       {"muscles", "three-quarter", "skull,muscles", {}},
       {"muscles under the skin", "side", "skin,muscles,skull", {}},
-      {"smile", "front", "skin,eyes", {{"arkit:mouthSmileLeft", 1}, {"arkit:mouthSmileRight", 1}, {"arkit:cheekSquintLeft", 0.6}, {"arkit:cheekSquintRight", 0.6}}},
-      {"smile", "three-quarter", "skin,eyes", {{"arkit:mouthSmileLeft", 1}, {"arkit:mouthSmileRight", 1}, {"arkit:cheekSquintLeft", 0.6}, {"arkit:cheekSquintRight", 0.6}}},
-      {"frown", "front", "skin,eyes", {{"arkit:mouthFrownLeft", 1}, {"arkit:mouthFrownRight", 1}, {"arkit:browDownLeft", 1}, {"arkit:browDownRight", 1}}},
-      {"surprise", "front", "skin,eyes", {{"arkit:browInnerUp", 1}, {"arkit:browOuterUpLeft", 1}, {"arkit:browOuterUpRight", 1}, {"arkit:eyeWideLeft", 1}, {"arkit:eyeWideRight", 1}, {"arkit:jawOpen", 0.5}}},
+      {"smile",
+       "front",
+       "skin,eyes",
+       {{"arkit:mouthSmileLeft", 1},
+        {"arkit:mouthSmileRight", 1},
+        {"arkit:cheekSquintLeft", 0.6},
+        {"arkit:cheekSquintRight", 0.6}}},
+      {"smile",
+       "three-quarter",
+       "skin,eyes",
+       {{"arkit:mouthSmileLeft", 1},
+        {"arkit:mouthSmileRight", 1},
+        {"arkit:cheekSquintLeft", 0.6},
+        {"arkit:cheekSquintRight", 0.6}}},
+      {"frown",
+       "front",
+       "skin,eyes",
+       {{"arkit:mouthFrownLeft", 1},
+        {"arkit:mouthFrownRight", 1},
+        {"arkit:browDownLeft", 1},
+        {"arkit:browDownRight", 1}}},
+      {"surprise",
+       "front",
+       "skin,eyes",
+       {{"arkit:browInnerUp", 1},
+        {"arkit:browOuterUpLeft", 1},
+        {"arkit:browOuterUpRight", 1},
+        {"arkit:eyeWideLeft", 1},
+        {"arkit:eyeWideRight", 1},
+        {"arkit:jawOpen", 0.5}}},
       {"jaw open", "front", "skin,eyes", {{"jaw_open", 1}}},
       {"jaw open", "side", "skin,skull", {{"jaw_open", 1}}},
       {"blink", "front", "skin,eyes", {{"arkit:eyeBlinkLeft", 1}, {"arkit:eyeBlinkRight", 1}}},
       {"pucker", "front", "skin,eyes", {{"arkit:mouthPucker", 1}}},
       {"sneer", "front", "skin,eyes", {{"arkit:noseSneerLeft", 1}, {"arkit:noseSneerRight", 1}}},
       {"left smile only", "front", "skin,eyes", {{"zygomaticus_major_left", 1}}},
-      {"brow raise", "front", "skin,eyes", {{"arkit:browInnerUp", 1}, {"arkit:browOuterUpLeft", 1}, {"arkit:browOuterUpRight", 1}}},
-      {"lower lip down", "front", "skin,eyes", {{"arkit:mouthLowerDownLeft", 1}, {"arkit:mouthLowerDownRight", 1}}},
+      {"brow raise",
+       "front",
+       "skin,eyes",
+       {{"arkit:browInnerUp", 1}, {"arkit:browOuterUpLeft", 1}, {"arkit:browOuterUpRight", 1}}},
+      {"lower lip down",
+       "front",
+       "skin,eyes",
+       {{"arkit:mouthLowerDownLeft", 1}, {"arkit:mouthLowerDownRight", 1}}},
   };
 }
 
@@ -74,15 +107,18 @@ view::Image contact_sheet(const std::filesystem::path& rig_path, const rig::Rig&
   for (const SheetPose& pose : sheet_poses()) {
     face.clear();
     face.reset();
-    for (const auto& [name, value] : pose.values) face.set(name, value);
+    for (const auto& [name, value] : pose.values)
+      face.set(name, value);
     face.pose();
-    tiles.push_back({renderer.draw(draw_face(face, rig, layers_from(pose.layers)), view::named_camera(pose.view, face_box(rig))), pose.caption});
+    tiles.push_back({renderer.draw(draw_face(face, rig, layers_from(pose.layers)),
+                                   view::named_camera(pose.view, face_box(rig))),
+                     pose.caption});
   }
   return view::contact_sheet(tiles, 4);
 }
 
-void film(const std::filesystem::path& rig_path, const rig::Rig& rig, const std::filesystem::path& curves_path,
-          const std::filesystem::path& output) {
+void film(const std::filesystem::path& rig_path, const rig::Rig& rig,
+          const std::filesystem::path& curves_path, const std::filesystem::path& output) {
   const Curves curves(curves_path);
   Face face(rig_path, {FASCIA_SPACE_METRES, "own", "low"});
   const int size = 480, frames_per_second = 24;
@@ -104,21 +140,23 @@ void film(const std::filesystem::path& rig_path, const rig::Rig& rig, const std:
 void run(const Common& common, const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder);
   Clock clock(common);
-  const std::filesystem::path head = folder / "head.obj", landmarks = folder / "head_landmarks.json", rig_path = folder / "rig.glb",
-                              curves = folder / "curves.csv";
+  const std::filesystem::path head = folder / "head.obj", landmarks = folder / "head_landmarks.json",
+                              rig_path = folder / "rig.glb", curves = folder / "curves.csv";
   write_embedded_head(head, landmarks);
   BuildRequest request;
   request.head = head;
   request.landmarks = landmarks;
   request.output = rig_path;
   const rigging::BuildReport report = build_file(common, request);
-  for (const std::string& warning : report.warnings) common.warn(warning);
+  for (const std::string& warning : report.warnings)
+    common.warn(warning);
   for (const auto& stage : report.stages) {
     char line[96];
     std::snprintf(line, sizeof line, "  %6.3f s  %s", stage.seconds, stage.name.c_str());
     common.say(line);
   }
-  clock.say("built " + rig_path.string() + ": " + std::to_string(report.muscles.size()) + " muscles, skull, SMAS, tissue");
+  clock.say("built " + rig_path.string() + ": " + std::to_string(report.muscles.size()) +
+            " muscles, skull, SMAS, tissue");
   write_demo_curves(curves);
   PlayRequest play;
   play.rig = rig_path;
@@ -127,7 +165,8 @@ void run(const Common& common, const std::filesystem::path& folder) {
   play.frames_per_second = 30.0;
   play.level = "low";
   const PlayFigures played = play_file(common, play);
-  clock.say("played ten seconds into " + play.output.string() + " (" + std::to_string(played.milliseconds_a_frame).substr(0, 5) + " ms a frame)");
+  clock.say("played ten seconds into " + play.output.string() + " (" +
+            std::to_string(played.milliseconds_a_frame).substr(0, 5) + " ms a frame)");
   bake_file(common, rig_path, "arkit", folder / "arkit.glb", "own", "low");
   clock.say("baked the ARKit shapes into " + (folder / "arkit.glb").string());
   const rig::RigFile file = rig::read(formats::read_bytes(rig_path), rig_path.string());
@@ -135,9 +174,11 @@ void run(const Common& common, const std::filesystem::path& folder) {
   clock.say("drew " + (folder / "contact_sheet.png").string());
   film(rig_path, file.rig, curves, folder / "demo.mp4");
   clock.say("filmed " + (folder / "demo.mp4").string());
-  common.say("look at " + (folder / "contact_sheet.png").string() + " and " + (folder / "demo.mp4").string() + " first; open " +
-             (folder / "play.glb").string() + " in any glTF viewer");
-  common.report({{"out", folder.string()}, {"muscles", report.muscles.size()}, {"milliseconds_a_frame", played.milliseconds_a_frame}});
+  common.say("look at " + (folder / "contact_sheet.png").string() + " and " + (folder / "demo.mp4").string() +
+             " first; open " + (folder / "play.glb").string() + " in any glTF viewer");
+  common.report({{"out", folder.string()},
+                 {"muscles", report.muscles.size()},
+                 {"milliseconds_a_frame", played.milliseconds_a_frame}});
 }
 
 }  // namespace

@@ -23,12 +23,17 @@ double plateau(double time, double begin, double rise, double end, double fall) 
   return smooth((time - begin) / rise) * (1.0 - smooth((time - (end - fall)) / fall));
 }
 
-double blink(double time, double at) { return plateau(time, at, 0.07, at + 0.22, 0.12); }
+double blink(double time, double at) {
+  return plateau(time, at, 0.07, at + 0.22, 0.12);
+}
 
 /// Syllables: jaw and lips at about five a second, never the same twice.
 double speech(double time, double phase) {
   const double envelope = plateau(time, 7.0, 0.3, 9.6, 0.3);
-  return envelope * std::max(0.0, 0.55 + 0.45 * std::sin(2 * M_PI * 4.3 * time + phase) + 0.2 * std::sin(2 * M_PI * 2.7 * time + 1.7 * phase)) * 0.7;
+  return envelope *
+         std::max(0.0, 0.55 + 0.45 * std::sin(2 * M_PI * 4.3 * time + phase) +
+                           0.2 * std::sin(2 * M_PI * 2.7 * time + 1.7 * phase)) *
+         0.7;
 }
 
 }  // namespace
@@ -54,7 +59,8 @@ void write_embedded_head(const std::filesystem::path& head, const std::filesyste
     }
     for (const Triangle& t : teeth->mesh.triangles) {
       text += "f";
-      for (int corner : t) text += " " + std::to_string(base + static_cast<size_t>(corner));
+      for (int corner : t)
+        text += " " + std::to_string(base + static_cast<size_t>(corner));
       text += "\n";
     }
     base += teeth->mesh.vertices.size();
@@ -78,7 +84,9 @@ void write_demo_curves(const std::filesystem::path& path) {
   const auto cheeks = [](double t) { return 0.7 * plateau(t, 0.6, 0.5, 2.5, 0.6); };
   const auto frown = [](double t) { return plateau(t, 2.8, 0.5, 4.6, 0.5); };
   const auto surprise = [](double t) { return plateau(t, 4.8, 0.25, 6.7, 0.6); };
-  const auto lids = [](double t) { return std::max({blink(t, 0.15), blink(t, 2.65), blink(t, 4.55), blink(t, 6.85), blink(t, 8.4)}); };
+  const auto lids = [](double t) {
+    return std::max({blink(t, 0.15), blink(t, 2.65), blink(t, 4.55), blink(t, 6.85), blink(t, 8.4)});
+  };
   const std::vector<Column> columns = {
       {"arkit:mouthSmileLeft", smile},
       {"arkit:mouthSmileRight", smile},
@@ -102,7 +110,8 @@ void write_demo_curves(const std::filesystem::path& path) {
       {"arkit:mouthUpperUpRight", [](double t) { return 0.4 * speech(t, 1.0); }},
   };
   std::string text = "time";
-  for (const Column& column : columns) text += "," + column.name;
+  for (const Column& column : columns)
+    text += "," + column.name;
   text += "\n";
   for (int f = 0; f <= 600; ++f) {
     const double time = f / 60.0;

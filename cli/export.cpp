@@ -32,21 +32,26 @@ class ToInput {
   Mat4 map_;
 };
 
-formats::NamedSurface surface_of(const std::string& name, const rig::Surface& surface, const ToInput& to_input) {
+formats::NamedSurface surface_of(const std::string& name, const rig::Surface& surface,
+                                 const ToInput& to_input) {
   formats::NamedSurface out{name, {}, Vec3(0.85, 0.82, 0.72)};
-  for (const auto& p : surface.positions) out.mesh.vertices.push_back(to_input(p));
+  for (const auto& p : surface.positions)
+    out.mesh.vertices.push_back(to_input(p));
   for (const auto& t : surface.triangles)
     out.mesh.triangles.push_back({static_cast<int>(t[0]), static_cast<int>(t[1]), static_cast<int>(t[2])});
   return out;
 }
 
-void add_face_parts(formats::Drawing& drawing, const Request& request, const std::function<bool(const std::string&)>& wanted) {
+void add_face_parts(formats::Drawing& drawing, const Request& request,
+                    const std::function<bool(const std::string&)>& wanted) {
   const Face face(request.rig, {FASCIA_SPACE_INPUT, "own", ""});
   for (size_t m = 0; m < face.meshes().size(); ++m) {
     if (!wanted(face.meshes()[m].part)) continue;
-    formats::NamedSurface surface{face.meshes()[m].name, {{}, face.meshes()[m].triangles}, Vec3(0.86, 0.69, 0.59)};
+    formats::NamedSurface surface{
+        face.meshes()[m].name, {{}, face.meshes()[m].triangles}, Vec3(0.86, 0.69, 0.59)};
     const auto flat = face.positions(m);
-    for (size_t i = 0; i + 2 < flat.size(); i += 3) surface.mesh.vertices.emplace_back(flat[i], flat[i + 1], flat[i + 2]);
+    for (size_t i = 0; i + 2 < flat.size(); i += 3)
+      surface.mesh.vertices.emplace_back(flat[i], flat[i + 1], flat[i + 2]);
     drawing.surfaces.push_back(std::move(surface));
   }
 }
@@ -56,7 +61,8 @@ void add_muscles(formats::Drawing& drawing, const rig::Rig& rig, const ToInput& 
     formats::NamedLines bundle{muscle.name, {}, muscle_colour(muscle.name)};
     for (size_t f = 0; f + 1 < muscle.fibre_offsets.size(); ++f) {
       std::vector<Vec3> line;
-      for (uint32_t p = muscle.fibre_offsets[f]; p < muscle.fibre_offsets[f + 1]; ++p) line.push_back(to_input(muscle.points[p]));
+      for (uint32_t p = muscle.fibre_offsets[f]; p < muscle.fibre_offsets[f + 1]; ++p)
+        line.push_back(to_input(muscle.points[p]));
       bundle.lines.push_back(std::move(line));
     }
     drawing.lines.push_back(std::move(bundle));
@@ -95,7 +101,9 @@ void run(const Common& common, const Request& request) {
     formats::Drawing drawing;
     const auto is = [&](const char* part) { return all || request.part == part; };
     if (is("skin")) add_face_parts(drawing, request, [](const std::string& part) { return part == "skin"; });
-    if (is("eyes")) add_face_parts(drawing, request, [](const std::string& part) { return part == "eye_left" || part == "eye_right"; });
+    if (is("eyes"))
+      add_face_parts(drawing, request,
+                     [](const std::string& part) { return part == "eye_left" || part == "eye_right"; });
     if (is("cranium")) drawing.surfaces.push_back(surface_of("cranium", rig.skull.cranium, to_input));
     if (is("mandible")) drawing.surfaces.push_back(surface_of("mandible", rig.skull.mandible, to_input));
     if (is("teeth")) {
@@ -105,7 +113,8 @@ void run(const Common& common, const Request& request) {
     if (is("smas")) drawing.surfaces.push_back(surface_of("smas", rig.smas.surface, to_input));
     if (is("muscles")) add_muscles(drawing, rig, to_input);
     std::erase_if(drawing.surfaces, [](const auto& surface) { return surface.mesh.empty(); });
-    if (drawing.surfaces.empty() && drawing.lines.empty()) throw Error("'" + request.rig.string() + "' has no " + request.part);
+    if (drawing.surfaces.empty() && drawing.lines.empty())
+      throw Error("'" + request.rig.string() + "' has no " + request.part);
     formats::write(request.output, drawing);
   }
   common.say("wrote " + request.output.string());
@@ -120,8 +129,11 @@ void add_export(CLI::App& app, Common& common) {
   command->add_option("RIG", request->rig, "Rig (.glb)")->required();
   command->add_option("--part", request->part, "What to write")
       ->required()
-      ->check(CLI::IsMember({"skin", "cranium", "mandible", "teeth", "eyes", "smas", "muscles", "landmarks", "all"}));
-  command->add_option("-o,--output", request->output, "File to write: .ply, .obj, .stl or .glb; landmarks .json")->required();
+      ->check(CLI::IsMember(
+          {"skin", "cranium", "mandible", "teeth", "eyes", "smas", "muscles", "landmarks", "all"}));
+  command
+      ->add_option("-o,--output", request->output, "File to write: .ply, .obj, .stl or .glb; landmarks .json")
+      ->required();
   command->callback([request, &common] { run(common, *request); });
 }
 

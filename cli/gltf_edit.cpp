@@ -15,10 +15,14 @@ using rig::Vec3f;
 
 const char* type_name(int width) {
   switch (width) {
-    case 1: return "SCALAR";
-    case 2: return "VEC2";
-    case 3: return "VEC3";
-    default: return "VEC4";
+    case 1:
+      return "SCALAR";
+    case 2:
+      return "VEC2";
+    case 3:
+      return "VEC3";
+    default:
+      return "VEC4";
   }
 }
 
@@ -64,8 +68,11 @@ size_t GltfEdit::add_sparse(size_t count, std::span<const uint32_t> indices, std
     low = low.cwiseMin(v);
     high = high.cwiseMax(v);
   }
-  Json accessor = {{"componentType", 5126}, {"count", count}, {"type", "VEC3"},
-                   {"min", {low[0], low[1], low[2]}}, {"max", {high[0], high[1], high[2]}}};
+  Json accessor = {{"componentType", 5126},
+                   {"count", count},
+                   {"type", "VEC3"},
+                   {"min", {low[0], low[1], low[2]}},
+                   {"max", {high[0], high[1], high[2]}}};
   if (!indices.empty()) {
     const size_t index_view = add_view(indices.data(), indices.size_bytes(), 0);
     const size_t value_view = add_view(values.data(), values.size_bytes(), 0);
@@ -77,7 +84,9 @@ size_t GltfEdit::add_sparse(size_t count, std::span<const uint32_t> indices, std
   return json["accessors"].size() - 1;
 }
 
-Json& GltfEdit::primitive(uint32_t mesh, uint32_t index) { return json["meshes"].at(mesh)["primitives"].at(index); }
+Json& GltfEdit::primitive(uint32_t mesh, uint32_t index) {
+  return json["meshes"].at(mesh)["primitives"].at(index);
+}
 
 std::vector<uint8_t> GltfEdit::bytes() const {
   Json out = json;
@@ -103,18 +112,22 @@ void add_morph_targets(GltfEdit& edit, const std::vector<std::string>& names,
                        const std::vector<std::vector<PrimitiveMotion>>& shapes) {
   std::set<uint32_t> meshes;
   for (const auto& shape : shapes)
-    for (const PrimitiveMotion& motion : shape) meshes.insert(motion.mesh);
+    for (const PrimitiveMotion& motion : shape)
+      meshes.insert(motion.mesh);
   for (uint32_t mesh : meshes) {
     const size_t primitives = edit.json["meshes"].at(mesh)["primitives"].size();
     size_t had = 0;
     for (size_t p = 0; p < primitives; ++p) {
       Json& primitive = edit.primitive(mesh, static_cast<uint32_t>(p));
-      if (primitive.contains("targets")) had = std::max(had, primitive["targets"].size());
-      else primitive["targets"] = Json::array();
+      if (primitive.contains("targets"))
+        had = std::max(had, primitive["targets"].size());
+      else
+        primitive["targets"] = Json::array();
     }
     for (size_t s = 0; s < shapes.size(); ++s)
       for (size_t p = 0; p < primitives; ++p) {
-        const size_t position = edit.primitive(mesh, static_cast<uint32_t>(p))["attributes"]["POSITION"].get<size_t>();
+        const size_t position =
+            edit.primitive(mesh, static_cast<uint32_t>(p))["attributes"]["POSITION"].get<size_t>();
         const size_t count = edit.json["accessors"].at(position)["count"].get<size_t>();
         std::vector<uint32_t> indices;
         std::vector<Vec3f> values;
@@ -130,14 +143,19 @@ void add_morph_targets(GltfEdit& edit, const std::vector<std::string>& names,
         edit.primitive(mesh, static_cast<uint32_t>(p))["targets"].push_back({{"POSITION", accessor}});
       }
     Json& entry = edit.json["meshes"][mesh];
-    Json old_names = entry.contains("extras") && entry["extras"].is_object() && entry["extras"].contains("targetNames")
-                         ? entry["extras"]["targetNames"] : Json::array();
-    while (old_names.size() < had) old_names.push_back("target_" + std::to_string(old_names.size()));
-    for (const std::string& name : names) old_names.push_back(name);
+    Json old_names =
+        entry.contains("extras") && entry["extras"].is_object() && entry["extras"].contains("targetNames")
+            ? entry["extras"]["targetNames"]
+            : Json::array();
+    while (old_names.size() < had)
+      old_names.push_back("target_" + std::to_string(old_names.size()));
+    for (const std::string& name : names)
+      old_names.push_back(name);
     if (!entry.contains("extras") || !entry["extras"].is_object()) entry["extras"] = Json::object();
     entry["extras"]["targetNames"] = old_names;
     Json weights = entry.contains("weights") ? entry["weights"] : Json::array();
-    while (weights.size() < had + names.size()) weights.push_back(0.0);
+    while (weights.size() < had + names.size())
+      weights.push_back(0.0);
     entry["weights"] = weights;
   }
 }

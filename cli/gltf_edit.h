@@ -50,9 +50,9 @@ struct PosedPrimitive {
 /// Puts the pose's positions, and normals where the primitive has them, in the place of its own.
 void set_pose(GltfEdit& edit, const PosedPrimitive& posed);
 
-/// Appends one morph target a motion to the meshes the motions name, with `names` in extras.targetNames. `shapes[s]`
-/// holds the motions of target s; a primitive that a target does not move gets zeros. Targets the mesh had
-/// before stay first.
+/// Appends one morph target a motion to the meshes the motions name, with `names` in extras.targetNames.
+/// `shapes[s]` holds the motions of target s; a primitive that a target does not move gets zeros. Targets the
+/// mesh had before stay first.
 void add_morph_targets(GltfEdit& edit, const std::vector<std::string>& names,
                        const std::vector<std::vector<PrimitiveMotion>>& shapes);
 

@@ -23,28 +23,37 @@ Json contents(const rig::RigFile& file) {
   json["source"] = file.source.format.empty() ? "glb" : file.source.format;
   json["meshes"] = Json::array();
   for (const rig::Primitive& primitive : file.primitives)
-    json["meshes"].push_back({{"name", primitive.name}, {"vertices", primitive.positions.size()}, {"triangles", primitive.triangles.size()}});
+    json["meshes"].push_back({{"name", primitive.name},
+                              {"vertices", primitive.positions.size()},
+                              {"triangles", primitive.triangles.size()}});
   json["skull"] = {{"cranium_triangles", rig.skull.cranium.triangles.size()},
                    {"mandible_triangles", rig.skull.mandible.triangles.size()},
                    {"landmarks", rig.skull.landmarks.size()}};
-  json["smas"] = {{"vertices", rig.smas.surface.positions.size()}, {"triangles", rig.smas.surface.triangles.size()}};
+  json["smas"] = {{"vertices", rig.smas.surface.positions.size()},
+                  {"triangles", rig.smas.surface.triangles.size()}};
   size_t fibres = 0;
-  for (const rig::Muscle& muscle : rig.muscles) fibres += muscle.fibre_offsets.empty() ? 0 : muscle.fibre_offsets.size() - 1;
+  for (const rig::Muscle& muscle : rig.muscles)
+    fibres += muscle.fibre_offsets.empty() ? 0 : muscle.fibre_offsets.size() - 1;
   json["muscles"] = {{"count", rig.muscles.size()}, {"fibres", fibres}};
   json["tissue"] = Json::object();
   for (const rig::TissueLevel& level : rig.tissue.levels)
     json["tissue"][level.name] = {{"nodes", level.rest.size()}, {"springs", level.spring_nodes.size()}};
   json["channels"] = rig.actuation.channels.size();
   json["sets"] = Json::object();
-  for (const rig::NamedSet& set : rig.actuation.sets) json["sets"][set.name] = set.members.size();
+  for (const rig::NamedSet& set : rig.actuation.sets)
+    json["sets"][set.name] = set.members.size();
   return json;
 }
 
 Json channel_list(const rig::Rig& rig) {
   Json list = Json::array();
   for (const rig::Channel& channel : rig.actuation.channels)
-    list.push_back({{"name", channel.name}, {"group", channel.group}, {"minimum", channel.minimum}, {"maximum", channel.maximum},
-                    {"rest", channel.rest}, {"unit", channel.unit}});
+    list.push_back({{"name", channel.name},
+                    {"group", channel.group},
+                    {"minimum", channel.minimum},
+                    {"maximum", channel.maximum},
+                    {"rest", channel.rest},
+                    {"unit", channel.unit}});
   return list;
 }
 
@@ -52,19 +61,22 @@ void say(const Common& common, const Json& json, const rig::Rig& rig, const Requ
   if (request.channels) {
     for (const rig::Channel& channel : rig.actuation.channels) {
       char line[160];
-      std::snprintf(line, sizeof line, "%-46s %-9s %7.3f .. %6.3f  rest %.3f %s", channel.name.c_str(), channel.group.c_str(),
-                    static_cast<double>(channel.minimum), static_cast<double>(channel.maximum),
-                    static_cast<double>(channel.rest), channel.unit.c_str());
+      std::snprintf(line, sizeof line, "%-46s %-9s %7.3f .. %6.3f  rest %.3f %s", channel.name.c_str(),
+                    channel.group.c_str(), static_cast<double>(channel.minimum),
+                    static_cast<double>(channel.maximum), static_cast<double>(channel.rest),
+                    channel.unit.c_str());
       common.say(line);
     }
     for (const rig::NamedSet& set : rig.actuation.sets) {
       std::string members;
-      for (const std::string& member : set.members) members += " " + member;
+      for (const std::string& member : set.members)
+        members += " " + member;
       common.say(set.name + ":" + members);
     }
     return;
   }
-  for (const auto& [key, value] : json.items()) common.say(key + ": " + value.dump());
+  for (const auto& [key, value] : json.items())
+    common.say(key + ": " + value.dump());
 }
 
 void run(const Common& common, const Request& request) {

@@ -1,11 +1,11 @@
+#include <tbb/global_control.h>
+#include <unistd.h>
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdio>
 #include <iostream>
 #include <memory>
 #include <new>
-#include <tbb/global_control.h>
-#include <unistd.h>
 
 #include "cli/common.h"
 #include "geometry/error.h"
@@ -14,11 +14,14 @@ namespace {
 
 constexpr int exit_input = 1, exit_usage = 2, exit_internal = 3, exit_interrupted = 130;
 
-void on_interrupt(int) { _exit(exit_interrupted); }
+void on_interrupt(int) {
+  _exit(exit_interrupted);
+}
 
 /// With --json the failure is the one object on stdout as well.
 int fail(const fascia::cli::Common& common, const std::string& message, int code) {
-  if (common.json) std::cout << nlohmann::ordered_json{{"error", message}, {"exit", code}}.dump(2) << std::endl;
+  if (common.json)
+    std::cout << nlohmann::ordered_json{{"error", message}, {"exit", code}}.dump(2) << std::endl;
   std::fprintf(stderr, "fascia: %s\n", message.c_str());
   return code;
 }

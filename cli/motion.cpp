@@ -19,7 +19,8 @@ std::vector<PrimitiveMotion> motion_from_rest(const Face& face) {
   return motions;
 }
 
-BakedShapes bake_shapes(const Common& common, Face& face, const std::vector<std::pair<std::string, std::string>>& targets) {
+BakedShapes bake_shapes(const Common& common, Face& face,
+                        const std::vector<std::pair<std::string, std::string>>& targets) {
   BakedShapes baked;
   for (const auto& [name, what_to_set] : targets) {
     common.progress("baking " + name);
@@ -34,12 +35,15 @@ BakedShapes bake_shapes(const Common& common, Face& face, const std::vector<std:
   return baked;
 }
 
-Components principal_components(const std::vector<std::vector<float>>& frames, size_t limit, double tolerance) {
+Components principal_components(const std::vector<std::vector<float>>& frames, size_t limit,
+                                double tolerance) {
   Components result;
   if (frames.empty() || frames[0].empty()) return result;
-  const Eigen::Index count = static_cast<Eigen::Index>(frames.size()), size = static_cast<Eigen::Index>(frames[0].size());
+  const Eigen::Index count = static_cast<Eigen::Index>(frames.size()),
+                     size = static_cast<Eigen::Index>(frames[0].size());
   Eigen::MatrixXf motion(size, count);
-  for (Eigen::Index f = 0; f < count; ++f) motion.col(f) = Eigen::Map<const Eigen::VectorXf>(frames[static_cast<size_t>(f)].data(), size);
+  for (Eigen::Index f = 0; f < count; ++f)
+    motion.col(f) = Eigen::Map<const Eigen::VectorXf>(frames[static_cast<size_t>(f)].data(), size);
   // Frames are far fewer than coordinates: the eigenvectors of the small Gram matrix give the components.
   const Eigen::MatrixXd gram = (motion.transpose() * motion).cast<double>();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gram);
@@ -63,7 +67,8 @@ Components principal_components(const std::vector<std::vector<float>>& frames, s
   result.largest_error = 0.0;
   for (Eigen::Index f = 0; f < count; ++f)
     for (Eigen::Index i = 0; i + 2 < size; i += 3)
-      result.largest_error = std::max(result.largest_error, static_cast<double>(left.col(f).segment<3>(i).norm()));
+      result.largest_error =
+          std::max(result.largest_error, static_cast<double>(left.col(f).segment<3>(i).norm()));
   return result;
 }
 

@@ -19,7 +19,8 @@ std::string without_side(const std::string& name) {
   return name;
 }
 
-/// The n-th of `count` colours that are easy to tell apart: around the circle of hues, every other one lighter.
+/// The n-th of `count` colours that are easy to tell apart: around the circle of hues, every other one
+/// lighter.
 Vec3 colour_of(size_t n, size_t count) {
   const double hue = 6.0 * double(n) / double(std::max<size_t>(1, count)), light = n % 2 == 0 ? 0.95 : 0.62;
   const auto channel = [&](double offset) {
@@ -31,7 +32,9 @@ Vec3 colour_of(size_t n, size_t count) {
 
 view::Colour bytes_of(const Vec3& colour) {
   view::Colour bytes;
-  for (int i = 0; i < 3; ++i) bytes[static_cast<size_t>(i)] = static_cast<uint8_t>(std::lround(255.0 * std::clamp(colour[i], 0.0, 1.0)));
+  for (int i = 0; i < 3; ++i)
+    bytes[static_cast<size_t>(i)] =
+        static_cast<uint8_t>(std::lround(255.0 * std::clamp(colour[i], 0.0, 1.0)));
   return bytes;
 }
 
@@ -56,22 +59,28 @@ std::vector<std::string> muscles_from(const std::string& list, const rig::Rig& r
   const auto add = [&](const std::string& wanted) {
     bool found = false;
     for (const rig::Muscle& muscle : rig.muscles)
-      for (const std::string& name : {muscle.name, muscle.group, without_side(muscle.name), without_side(muscle.group)})
+      for (const std::string& name :
+           {muscle.name, muscle.group, without_side(muscle.name), without_side(muscle.group)})
         if (wanted.empty() || name == wanted) {
           if (std::find(names.begin(), names.end(), muscle.name) == names.end()) names.push_back(muscle.name);
           found = true;
         }
-    if (!found) throw Error("there is no muscle '" + wanted + "'; 'fascia info RIG.glb --channels' lists them");
+    if (!found)
+      throw Error("there is no muscle '" + wanted + "'; 'fascia info RIG.glb --channels' lists them");
   };
-  for (std::string word; std::getline(words, word, ',');) add(word);
+  for (std::string word; std::getline(words, word, ',');)
+    add(word);
   if (names.empty()) add("");
   return names;
 }
 
-view::Image muscle_sheet(const Face& face, const rig::Rig& rig, const std::vector<std::string>& muscles, int size) {
+view::Image muscle_sheet(const Face& face, const rig::Rig& rig, const std::vector<std::string>& muscles,
+                         int size) {
   std::vector<std::string> kinds;  // one a muscle, for both its sides
   for (const std::string& name : muscles)
-    if (const std::string kind = without_side(name); std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) kinds.push_back(kind);
+    if (const std::string kind = without_side(name);
+        std::find(kinds.begin(), kinds.end(), kind) == kinds.end())
+      kinds.push_back(kind);
   std::map<std::string, Vec3> colours;
   std::vector<std::pair<std::string, Vec3>> entries;
   for (size_t k = 0; k < kinds.size(); ++k) {
@@ -81,16 +90,20 @@ view::Image muscle_sheet(const Face& face, const rig::Rig& rig, const std::vecto
   view::DrawList list = draw_face(face, rig, {"skull", "smas", "eyes"});
   // Muscles from bone to bone lie behind bones: then these are glass.
   const bool has_deep = std::any_of(rig.muscles.begin(), rig.muscles.end(), [&](const rig::Muscle& muscle) {
-    const auto bony = [](rig::FibreEnd end) { return end == rig::FibreEnd::cranium || end == rig::FibreEnd::mandible; };
+    const auto bony = [](rig::FibreEnd end) {
+      return end == rig::FibreEnd::cranium || end == rig::FibreEnd::mandible;
+    };
     return colours.count(without_side(muscle.name)) && bony(muscle.origin) && bony(muscle.insertion);
   });
-  for (view::DrawSurface& surface : list.surfaces) surface.opacity = surface.opacity < 1.0 ? 0.16 : has_deep ? 0.35 : 1.0;
+  for (view::DrawSurface& surface : list.surfaces)
+    surface.opacity = surface.opacity < 1.0 ? 0.16 : has_deep ? 0.35 : 1.0;
   Bounds box = face_box(rig);
   for (auto& [name, lines] : all_fibres(face, rig)) {
     const auto colour = colours.find(without_side(name));
     if (colour == colours.end()) continue;
     for (const auto& line : lines)
-      for (const Vec3& p : line) box.lower = box.lower.cwiseMin(p), box.upper = box.upper.cwiseMax(p);
+      for (const Vec3& p : line)
+        box.lower = box.lower.cwiseMin(p), box.upper = box.upper.cwiseMax(p);
     list.lines.push_back({std::move(lines), colour->second, 1.3});
   }
   const view::Renderer renderer(size, size);

@@ -14,7 +14,8 @@ void add_play(CLI::App& app, Common& common) {
   command->add_option("RIG", request->rig, "Rig (.glb)")->required();
   command->add_option("--curves", request->curves, "Curves: .csv, .json or .glb")->required();
   command->add_option("--fps", request->frames_per_second, "Frames a second")->check(CLI::Range(1.0, 1000.0));
-  command->add_option("--solver", request->solver, "Solver")->check(CLI::IsMember({"own", "reference", "bullet"}));
+  command->add_option("--solver", request->solver, "Solver")
+      ->check(CLI::IsMember({"own", "reference", "bullet"}));
   command->add_option("--level", request->level, "Level of detail: low, medium or high");
   command->add_option("-o,--output", request->output, "Animation to write (.glb)")->required();
   command->callback([request, &common] {

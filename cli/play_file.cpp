@@ -18,7 +18,7 @@ using Json = nlohmann::ordered_json;
 
 /// Which coordinates of all meshes move at all during the animation.
 struct MovingPart {
-  size_t mesh;                    // in Face::meshes
+  size_t mesh;  // in Face::meshes
   std::vector<uint32_t> vertices;
 };
 
@@ -50,7 +50,8 @@ Recording record(const Common& common, Face& face, const Curves& curves, double 
     for (size_t m = 0; m < face.meshes().size(); ++m) {
       const std::span<const float> now = face.positions(m), rest = face.rest(m);
       frame.emplace_back(now.size());
-      for (size_t i = 0; i < now.size(); ++i) frame.back()[i] = now[i] - rest[i];
+      for (size_t i = 0; i < now.size(); ++i)
+        frame.back()[i] = now[i] - rest[i];
     }
     recording.times.push_back(static_cast<float>(time));
     recording.frames.push_back(std::move(frame));
@@ -80,18 +81,21 @@ std::vector<std::vector<float>> gathered(const Recording& recording, const std::
   for (const auto& frame : recording.frames) {
     std::vector<float> all;
     for (const MovingPart& part : parts)
-      for (uint32_t v : part.vertices) all.insert(all.end(), &frame[part.mesh][3 * v], &frame[part.mesh][3 * v] + 3);
+      for (uint32_t v : part.vertices)
+        all.insert(all.end(), &frame[part.mesh][3 * v], &frame[part.mesh][3 * v] + 3);
     frames.push_back(std::move(all));
   }
   return frames;
 }
 
-std::vector<PrimitiveMotion> scattered(const std::vector<float>& shape, const Face& face, const std::vector<MovingPart>& parts) {
+std::vector<PrimitiveMotion> scattered(const std::vector<float>& shape, const Face& face,
+                                       const std::vector<MovingPart>& parts) {
   std::vector<PrimitiveMotion> motions;
   size_t at = 0;
   for (const MovingPart& part : parts) {
     const FaceMesh& mesh = face.meshes()[part.mesh];
-    PrimitiveMotion motion{mesh.mesh, mesh.primitive, std::vector<rig::Vec3f>(mesh.vertex_count, rig::Vec3f::Zero())};
+    PrimitiveMotion motion{mesh.mesh, mesh.primitive,
+                           std::vector<rig::Vec3f>(mesh.vertex_count, rig::Vec3f::Zero())};
     for (uint32_t v : part.vertices) {
       motion.displacement[v] = rig::Vec3f(shape[at], shape[at + 1], shape[at + 2]);
       at += 3;
@@ -113,7 +117,8 @@ void add_weight_channels(GltfEdit& edit, const Components& components, size_t ti
     std::vector<float> values;
     for (size_t f = 0; f < frames; ++f) {
       values.insert(values.end(), targets - components.shapes.size(), 0.0F);
-      for (const auto& weights : components.weights) values.push_back(weights[f]);
+      for (const auto& weights : components.weights)
+        values.push_back(weights[f]);
     }
     const size_t output = edit.add_floats(values, 1, false);
     for (size_t n = 0; n < edit.json["nodes"].size(); ++n) {
@@ -136,15 +141,18 @@ void add_pointer_channels(GltfEdit& edit, const Recording& recording, size_t tim
     }
     if (!moves) continue;
     any = true;
-    animation["samplers"].push_back({{"input", time}, {"output", edit.add_floats(values, 1, false)}, {"interpolation", "LINEAR"}});
+    animation["samplers"].push_back(
+        {{"input", time}, {"output", edit.add_floats(values, 1, false)}, {"interpolation", "LINEAR"}});
     const std::string pointer = "/extensions/FASCIA_actuation/channels/" + std::to_string(c) + "/value";
     animation["channels"].push_back(
         {{"sampler", animation["samplers"].size() - 1},
-         {"target", {{"path", "pointer"}, {"extensions", {{"KHR_animation_pointer", {{"pointer", pointer}}}}}}}});
+         {"target",
+          {{"path", "pointer"}, {"extensions", {{"KHR_animation_pointer", {{"pointer", pointer}}}}}}}});
   }
   if (!any) return;
   Json& used = edit.json["extensionsUsed"];
-  if (std::find(used.begin(), used.end(), "KHR_animation_pointer") == used.end()) used.push_back("KHR_animation_pointer");
+  if (std::find(used.begin(), used.end(), "KHR_animation_pointer") == used.end())
+    used.push_back("KHR_animation_pointer");
 }
 
 }  // namespace
@@ -161,7 +169,9 @@ Curves::Curves(const std::filesystem::path& path) {
   duration_ = info.duration;
 }
 
-double Curves::duration() const { return duration_; }
+double Curves::duration() const {
+  return duration_;
+}
 
 std::vector<std::string> Curves::unmatched(const Face& face) const {
   std::vector<uint8_t> matched(names_.size());
@@ -179,7 +189,8 @@ void Curves::apply(double seconds, const Face& face) const {
 
 PlayFigures play_file(const Common& common, const PlayRequest& request) {
   check_output(request.output);
-  if (request.output.extension() != ".glb") throw Error("'" + request.output.string() + "': an animation is written as .glb");
+  if (request.output.extension() != ".glb")
+    throw Error("'" + request.output.string() + "': an animation is written as .glb");
   const Curves curves(request.curves);
   Face face(request.rig, {FASCIA_SPACE_MESH, request.solver, request.level});
   PlayFigures figures;
@@ -190,18 +201,22 @@ PlayFigures play_file(const Common& common, const PlayRequest& request) {
   if (figures.matched.empty())
     throw Error("'" + request.curves.string() + "': none of its " + std::to_string(curves.names().size()) +
                 " curves has a name that the rig knows; 'fascia info --channels' lists them");
-  for (const std::string& name : figures.unmatched) common.warn("curve '" + name + "' has no channel in the rig");
+  for (const std::string& name : figures.unmatched)
+    common.warn("curve '" + name + "' has no channel in the rig");
 
   Recording recording = record(common, face, curves, request.frames_per_second);
   figures.frames = static_cast<int>(recording.times.size());
   figures.duration = recording.times.back();
   figures.resets = recording.resets;
   if (!recording.milliseconds.empty()) {
-    std::nth_element(recording.milliseconds.begin(), recording.milliseconds.begin() + static_cast<std::ptrdiff_t>(recording.milliseconds.size() / 2),
-                     recording.milliseconds.end());
+    std::nth_element(
+        recording.milliseconds.begin(),
+        recording.milliseconds.begin() + static_cast<std::ptrdiff_t>(recording.milliseconds.size() / 2),
+        recording.milliseconds.end());
     figures.milliseconds_a_frame = recording.milliseconds[recording.milliseconds.size() / 2];
   }
-  if (recording.resets > 0) common.warn("the simulation had to be put back to rest " + std::to_string(recording.resets) + " times");
+  if (recording.resets > 0)
+    common.warn("the simulation had to be put back to rest " + std::to_string(recording.resets) + " times");
 
   fascia_asset_info info = {};
   info.struct_size = sizeof info;
@@ -222,7 +237,8 @@ PlayFigures play_file(const Common& common, const PlayRequest& request) {
     shapes.push_back(scattered(components.shapes[k], face, parts));
   }
   add_morph_targets(edit, names, shapes);
-  Json animation = {{"name", request.curves.stem().string()}, {"samplers", Json::array()}, {"channels", Json::array()}};
+  Json animation = {
+      {"name", request.curves.stem().string()}, {"samplers", Json::array()}, {"channels", Json::array()}};
   const size_t time = edit.add_floats(recording.times, 1, true);
   add_weight_channels(edit, components, time, recording.times.size(), shapes, animation);
   add_pointer_channels(edit, recording, time, animation);

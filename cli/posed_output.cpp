@@ -15,7 +15,8 @@ namespace {
 
 std::vector<Vec3> points_of(std::span<const float> flat) {
   std::vector<Vec3> points;
-  for (size_t i = 0; i + 2 < flat.size(); i += 3) points.emplace_back(flat[i], flat[i + 1], flat[i + 2]);
+  for (size_t i = 0; i + 2 < flat.size(); i += 3)
+    points.emplace_back(flat[i], flat[i + 1], flat[i + 2]);
   return points;
 }
 
@@ -54,12 +55,14 @@ std::string obj_like_source(const rig::SourceRecord& source, const Face& face) {
   std::map<int, Vec3> moved;
   for (size_t m = 0; m < face.meshes().size(); ++m) {
     const FaceMesh& mesh = face.meshes()[m];
-    if (mesh.mesh >= scene.meshes.size()) throw Error("the rig's record of its OBJ does not fit its meshes: build it again");
+    if (mesh.mesh >= scene.meshes.size())
+      throw Error("the rig's record of its OBJ does not fit its meshes: build it again");
     const formats::SceneMesh& original = scene.meshes[mesh.mesh];
     const std::vector<Vec3> posed = points_of(face.positions(m));
     for (size_t v = 0; v < posed.size() && v < original.positions.size(); ++v) {
-      const bool stays = posed[v] == original.positions[v].cast<float>().cast<double>() ||
-                         (posed[v] - original.positions[v]).norm() < 1e-6 * (1.0 + original.positions[v].norm());
+      const bool stays =
+          posed[v] == original.positions[v].cast<float>().cast<double>() ||
+          (posed[v] - original.positions[v]).norm() < 1e-6 * (1.0 + original.positions[v].norm());
       if (!stays) moved[original.source_vertices[v]] = posed[v];
     }
   }
@@ -68,7 +71,8 @@ std::string obj_like_source(const rig::SourceRecord& source, const Face& face) {
 
 }  // namespace
 
-void write_posed_glb(const std::filesystem::path& rig, const Face& face, const std::filesystem::path& output) {
+void write_posed_glb(const std::filesystem::path& rig, const Face& face,
+                     const std::filesystem::path& output) {
   const std::vector<uint8_t> bytes = formats::read_bytes(rig);
   GltfEdit edit(rig::original(rig::glb_source(bytes, rig.string())));
   for (size_t m = 0; m < face.meshes().size(); ++m)
@@ -77,7 +81,8 @@ void write_posed_glb(const std::filesystem::path& rig, const Face& face, const s
   formats::write_bytes(output, posed.data(), posed.size());
 }
 
-void write_posed_mesh(const std::filesystem::path& rig, const Face& face, const std::filesystem::path& output) {
+void write_posed_mesh(const std::filesystem::path& rig, const Face& face,
+                      const std::filesystem::path& output) {
   const rig::RigFile file = rig::read(formats::read_bytes(rig), rig.string());
   if (file.source.format == "obj" && output.extension() == ".obj") {
     formats::write_text(output, obj_like_source(file.source, face));
@@ -85,7 +90,8 @@ void write_posed_mesh(const std::filesystem::path& rig, const Face& face, const 
   }
   formats::Drawing drawing;
   for (size_t m = 0; m < face.meshes().size(); ++m)
-    drawing.surfaces.push_back({face.meshes()[m].name, {points_of(face.positions(m)), face.meshes()[m].triangles}});
+    drawing.surfaces.push_back(
+        {face.meshes()[m].name, {points_of(face.positions(m)), face.meshes()[m].triangles}});
   formats::write(output, drawing);
 }
 

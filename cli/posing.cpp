@@ -50,9 +50,12 @@ Face::Face(const std::filesystem::path& rig, const Options& options) {
   fascia_face_options face_options = fascia_default_face_options();
   face_options.space = options.space;
   face_options.level = level_;
-  if (options.solver == "bullet") face_options.solver = FASCIA_SOLVER_BULLET;
-  else if (options.solver == "reference") face_options.solver = FASCIA_SOLVER_REFERENCE;
-  else if (options.solver != "own") throw Error("solver '" + options.solver + "' is unknown: use own, reference or bullet");
+  if (options.solver == "bullet")
+    face_options.solver = FASCIA_SOLVER_BULLET;
+  else if (options.solver == "reference")
+    face_options.solver = FASCIA_SOLVER_REFERENCE;
+  else if (options.solver != "own")
+    throw Error("solver '" + options.solver + "' is unknown: use own, reference or bullet");
   fascia_face* face = nullptr;
   check(fascia_face_create(asset, &face_options, &face), "'" + rig.string() + "'");
   face_.reset(face);
@@ -67,7 +70,8 @@ Face::Face(const std::filesystem::path& rig, const Options& options) {
     entry.name = mesh.name;
     entry.part = mesh.part;
     for (uint32_t t = 0; t < mesh.triangle_count; ++t)
-      entry.triangles.push_back({static_cast<int>(mesh.triangles[3 * t]), static_cast<int>(mesh.triangles[3 * t + 1]),
+      entry.triangles.push_back({static_cast<int>(mesh.triangles[3 * t]),
+                                 static_cast<int>(mesh.triangles[3 * t + 1]),
                                  static_cast<int>(mesh.triangles[3 * t + 2])});
     meshes_.push_back(std::move(entry));
     const std::span<const float> now = positions(m);
@@ -96,9 +100,15 @@ void Face::set(const std::string& name, double value) {
   check(fascia_face_set(face_.get(), name.c_str(), static_cast<float>(value)), "'" + name + "'");
 }
 
-void Face::clear() { check(fascia_face_clear(face_.get()), "clear"); }
-void Face::pose() { check(fascia_face_pose(face_.get()), "pose"); }
-void Face::reset() { check(fascia_face_reset(face_.get()), "reset"); }
+void Face::clear() {
+  check(fascia_face_clear(face_.get()), "clear");
+}
+void Face::pose() {
+  check(fascia_face_pose(face_.get()), "pose");
+}
+void Face::reset() {
+  check(fascia_face_reset(face_.get()), "reset");
+}
 
 bool Face::step(double seconds) {
   const fascia_result result = fascia_face_step(face_.get(), static_cast<float>(seconds));
@@ -148,9 +158,11 @@ std::vector<std::pair<std::string, double>> activations(const std::vector<std::s
     const std::vector<uint8_t> bytes = formats::read_bytes(file);
     const nlohmann::json content = nlohmann::json::parse(bytes.begin(), bytes.end(), nullptr, false);
     if (!content.is_object() || !content.contains("activations") || !content["activations"].is_object())
-      throw Error("'" + file.string() + "' is not an activations file: {\"activations\": {NAME: VALUE, ...}}");
+      throw Error("'" + file.string() +
+                  "' is not an activations file: {\"activations\": {NAME: VALUE, ...}}");
     for (const auto& [name, value] : content["activations"].items()) {
-      if (!value.is_number()) throw Error("'" + file.string() + "': the activation '" + name + "' is not a number");
+      if (!value.is_number())
+        throw Error("'" + file.string() + "': the activation '" + name + "' is not a number");
       values.emplace_back(name, value.get<double>());
     }
   }

@@ -47,12 +47,14 @@ void run(const Common& common, const Request& request) {
   check_output(request.output);
   const std::string extension = request.output.extension().string();
   if (extension != ".png" && !(extension == ".mp4" && request.view == "turntable"))
-    throw Error("'" + request.output.string() + "': a picture is written as .png, a turntable as .png or .mp4");
+    throw Error("'" + request.output.string() +
+                "': a picture is written as .png, a turntable as .png or .mp4");
   const std::set<std::string> layers = layers_from(request.layers);
   const auto values = activations(request.set, request.file);
   Face face(request.rig, {FASCIA_SPACE_METRES, request.solver, request.level});
   const rig::RigFile file = rig::read(formats::read_bytes(request.rig), request.rig.string());
-  for (const auto& [name, value] : values) face.set(name, value);
+  for (const auto& [name, value] : values)
+    face.set(name, value);
   if (!values.empty()) face.pose();
   const std::vector<std::string> muscles = muscles_from(request.muscles, file.rig);
   if (request.view == "sheet") {
@@ -79,15 +81,21 @@ void add_render(CLI::App& app, Common& common) {
   auto request = std::make_shared<Request>();
   CLI::App* command = app.add_subcommand("render", "Draw a rig to a picture, no display needed");
   command->add_option("RIG", request->rig, "Rig (.glb)")->required();
-  command->add_option("--set", request->set, "NAME=VALUE: an actuator, arkit:NAME, au:N or viseme:NAME")->take_all();
+  command->add_option("--set", request->set, "NAME=VALUE: an actuator, arkit:NAME, au:N or viseme:NAME")
+      ->take_all();
   command->add_option("--activations", request->file, "Activations (.json)");
   command->add_option("--layers", request->layers, "Of skin, eyes, teeth, skull, smas, muscles, landmarks");
-  command->add_option("--solver", request->solver, "Solver")->check(CLI::IsMember({"own", "reference", "bullet"}));
-  command->add_option("--view", request->view, "front, side, right, three-quarter, back, turntable, or sheet: muscles in four views with a legend");
-  command->add_option("--muscles", request->muscles, "Draw these muscles only: names of parts or wholes, with a side or without");
+  command->add_option("--solver", request->solver, "Solver")
+      ->check(CLI::IsMember({"own", "reference", "bullet"}));
+  command->add_option(
+      "--view", request->view,
+      "front, side, right, three-quarter, back, turntable, or sheet: muscles in four views with a legend");
+  command->add_option("--muscles", request->muscles,
+                      "Draw these muscles only: names of parts or wholes, with a side or without");
   command->add_option("--level", request->level, "Level of detail: low, medium or high");
   command->add_option("--size", request->size, "Width and height in pixels")->check(CLI::Range(16, 4096));
-  command->add_option("-o,--output", request->output, "Picture to write (.png; a turntable also .mp4)")->required();
+  command->add_option("-o,--output", request->output, "Picture to write (.png; a turntable also .mp4)")
+      ->required();
   command->callback([request, &common] { run(common, *request); });
 }
 

@@ -17,18 +17,24 @@ const char* const style =
     "body{font:15px/1.5 sans-serif;max-width:1440px;margin:2em auto;padding:0 1em;color:#222;background:#fff}"
     "h1{font-size:1.5em}h2{font-size:1.15em;margin-top:2em}table{border-collapse:collapse}"
     "td,th{padding:.15em .8em;text-align:left;border-bottom:1px solid #ddd}td.n,th.n{text-align:right;"
-    "font-variant-numeric:tabular-nums}.views{display:flex;flex-wrap:wrap;gap:6px}.views img{max-width:32%;height:auto}"
+    "font-variant-numeric:tabular-nums}.views{display:flex;flex-wrap:wrap;gap:6px}.views "
+    "img{max-width:32%;height:auto}"
     ".warn{background:#fff3d6;border-left:4px solid #d98e00;padding:.4em 1em}.far{color:#b3361b}"
     ".bar{display:inline-block;height:.8em;background:#4a78a8}p.cap{color:#555;margin:.2em 0 .6em}";
 
 std::string escaped(const std::string& text) {
   std::string out;
   for (char c : text) {
-    if (c == '&') out += "&amp;";
-    else if (c == '<') out += "&lt;";
-    else if (c == '>') out += "&gt;";
-    else if (c == '"') out += "&quot;";
-    else out += c;
+    if (c == '&')
+      out += "&amp;";
+    else if (c == '<')
+      out += "&lt;";
+    else if (c == '>')
+      out += "&gt;";
+    else if (c == '"')
+      out += "&quot;";
+    else
+      out += c;
   }
   return out;
 }
@@ -45,7 +51,8 @@ std::string base64(const std::vector<uint8_t>& bytes) {
   out.reserve(bytes.size() * 4 / 3 + 4);
   for (size_t i = 0; i < bytes.size(); i += 3) {
     uint32_t group = 0;
-    for (size_t k = 0; k < 3; ++k) group = group << 8 | (i + k < bytes.size() ? bytes[i + k] : 0U);
+    for (size_t k = 0; k < 3; ++k)
+      group = group << 8 | (i + k < bytes.size() ? bytes[i + k] : 0U);
     for (size_t k = 0; k < 4; ++k)
       out += i + k <= bytes.size() ? digits[group >> (18 - 6 * k) & 63U] : '=';
   }
@@ -62,7 +69,8 @@ std::string row(const std::vector<std::string>& cells, const char* tag = "td", s
 std::string warnings_part(const rigging::BuildReport& report) {
   if (report.warnings.empty()) return "<p>No warnings.</p>\n";
   std::string out = "<div class=warn><ul>\n";
-  for (const std::string& warning : report.warnings) out += "<li>" + escaped(warning) + "</li>\n";
+  for (const std::string& warning : report.warnings)
+    out += "<li>" + escaped(warning) + "</li>\n";
   return out + "</ul></div>\n";
 }
 
@@ -82,22 +90,30 @@ std::string times_part(const rigging::BuildReport& report) {
 
 std::string figures_part(const rigging::BuildReport& report) {
   size_t fibres = 0;
-  for (const auto& muscle : report.muscles) fibres += static_cast<size_t>(muscle.fibres);
+  for (const auto& muscle : report.muscles)
+    fibres += static_cast<size_t>(muscle.fibres);
   std::string out = "<table>\n";
   out += row({"units of the file", escaped(report.units)});
-  out += row({"landmarks given, found", std::to_string(report.landmarks_given) + ", " + std::to_string(report.landmarks_found)});
-  out += row({"bone off its targets, rms and largest", number(report.landmark_rms_mm) + " and " + number(report.landmark_max_mm) + " mm"});
-  out += row({"points of bone curves used", std::to_string(report.curve_points_used) + " of " + std::to_string(report.curve_points)});
+  out += row({"landmarks given, found",
+              std::to_string(report.landmarks_given) + ", " + std::to_string(report.landmarks_found)});
+  out += row({"bone off its targets, rms and largest",
+              number(report.landmark_rms_mm) + " and " + number(report.landmark_max_mm) + " mm"});
+  out += row({"points of bone curves used",
+              std::to_string(report.curve_points_used) + " of " + std::to_string(report.curve_points)});
   out += row({"bone vertices outside the skin", std::to_string(report.bone_outside_skin)});
-  out += row({"bone vertices moved inward at the end", std::to_string(report.bone_corrected) + ", by at most " +
-                                                           number(report.bone_corrected_max_mm) + " mm"});
+  out +=
+      row({"bone vertices moved inward at the end", std::to_string(report.bone_corrected) + ", by at most " +
+                                                        number(report.bone_corrected_max_mm) + " mm"});
   if (report.skull_uncovered_share > 0)
-    out += row({"of the skull left out, no skin over it", number(100 * report.skull_uncovered_share, 0) + " %"});
-  out += row({"SMAS triangles, least angle", std::to_string(report.smas_triangles) + ", " + number(report.smas_min_angle_deg) + "&deg;"});
+    out +=
+        row({"of the skull left out, no skin over it", number(100 * report.skull_uncovered_share, 0) + " %"});
+  out += row({"SMAS triangles, least angle",
+              std::to_string(report.smas_triangles) + ", " + number(report.smas_min_angle_deg) + "&deg;"});
   out += row({"SMAS vertices outside skin and bone", std::to_string(report.smas_outside_layers)});
   out += row({"muscles, fibres", std::to_string(report.muscles.size()) + ", " + std::to_string(fibres)});
   for (const auto& level : report.tissue)
-    out += row({"tissue, " + escaped(level.name), std::to_string(level.nodes) + " nodes, " + std::to_string(level.springs) + " springs"});
+    out += row({"tissue, " + escaped(level.name),
+                std::to_string(level.nodes) + " nodes, " + std::to_string(level.springs) + " springs"});
   return out + "</table>\n";
 }
 
@@ -109,30 +125,39 @@ std::string histogram_part(const std::vector<Figures>& landmarks) {
   for (const Figures& landmark : landmarks) {
     if (!landmark.has_bone || !(landmark.deviation_mm > 0)) continue;
     const double off = (landmark.depth_mm - landmark.table_mm) / landmark.deviation_mm;
-    ++counts[static_cast<size_t>(std::clamp(static_cast<int>(std::lround(2 * off)) + columns / 2, 0, columns - 1))];
+    ++counts[static_cast<size_t>(
+        std::clamp(static_cast<int>(std::lround(2 * off)) + columns / 2, 0, columns - 1))];
     ++all;
     within += std::abs(off) <= 1;
   }
   const int most = std::max(1, *std::max_element(counts.begin(), counts.end()));
-  std::string out = "<svg role=img width=" + std::to_string(columns * width + 2) + " height=" + std::to_string(height + 44) +
+  std::string out = "<svg role=img width=" + std::to_string(columns * width + 2) +
+                    " height=" + std::to_string(height + 44) +
                     " font-family=sans-serif font-size=12 text-anchor=middle>\n";
   for (int i = 0; i < columns; ++i) {
     const int tall = counts[static_cast<size_t>(i)] * height / most, x = i * width, half = i - columns / 2;
-    out += "<rect x=" + std::to_string(x + 1) + " y=" + std::to_string(20 + height - tall) + " width=" + std::to_string(width - 2) +
-           " height=" + std::to_string(tall) + " fill=\"" + (std::abs(half) <= 2 ? "#4a78a8" : "#c8744a") + "\"/>\n";
+    out += "<rect x=" + std::to_string(x + 1) + " y=" + std::to_string(20 + height - tall) +
+           " width=" + std::to_string(width - 2) + " height=" + std::to_string(tall) + " fill=\"" +
+           (std::abs(half) <= 2 ? "#4a78a8" : "#c8744a") + "\"/>\n";
     if (counts[static_cast<size_t>(i)] > 0)
       out += "<text x=" + std::to_string(x + width / 2) + " y=" + std::to_string(15 + height - tall) + ">" +
              std::to_string(counts[static_cast<size_t>(i)]) + "</text>\n";
     if (half % 2 == 0)
-      out += "<text x=" + std::to_string(x + width / 2) + " y=" + std::to_string(height + 38) + ">" +
-             (half == 0 ? "table" : (half > 0 ? "+" : "&minus;") + std::to_string(std::abs(half) / 2) + " SD") + "</text>\n";
+      out +=
+          "<text x=" + std::to_string(x + width / 2) + " y=" + std::to_string(height + 38) + ">" +
+          (half == 0 ? "table" : (half > 0 ? "+" : "&minus;") + std::to_string(std::abs(half) / 2) + " SD") +
+          "</text>\n";
   }
-  return out + "</svg>\n<p class=cap>Tissue depth at the landmarks less the table's mean, in the table's standard deviations between people. " +
+  return out +
+         "</svg>\n<p class=cap>Tissue depth at the landmarks less the table's mean, in the table's standard "
+         "deviations between people. " +
          std::to_string(within) + " of " + std::to_string(all) + " lie within one.</p>\n";
 }
 
 std::string landmarks_part(const std::vector<Figures>& landmarks) {
-  std::string out = "<table>\n" + row({"landmark", "origin", "confidence", "depth mm", "table mm", "SD mm", "residual mm"}, "th", 2);
+  std::string out =
+      "<table>\n" +
+      row({"landmark", "origin", "confidence", "depth mm", "table mm", "SD mm", "residual mm"}, "th", 2);
   for (const Figures& landmark : landmarks) {
     const std::string origin = landmark.given ? "given" : "found";
     const std::string name = escaped(landmark.name) + (landmark.required ? " *" : "");
@@ -140,13 +165,17 @@ std::string landmarks_part(const std::vector<Figures>& landmarks) {
       out += row({name, origin, number(landmark.confidence, 2), "", "", "", ""}, "td", 2);
       continue;
     }
-    const bool far = landmark.deviation_mm > 0 && std::abs(landmark.depth_mm - landmark.table_mm) > 2 * landmark.deviation_mm;
+    const bool far = landmark.deviation_mm > 0 &&
+                     std::abs(landmark.depth_mm - landmark.table_mm) > 2 * landmark.deviation_mm;
     const std::string depth = number(landmark.depth_mm);
-    out += row({name, origin, number(landmark.confidence, 2), far ? "<span class=far>" + depth + "</span>" : depth,
-                number(landmark.table_mm), number(landmark.deviation_mm), number(landmark.residual_mm)},
-               "td", 2);
+    out += row(
+        {name, origin, number(landmark.confidence, 2), far ? "<span class=far>" + depth + "</span>" : depth,
+         number(landmark.table_mm), number(landmark.deviation_mm), number(landmark.residual_mm)},
+        "td", 2);
   }
-  return out + "</table>\n<p class=cap>* one of those a person would have to place. Red: more than two deviations off the table.</p>\n";
+  return out +
+         "</table>\n<p class=cap>* one of those a person would have to place. Red: more than two deviations "
+         "off the table.</p>\n";
 }
 
 std::string pictures_part(const std::filesystem::path& rig, const rigging::BuildReport& report) {
@@ -160,7 +189,8 @@ std::string pictures_part(const std::filesystem::path& rig, const rigging::Build
   for (const StagePictures& stage : stages) {
     out += "<h2>" + stage.title + "</h2>\n<p class=cap>" + stage.caption + "</p>\n<div class=views>";
     for (const view::Image& image : stage.views)
-      out += "<img alt=\"" + stage.title + "\" src=\"data:image/png;base64," + base64(view::encode_png(image)) + "\">";
+      out += "<img alt=\"" + stage.title + "\" src=\"data:image/png;base64," +
+             base64(view::encode_png(image)) + "\">";
     out += "</div>\n";
   }
   return out;
@@ -168,11 +198,11 @@ std::string pictures_part(const std::filesystem::path& rig, const rigging::Build
 
 }  // namespace
 
-void write_report(const std::filesystem::path& folder, const std::filesystem::path& head, const std::filesystem::path& rig,
-                  const rigging::BuildReport& report) {
+void write_report(const std::filesystem::path& folder, const std::filesystem::path& head,
+                  const std::filesystem::path& rig, const rigging::BuildReport& report) {
   const std::string title = "Face rig of " + escaped(head.filename().string());
-  std::string page = "<!DOCTYPE html>\n<html lang=en><head><meta charset=utf-8><title>" + title + "</title>\n<style>" +
-                     style + "</style></head>\n<body>\n<h1>" + title + "</h1>\n";
+  std::string page = "<!DOCTYPE html>\n<html lang=en><head><meta charset=utf-8><title>" + title +
+                     "</title>\n<style>" + style + "</style></head>\n<body>\n<h1>" + title + "</h1>\n";
   page += "<h2>Warnings</h2>\n" + warnings_part(report);
   page += pictures_part(rig, report);
   page += "<h2>Figures</h2>\n" + figures_part(report);

@@ -13,16 +13,17 @@ struct BuildRequest {
   std::vector<std::string> variants;           ///< MUSCLE=VARIANT
   double fibre_spacing_mm = 0.0;               ///< 0: as the edits say
   double least_prevalence = -1.0;              ///< below 0: as the edits say
-  std::filesystem::path report;  ///< folder of the page that shows the build; empty: none
+  std::filesystem::path report;                ///< folder of the page that shows the build; empty: none
   rigging::BuildOptions options;
 };
 
 /// Reads the head, builds its rig and writes it. Throws fascia::Error.
 rigging::BuildReport build_file(const Common& common, const BuildRequest& request);
 
-/// Bakes `shapes` (arkit, muscles or visemes) into morph targets of the rig's original file; returns their names.
-std::vector<std::string> bake_file(const Common& common, const std::filesystem::path& rig, const std::string& shapes,
-                                   const std::filesystem::path& output, const std::string& solver = "own",
-                                   const std::string& level = "");
+/// Bakes `shapes` (arkit, muscles or visemes) into morph targets of the rig's original file; returns their
+/// names.
+std::vector<std::string> bake_file(const Common& common, const std::filesystem::path& rig,
+                                   const std::string& shapes, const std::filesystem::path& output,
+                                   const std::string& solver = "own", const std::string& level = "");
 
 }  // namespace fascia::cli

@@ -25,7 +25,8 @@ uint32_t word_at(const std::vector<uint8_t>& bytes, size_t at) {
 
 GltfDocument split_glb(const std::filesystem::path& path, const std::vector<uint8_t>& bytes) {
   if (bytes.size() < 20) fail(path, "its GLB header is not whole: the file is truncated");
-  if (word_at(bytes, 4) != 2) fail(path, "it is glTF version " + std::to_string(word_at(bytes, 4)) + "; only 2 is read");
+  if (word_at(bytes, 4) != 2)
+    fail(path, "it is glTF version " + std::to_string(word_at(bytes, 4)) + "; only 2 is read");
   if (word_at(bytes, 8) > bytes.size())
     fail(path, "its GLB header promises " + std::to_string(word_at(bytes, 8)) + " bytes, the file has " +
                    std::to_string(bytes.size()) + ": it is truncated");
@@ -35,8 +36,10 @@ GltfDocument split_glb(const std::filesystem::path& path, const std::vector<uint
     const size_t size = word_at(bytes, at), type = word_at(bytes, at + 4);
     if (at + 8 + size > bytes.size()) fail(path, "a GLB chunk reaches past the end: the file is truncated");
     const auto begin = bytes.begin() + static_cast<std::ptrdiff_t>(at + 8);
-    if (type == json_chunk && document.json.empty()) document.json.assign(begin, begin + static_cast<std::ptrdiff_t>(size));
-    if (type == binary_chunk && document.binary.empty()) document.binary.assign(begin, begin + static_cast<std::ptrdiff_t>(size));
+    if (type == json_chunk && document.json.empty())
+      document.json.assign(begin, begin + static_cast<std::ptrdiff_t>(size));
+    if (type == binary_chunk && document.binary.empty())
+      document.binary.assign(begin, begin + static_cast<std::ptrdiff_t>(size));
     at += 8 + (size + 3) / 4 * 4;
   }
   return document;
@@ -63,7 +66,8 @@ std::vector<uint8_t> base64_bytes(const std::string& text) {
 std::vector<uint8_t> resolve_uri(const std::filesystem::path& path, const std::string& uri) {
   if (uri.rfind("data:", 0) == 0) {
     const size_t comma = uri.find(',');
-    if (comma == std::string::npos || uri.find(";base64") > comma) fail(path, "it has a data URI that is not base64");
+    if (comma == std::string::npos || uri.find(";base64") > comma)
+      fail(path, "it has a data URI that is not base64");
     return base64_bytes(uri.substr(comma + 1));
   }
   std::string plain;
@@ -103,14 +107,15 @@ void bring_in_buffers(const std::filesystem::path& path, Json& json, std::vector
       fail(path, "buffer " + std::to_string(i) + " has no data");
     }
     if (size < promised)
-      fail(path, "buffer " + std::to_string(i) + " should have " + std::to_string(promised) + " bytes and has " +
-                     std::to_string(size) + ": the file is truncated");
+      fail(path, "buffer " + std::to_string(i) + " should have " + std::to_string(promised) +
+                     " bytes and has " + std::to_string(size) + ": the file is truncated");
     offsets.push_back(offset);
   }
   if (json.contains("bufferViews"))
     for (Json& view : json["bufferViews"]) {
       const size_t buffer = view.value("buffer", size_t{0});
-      if (buffer >= offsets.size()) fail(path, "a bufferView names buffer " + std::to_string(buffer) + ", which is not there");
+      if (buffer >= offsets.size())
+        fail(path, "a bufferView names buffer " + std::to_string(buffer) + ", which is not there");
       if (buffer != 0 || offsets[0] != 0) {
         view["byteOffset"] = view.value("byteOffset", size_t{0}) + offsets[buffer];
         view["buffer"] = 0;
@@ -140,12 +145,15 @@ GltfDocument gltf_document(const std::filesystem::path& path, const std::vector<
   GltfDocument document = is_glb ? split_glb(path, bytes) : GltfDocument{{bytes.begin(), bytes.end()}, {}};
   try {
     Json json = Json::parse(document.json);
-    if (!json.is_object() || !json.contains("asset")) fail(path, "it is JSON, but not glTF: 'asset' is missing");
-    const bool is_whole = json.contains("buffers") && json["buffers"].size() == 1 && !json["buffers"][0].contains("uri") &&
+    if (!json.is_object() || !json.contains("asset"))
+      fail(path, "it is JSON, but not glTF: 'asset' is missing");
+    const bool is_whole = json.contains("buffers") && json["buffers"].size() == 1 &&
+                          !json["buffers"][0].contains("uri") &&
                           document.binary.size() >= json["buffers"][0].value("byteLength", size_t{0});
     bool has_outside_images = false;
     if (json.contains("images"))
-      for (const Json& image : json["images"]) has_outside_images |= image.contains("uri");
+      for (const Json& image : json["images"])
+        has_outside_images |= image.contains("uri");
     if (is_whole && !has_outside_images) return document;
     bring_in_buffers(path, json, document.binary);
     bring_in_images(path, json, document.binary);

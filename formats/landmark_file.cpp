@@ -20,9 +20,12 @@ class Reader {
     if (bytes.empty()) throw Error("'" + path_.string() + "' is empty");
     const json content = json::parse(bytes.begin(), bytes.end(), nullptr, false);
     if (!content.is_object()) fail("it is not a JSON object");
-    if (content.contains("markups")) read_markups(content["markups"]);
-    else if (content.contains("landmarks")) read_plain(content);
-    else fail("it has neither 'landmarks' nor 3D Slicer's 'markups'");
+    if (content.contains("markups"))
+      read_markups(content["markups"]);
+    else if (content.contains("landmarks"))
+      read_plain(content);
+    else
+      fail("it has neither 'landmarks' nor 3D Slicer's 'markups'");
     if (file_.points.empty()) fail("it names no landmark");
     return file_;
   }
@@ -45,7 +48,8 @@ class Reader {
     if (content.contains("units") && content["units"].is_number()) {
       file_.units = std::to_string(content["units"].get<double>());
     } else if (content.contains("units")) {
-      if (!content["units"].is_string()) fail("'units' must be \"m\", \"cm\", \"mm\" or the metres of one unit");
+      if (!content["units"].is_string())
+        fail("'units' must be \"m\", \"cm\", \"mm\" or the metres of one unit");
       file_.units = content["units"].get<std::string>();
       if (file_.units != "m" && file_.units != "cm" && file_.units != "mm")
         fail("the units '" + file_.units + "' are unknown: use \"m\", \"cm\" or \"mm\"");
@@ -58,11 +62,13 @@ class Reader {
   void read_markups(const json& markups) {
     if (!markups.is_array()) fail("its 'markups' is not a list");
     for (const json& markup : markups) {
-      if (!markup.is_object() || !markup.contains("controlPoints") || !markup["controlPoints"].is_array()) continue;
+      if (!markup.is_object() || !markup.contains("controlPoints") || !markup["controlPoints"].is_array())
+        continue;
       const json system = markup.value("coordinateSystem", json("LPS"));
       const bool is_ras = system == "RAS" || system == 0 || system == "0";
       for (const json& control : markup["controlPoints"]) {
-        if (!control.is_object() || control.value("positionStatus", std::string("defined")) != "defined") continue;
+        if (!control.is_object() || control.value("positionStatus", std::string("defined")) != "defined")
+          continue;
         if (!control.contains("label") || !control["label"].is_string()) fail("a control point has no label");
         const std::string name = control["label"].get<std::string>();
         Vec3 p = point(name, control.value("position", json()));
@@ -78,6 +84,8 @@ class Reader {
 
 }  // namespace
 
-LandmarkFile read_landmarks(const std::filesystem::path& path) { return Reader(path).read(); }
+LandmarkFile read_landmarks(const std::filesystem::path& path) {
+  return Reader(path).read();
+}
 
 }  // namespace fascia::formats

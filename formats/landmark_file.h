@@ -15,7 +15,8 @@ struct LandmarkFile {
 };
 
 /// Reads 3D Slicer Markups (`.mrk.json`; LPS taken as is, RAS with x and y negated) or
-/// `{"units":"mm","landmarks":{NAME:[x,y,z]}}`, where a landmark may also be `{"skin":[x,y,z]}` as `fascia export` writes it.
+/// `{"units":"mm","landmarks":{NAME:[x,y,z]}}`, where a landmark may also be `{"skin":[x,y,z]}` as `fascia
+/// export` writes it.
 ///
 /// Throws fascia::Error naming the file and the entry when it is missing, not JSON, of another form,
 /// or a coordinate is not a finite number.

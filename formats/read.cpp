@@ -41,12 +41,13 @@ void check(const Scene& scene) {
   for (const SceneMesh& mesh : scene.meshes) {
     triangles += mesh.triangles.size();
     for (const Vec3& p : mesh.positions)
-      if (!p.allFinite()) detail::fail(scene, "mesh '" + mesh.name + "' has a coordinate that is not a number");
+      if (!p.allFinite())
+        detail::fail(scene, "mesh '" + mesh.name + "' has a coordinate that is not a number");
     for (const Triangle& t : mesh.triangles)
       for (int corner : t)
         if (corner < 0 || corner >= static_cast<int>(mesh.positions.size()))
-          detail::fail(scene, "mesh '" + mesh.name + "' has a face that names vertex " + std::to_string(corner) +
-                                  " of " + std::to_string(mesh.positions.size()));
+          detail::fail(scene, "mesh '" + mesh.name + "' has a face that names vertex " +
+                                  std::to_string(corner) + " of " + std::to_string(mesh.positions.size()));
   }
   if (triangles == 0) detail::fail(scene, "it holds no triangles; a head must be a surface mesh");
 }
@@ -56,7 +57,8 @@ void check(const Scene& scene) {
 std::vector<uint8_t> read_bytes(const std::filesystem::path& path) {
   std::error_code status;
   if (!std::filesystem::exists(path, status)) throw Error("'" + path.string() + "' does not exist");
-  if (std::filesystem::is_directory(path, status)) throw Error("'" + path.string() + "' is a folder, not a file");
+  if (std::filesystem::is_directory(path, status))
+    throw Error("'" + path.string() + "' is a folder, not a file");
   std::ifstream file(path, std::ios::binary | std::ios::ate);
   if (!file) throw Error("'" + path.string() + "' cannot be opened: check its permissions");
   std::vector<uint8_t> bytes(static_cast<size_t>(std::max<std::streamoff>(0, file.tellg())));
@@ -66,7 +68,9 @@ std::vector<uint8_t> read_bytes(const std::filesystem::path& path) {
   return bytes;
 }
 
-Scene read(const std::filesystem::path& path) { return read(path, read_bytes(path)); }
+Scene read(const std::filesystem::path& path) {
+  return read(path, read_bytes(path));
+}
 
 Scene read(const std::filesystem::path& path, std::vector<uint8_t> bytes) {
   if (bytes.empty()) throw Error("'" + path.string() + "' is empty");
@@ -98,7 +102,8 @@ void write_bytes(const std::filesystem::path& path, const void* bytes, size_t si
     if (!file) {
       file.close();
       std::filesystem::remove(beside, status);
-      throw Error("'" + path.string() + "' cannot be written: check the folder, its permissions and free space");
+      throw Error("'" + path.string() +
+                  "' cannot be written: check the folder, its permissions and free space");
     }
   }
   std::filesystem::rename(beside, path, status);
@@ -132,7 +137,8 @@ void triangulate(const std::vector<Vec3>& positions, const std::vector<int>& pol
       return;
     }
   }
-  for (size_t i = 2; i < polygon.size(); ++i) triangles.push_back({polygon[0], polygon[i - 1], polygon[i]});
+  for (size_t i = 2; i < polygon.size(); ++i)
+    triangles.push_back({polygon[0], polygon[i - 1], polygon[i]});
 }
 
 }  // namespace detail

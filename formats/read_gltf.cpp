@@ -26,8 +26,8 @@ class AccessorReader {
     if (accessor.count > limit) fail(scene_, "accessor " + std::to_string(index) + " is impossibly large");
     std::vector<double> values(accessor.count * static_cast<size_t>(width), 0.0);
     if (accessor.bufferView >= 0)
-      read_view(accessor.bufferView, accessor.byteOffset, accessor.componentType, accessor.normalized, accessor.count,
-                width, values);
+      read_view(accessor.bufferView, accessor.byteOffset, accessor.componentType, accessor.normalized,
+                accessor.count, width, values);
     if (accessor.sparse.isSparse) apply_sparse(accessor, width, values);
     return values;
   }
@@ -54,7 +54,8 @@ class AccessorReader {
     for (size_t i = 0; i < count; ++i)
       for (int k = 0; k < width; ++k)
         values[i * static_cast<size_t>(width) + static_cast<size_t>(k)] =
-            component_at(&data[view.byteOffset + offset + stride * i + static_cast<size_t>(component * k)], type, normalized);
+            component_at(&data[view.byteOffset + offset + stride * i + static_cast<size_t>(component * k)],
+                         type, normalized);
   }
 
   void apply_sparse(const tinygltf::Accessor& accessor, int width, std::vector<double>& values) const {
@@ -83,13 +84,20 @@ class AccessorReader {
 
   double component_at(const unsigned char* raw, int type, bool normalized) const {
     switch (type) {
-      case TINYGLTF_COMPONENT_TYPE_BYTE: return as<int8_t>(raw, normalized ? 1.0 / 127 : 1.0);
-      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return as<uint8_t>(raw, normalized ? 1.0 / 255 : 1.0);
-      case TINYGLTF_COMPONENT_TYPE_SHORT: return as<int16_t>(raw, normalized ? 1.0 / 32767 : 1.0);
-      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return as<uint16_t>(raw, normalized ? 1.0 / 65535 : 1.0);
-      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: return as<uint32_t>(raw, 1.0);
-      case TINYGLTF_COMPONENT_TYPE_FLOAT: return as<float>(raw, 1.0);
-      default: fail(scene_, "an accessor has the unknown component type " + std::to_string(type));
+      case TINYGLTF_COMPONENT_TYPE_BYTE:
+        return as<int8_t>(raw, normalized ? 1.0 / 127 : 1.0);
+      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+        return as<uint8_t>(raw, normalized ? 1.0 / 255 : 1.0);
+      case TINYGLTF_COMPONENT_TYPE_SHORT:
+        return as<int16_t>(raw, normalized ? 1.0 / 32767 : 1.0);
+      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+        return as<uint16_t>(raw, normalized ? 1.0 / 65535 : 1.0);
+      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+        return as<uint32_t>(raw, 1.0);
+      case TINYGLTF_COMPONENT_TYPE_FLOAT:
+        return as<float>(raw, 1.0);
+      default:
+        fail(scene_, "an accessor has the unknown component type " + std::to_string(type));
     }
   }
 
@@ -100,11 +108,13 @@ class AccessorReader {
 Mat4 local_matrix(const tinygltf::Node& node) {
   Mat4 matrix = Mat4::Identity();
   if (node.matrix.size() == 16) {
-    for (int i = 0; i < 16; ++i) matrix(i % 4, i / 4) = node.matrix[static_cast<size_t>(i)];
+    for (int i = 0; i < 16; ++i)
+      matrix(i % 4, i / 4) = node.matrix[static_cast<size_t>(i)];
     return matrix;
   }
   Eigen::Affine3d affine = Eigen::Affine3d::Identity();
-  if (node.translation.size() == 3) affine.translate(Vec3(node.translation[0], node.translation[1], node.translation[2]));
+  if (node.translation.size() == 3)
+    affine.translate(Vec3(node.translation[0], node.translation[1], node.translation[2]));
   if (node.rotation.size() == 4) {
     Eigen::Quaterniond turn(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
     if (turn.norm() > 0) affine.rotate(turn.normalized());
@@ -119,7 +129,8 @@ std::vector<Mat4> world_matrices(const Scene& scene, const tinygltf::Model& mode
   std::vector<int> parent(model.nodes.size(), -1);
   for (size_t n = 0; n < model.nodes.size(); ++n)
     for (int child : model.nodes[n].children) {
-      if (child < 0 || child >= static_cast<int>(model.nodes.size())) fail(scene, "a node names a child that is not there");
+      if (child < 0 || child >= static_cast<int>(model.nodes.size()))
+        fail(scene, "a node names a child that is not there");
       parent[static_cast<size_t>(child)] = static_cast<int>(n);
     }
   for (size_t n = 0; n < model.nodes.size(); ++n) {
@@ -135,7 +146,8 @@ std::vector<Mat4> world_matrices(const Scene& scene, const tinygltf::Model& mode
 }
 
 /// A skinned mesh ignores its node: in the bind pose every joint carries it alike, so the first one tells.
-Mat4 skin_matrix(const AccessorReader& accessors, const tinygltf::Model& model, int skin, const std::vector<Mat4>& world) {
+Mat4 skin_matrix(const AccessorReader& accessors, const tinygltf::Model& model, int skin,
+                 const std::vector<Mat4>& world) {
   if (skin >= static_cast<int>(model.skins.size()) || model.skins[static_cast<size_t>(skin)].joints.empty())
     return Mat4::Identity();
   const tinygltf::Skin& bones = model.skins[static_cast<size_t>(skin)];
@@ -143,32 +155,39 @@ Mat4 skin_matrix(const AccessorReader& accessors, const tinygltf::Model& model, 
   if (bones.inverseBindMatrices >= 0) {
     const std::vector<double> values = accessors.read(bones.inverseBindMatrices, 16);
     if (values.size() >= 16)
-      for (int i = 0; i < 16; ++i) inverse_bind(i % 4, i / 4) = values[static_cast<size_t>(i)];
+      for (int i = 0; i < 16; ++i)
+        inverse_bind(i % 4, i / 4) = values[static_cast<size_t>(i)];
   }
   const int joint = bones.joints[0];
-  return joint >= 0 && joint < static_cast<int>(world.size()) ? Mat4(world[static_cast<size_t>(joint)] * inverse_bind)
-                                                              : Mat4(Mat4::Identity());
+  return joint >= 0 && joint < static_cast<int>(world.size())
+             ? Mat4(world[static_cast<size_t>(joint)] * inverse_bind)
+             : Mat4(Mat4::Identity());
 }
 
-void triangles_of(const AccessorReader& accessors, const tinygltf::Primitive& primitive,
-                  SceneMesh& mesh) {
+void triangles_of(const AccessorReader& accessors, const tinygltf::Primitive& primitive, SceneMesh& mesh) {
   std::vector<int> order;
   if (primitive.indices >= 0) {
-    for (double index : accessors.read(primitive.indices, 1)) order.push_back(static_cast<int>(index));
+    for (double index : accessors.read(primitive.indices, 1))
+      order.push_back(static_cast<int>(index));
   } else {
-    for (size_t i = 0; i < mesh.positions.size(); ++i) order.push_back(static_cast<int>(i));
+    for (size_t i = 0; i < mesh.positions.size(); ++i)
+      order.push_back(static_cast<int>(i));
   }
   const int mode = primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
   if (mode == TINYGLTF_MODE_TRIANGLES) {
-    for (size_t i = 0; i + 2 < order.size(); i += 3) mesh.triangles.push_back({order[i], order[i + 1], order[i + 2]});
+    for (size_t i = 0; i + 2 < order.size(); i += 3)
+      mesh.triangles.push_back({order[i], order[i + 1], order[i + 2]});
   } else if (mode == TINYGLTF_MODE_TRIANGLE_STRIP) {
     for (size_t i = 0; i + 2 < order.size(); ++i)
-      mesh.triangles.push_back(i % 2 ? Triangle{order[i + 1], order[i], order[i + 2]} : Triangle{order[i], order[i + 1], order[i + 2]});
+      mesh.triangles.push_back(i % 2 ? Triangle{order[i + 1], order[i], order[i + 2]}
+                                     : Triangle{order[i], order[i + 1], order[i + 2]});
   } else if (mode == TINYGLTF_MODE_TRIANGLE_FAN) {
-    for (size_t i = 1; i + 1 < order.size(); ++i) mesh.triangles.push_back({order[0], order[i], order[i + 1]});
+    for (size_t i = 1; i + 1 < order.size(); ++i)
+      mesh.triangles.push_back({order[0], order[i], order[i + 1]});
   }
   // Degenerate triangles of strips are stitching, not surface.
-  std::erase_if(mesh.triangles, [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
+  std::erase_if(mesh.triangles,
+                [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
 }
 
 void read_primitive(const Scene& scene, const AccessorReader& accessors, const tinygltf::Model& model,
@@ -186,7 +205,8 @@ void read_primitive(const Scene& scene, const AccessorReader& accessors, const t
   }
   if (const auto uv = primitive.attributes.find("TEXCOORD_0"); uv != primitive.attributes.end()) {
     const std::vector<double> values = accessors.read(uv->second, 2);
-    for (size_t i = 0; i + 1 < values.size(); i += 2) mesh.uvs.emplace_back(values[i], values[i + 1]);
+    for (size_t i = 0; i + 1 < values.size(); i += 2)
+      mesh.uvs.emplace_back(values[i], values[i + 1]);
     if (mesh.uvs.size() != mesh.positions.size()) mesh.uvs.clear();
   }
   if (primitive.material >= 0 && primitive.material < static_cast<int>(model.materials.size()))
@@ -194,7 +214,8 @@ void read_primitive(const Scene& scene, const AccessorReader& accessors, const t
   triangles_of(accessors, primitive, mesh);
 }
 
-bool ignore_image(tinygltf::Image*, int, std::string*, std::string*, int, int, const unsigned char*, int, void*) {
+bool ignore_image(tinygltf::Image*, int, std::string*, std::string*, int, int, const unsigned char*, int,
+                  void*) {
   return true;
 }
 
@@ -220,13 +241,16 @@ void read_gltf(Scene& scene, const std::vector<uint8_t>& bytes) {
   for (size_t n = 0; n < model.nodes.size(); ++n) {
     const tinygltf::Node& node = model.nodes[n];
     if (node.mesh < 0) continue;
-    if (node.mesh >= static_cast<int>(model.meshes.size())) fail(scene, "a node names a mesh that is not there");
+    if (node.mesh >= static_cast<int>(model.meshes.size()))
+      fail(scene, "a node names a mesh that is not there");
     const tinygltf::Mesh& source = model.meshes[static_cast<size_t>(node.mesh)];
     for (size_t p = 0; p < source.primitives.size(); ++p) {
       const int mode = source.primitives[p].mode;
       if (mode >= 0 && mode < TINYGLTF_MODE_TRIANGLES) continue;  // points and lines are not surface
       SceneMesh mesh;
-      mesh.name = !source.name.empty() ? source.name : !node.name.empty() ? node.name : "mesh_" + std::to_string(node.mesh);
+      mesh.name = !source.name.empty() ? source.name
+                  : !node.name.empty() ? node.name
+                                       : "mesh_" + std::to_string(node.mesh);
       mesh.mesh = node.mesh;
       mesh.primitive = static_cast<int>(p);
       mesh.node = static_cast<int>(n);

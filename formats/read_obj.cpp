@@ -16,8 +16,8 @@ struct ObjectVertices {
 
 int vertex_of(const tinyobj::attrib_t& attributes, const tinyobj::index_t& corner, SceneMesh& mesh,
               ObjectVertices& vertices) {
-  const auto [entry, is_new] =
-      vertices.index.try_emplace({corner.vertex_index, corner.texcoord_index}, static_cast<int>(mesh.positions.size()));
+  const auto [entry, is_new] = vertices.index.try_emplace({corner.vertex_index, corner.texcoord_index},
+                                                          static_cast<int>(mesh.positions.size()));
   if (is_new) {
     const double* p = &attributes.vertices[3 * static_cast<size_t>(corner.vertex_index)];
     mesh.positions.emplace_back(p[0], p[1], p[2]);

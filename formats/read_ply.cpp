@@ -28,7 +28,8 @@ struct Header {
 size_t size_of(const Scene& scene, const std::string& type) {
   if (type == "char" || type == "uchar" || type == "int8" || type == "uint8") return 1;
   if (type == "short" || type == "ushort" || type == "int16" || type == "uint16") return 2;
-  if (type == "int" || type == "uint" || type == "float" || type == "int32" || type == "uint32" || type == "float32")
+  if (type == "int" || type == "uint" || type == "float" || type == "int32" || type == "uint32" ||
+      type == "float32")
     return 4;
   if (type == "double" || type == "float64") return 8;
   fail(scene, "its PLY header names the unknown type '" + type + "'");
@@ -36,7 +37,8 @@ size_t size_of(const Scene& scene, const std::string& type) {
 
 Header read_header(const Scene& scene) {
   Header header;
-  const std::string text(scene.bytes.begin(), scene.bytes.begin() + std::min<size_t>(scene.bytes.size(), 65536));
+  const std::string text(scene.bytes.begin(),
+                         scene.bytes.begin() + std::min<size_t>(scene.bytes.size(), 65536));
   const size_t end = text.find("end_header");
   if (end == std::string::npos) fail(scene, "its PLY header has no end: the file is truncated");
   header.size = text.find('\n', end);
@@ -49,9 +51,12 @@ Header read_header(const Scene& scene) {
     words >> word;
     if (word == "format") {
       words >> word;
-      if (word == "binary_little_endian") header.encoding = Encoding::little_endian;
-      else if (word == "binary_big_endian") header.encoding = Encoding::big_endian;
-      else if (word != "ascii") fail(scene, "its PLY format '" + word + "' is unknown");
+      if (word == "binary_little_endian")
+        header.encoding = Encoding::little_endian;
+      else if (word == "binary_big_endian")
+        header.encoding = Encoding::big_endian;
+      else if (word != "ascii")
+        fail(scene, "its PLY format '" + word + "' is unknown");
     } else if (word == "element") {
       Element element;
       if (!(words >> element.name >> element.count)) fail(scene, "its PLY header has a broken element line");
@@ -61,7 +66,8 @@ Header read_header(const Scene& scene) {
       words >> property.type;
       if (property.type == "list") words >> property.count_type >> property.type;
       words >> property.name;
-      if (header.elements.empty() || property.name.empty()) fail(scene, "its PLY header has a broken property line");
+      if (header.elements.empty() || property.name.empty())
+        fail(scene, "its PLY header has a broken property line");
       size_of(scene, property.type);
       header.elements.back().properties.push_back(property);
     }
@@ -72,18 +78,23 @@ Header read_header(const Scene& scene) {
 /// Reads one number after the other from the body, in the file's encoding.
 class Body {
  public:
-  Body(const Scene& scene, const Header& header) : scene_(scene), encoding_(header.encoding), at_(header.size) {}
+  Body(const Scene& scene, const Header& header)
+      : scene_(scene), encoding_(header.encoding), at_(header.size) {}
 
-  double next(const std::string& type) { return encoding_ == Encoding::ascii ? next_word() : next_binary(type); }
+  double next(const std::string& type) {
+    return encoding_ == Encoding::ascii ? next_word() : next_binary(type);
+  }
 
   size_t left() const { return scene_.bytes.size() - at_; }
 
  private:
   double next_word() {
     const std::vector<uint8_t>& bytes = scene_.bytes;
-    while (at_ < bytes.size() && std::isspace(bytes[at_])) ++at_;
+    while (at_ < bytes.size() && std::isspace(bytes[at_]))
+      ++at_;
     std::string word;
-    while (at_ < bytes.size() && !std::isspace(bytes[at_])) word.push_back(static_cast<char>(bytes[at_++]));
+    while (at_ < bytes.size() && !std::isspace(bytes[at_]))
+      word.push_back(static_cast<char>(bytes[at_++]));
     if (word.empty()) fail(scene_, "it ends before its last element: the file is truncated");
     char* end = nullptr;
     const double value = std::strtod(word.c_str(), &end);
@@ -127,14 +138,16 @@ class Body {
 void read_vertices(const Scene& scene, const Element& element, Body& body, SceneMesh& mesh) {
   for (const char* axis : {"x", "y", "z"}) {
     bool found = false;
-    for (const Property& property : element.properties) found |= property.name == axis;
+    for (const Property& property : element.properties)
+      found |= property.name == axis;
     if (!found) fail(scene, std::string("its PLY vertices have no '") + axis + "'");
   }
   for (size_t i = 0; i < element.count; ++i) {
     Vec3 p = Vec3::Zero();
     for (const Property& property : element.properties) {
       if (!property.count_type.empty()) {
-        for (double n = body.next(property.count_type); n > 0; --n) body.next(property.type);
+        for (double n = body.next(property.count_type); n > 0; --n)
+          body.next(property.type);
         continue;
       }
       const double value = body.next(property.type);
@@ -185,7 +198,8 @@ void read_ply(Scene& scene) {
       for (size_t i = 0; i < element.count; ++i)
         for (const Property& property : element.properties) {
           double values = property.count_type.empty() ? 1 : body.next(property.count_type);
-          for (; values > 0; --values) body.next(property.type);
+          for (; values > 0; --values)
+            body.next(property.type);
         }
     }
   }

@@ -19,11 +19,13 @@ void read_binary(const Scene& scene, TriangleMesh& soup) {
   uint32_t count;
   std::memcpy(&count, &scene.bytes[80], 4);
   if (scene.bytes.size() < 84 + 50 * static_cast<size_t>(count))
-    fail(scene, "its STL header promises " + std::to_string(count) + " triangles, the file ends before: it is truncated");
+    fail(scene, "its STL header promises " + std::to_string(count) +
+                    " triangles, the file ends before: it is truncated");
   for (uint32_t t = 0; t < count; ++t) {
     float corner[9];
     std::memcpy(corner, &scene.bytes[84 + 50 * static_cast<size_t>(t) + 12], sizeof corner);
-    for (int k = 0; k < 3; ++k) soup.vertices.emplace_back(corner[3 * k], corner[3 * k + 1], corner[3 * k + 2]);
+    for (int k = 0; k < 3; ++k)
+      soup.vertices.emplace_back(corner[3 * k], corner[3 * k + 1], corner[3 * k + 2]);
   }
 }
 
@@ -43,9 +45,12 @@ void read_ascii(const Scene& scene, TriangleMesh& soup) {
 
 void read_stl(Scene& scene) {
   TriangleMesh soup;
-  if (is_binary(scene.bytes)) read_binary(scene, soup);
-  else read_ascii(scene, soup);
-  for (int v = 0; v + 2 < soup.vertex_count(); v += 3) soup.triangles.push_back({v, v + 1, v + 2});
+  if (is_binary(scene.bytes))
+    read_binary(scene, soup);
+  else
+    read_ascii(scene, soup);
+  for (int v = 0; v + 2 < soup.vertex_count(); v += 3)
+    soup.triangles.push_back({v, v + 1, v + 2});
   SceneMesh mesh;
   mesh.name = scene.path.stem().string();
   mesh.positions = std::move(soup.vertices);

@@ -14,17 +14,17 @@ enum class FileKind { glb, gltf, obj, ply, stl };
 
 /// One drawable piece of a file: a glTF primitive of a node, an OBJ object, a whole PLY or STL.
 struct SceneMesh {
-  std::string name;      ///< node or mesh, or object or group; never empty
-  std::string material;  ///< material name, empty when there is none
-  int mesh = -1;         ///< glTF mesh index, -1 in other formats
-  int primitive = -1;    ///< glTF primitive index within it
-  int node = -1;         ///< glTF node that carries it
+  std::string name;                 ///< node or mesh, or object or group; never empty
+  std::string material;             ///< material name, empty when there is none
+  int mesh = -1;                    ///< glTF mesh index, -1 in other formats
+  int primitive = -1;               ///< glTF primitive index within it
+  int node = -1;                    ///< glTF node that carries it
   Mat4 to_file = Mat4::Identity();  ///< from the primitive's coordinates to the file's (node transforms)
   std::vector<Vec3> positions;      ///< in the file's axes and units, node transforms applied
   std::vector<Triangle> triangles;
-  std::vector<Vec2> uvs;            ///< one a vertex, or none
+  std::vector<Vec2> uvs;                   ///< one a vertex, or none
   std::vector<std::vector<int>> polygons;  ///< OBJ and PLY faces before triangulation, by vertex
-  std::vector<int> source_vertices;  ///< OBJ: index of each vertex among the file's `v` lines
+  std::vector<int> source_vertices;        ///< OBJ: index of each vertex among the file's `v` lines
 };
 
 /// A glTF file as one JSON text and one binary chunk, everything external brought in.

@@ -12,7 +12,8 @@ namespace fascia {
 namespace {
 
 int find_root(std::vector<int>& parent, int i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
+  while (parent[i] != i)
+    i = parent[i] = parent[parent[i]];
   return i;
 }
 
@@ -22,7 +23,8 @@ int find_root(std::vector<int>& parent, int i) {
 std::vector<HalfEdge> sorted_half_edges(const std::vector<Triangle>& triangles, size_t vertex_count) {
   std::vector<int> offsets(vertex_count + 1, 0);
   for (const Triangle& triangle : triangles)
-    for (int e = 0; e < 3; ++e) ++offsets[std::min(triangle[e], triangle[(e + 1) % 3]) + 1];
+    for (int e = 0; e < 3; ++e)
+      ++offsets[std::min(triangle[e], triangle[(e + 1) % 3]) + 1];
   std::partial_sum(offsets.begin(), offsets.end(), offsets.begin());
   std::vector<HalfEdge> edges(triangles.size() * 3);
   std::vector<int> filled(offsets.begin(), offsets.end() - 1);
@@ -51,7 +53,8 @@ Connectivity connectivity(const TriangleMesh& mesh) {
   const std::vector<HalfEdge> edges = sorted_half_edges(mesh.triangles, mesh.vertices.size());
   for (size_t i = 0; i < edges.size();) {
     size_t j = i + 1;
-    while (j < edges.size() && edges[j].low == edges[i].low && edges[j].high == edges[i].high) ++j;
+    while (j < edges.size() && edges[j].low == edges[i].low && edges[j].high == edges[i].high)
+      ++j;
     if (j - i == 2 && edges[i].forward != edges[i + 1].forward) {
       links.neighbours[edges[i].triangle][edges[i].edge] = edges[i + 1].triangle;
       links.neighbours[edges[i + 1].triangle][edges[i + 1].edge] = edges[i].triangle;
@@ -62,12 +65,14 @@ Connectivity connectivity(const TriangleMesh& mesh) {
   }
   links.vertex_offsets.assign(mesh.vertices.size() + 1, 0);
   for (const Triangle& triangle : mesh.triangles)
-    for (int v : triangle) ++links.vertex_offsets[v + 1];
+    for (int v : triangle)
+      ++links.vertex_offsets[v + 1];
   std::partial_sum(links.vertex_offsets.begin(), links.vertex_offsets.end(), links.vertex_offsets.begin());
   links.vertex_triangles.resize(mesh.triangles.size() * 3);
   std::vector<int> cursor(links.vertex_offsets.begin(), links.vertex_offsets.end() - 1);
   for (int t = 0; t < mesh.triangle_count(); ++t)
-    for (int v : mesh.triangles[t]) links.vertex_triangles[cursor[v]++] = t;
+    for (int v : mesh.triangles[t])
+      links.vertex_triangles[cursor[v]++] = t;
   return links;
 }
 
@@ -125,7 +130,8 @@ TriangleMesh weld(const TriangleMesh& mesh, double tolerance, std::vector<int>* 
   std::vector<int> map(mesh.vertices.size());
   for (size_t i = 0; i < mesh.vertices.size(); ++i) {
     const Vec3& p = mesh.vertices[i];
-    const std::array<int64_t, 3> at = {std::llround(std::floor(p[0] / cell)), std::llround(std::floor(p[1] / cell)),
+    const std::array<int64_t, 3> at = {std::llround(std::floor(p[0] / cell)),
+                                       std::llround(std::floor(p[1] / cell)),
                                        std::llround(std::floor(p[2] / cell))};
     int found = -1;
     for (int64_t dx = -1; dx <= 1 && found < 0; ++dx)

@@ -22,13 +22,13 @@ struct Connectivity {
 
 /// One side of a triangle, from corner `edge` to the next.
 struct HalfEdge {
-  int low, high;       ///< its vertices
+  int low, high;  ///< its vertices
   int triangle, edge;
-  bool forward;        ///< runs from low to high
+  bool forward;  ///< runs from low to high
 };
 
-/// All sides of `triangles`, whose corners are below `vertex_count`, sorted by (low, high, triangle, edge): those of one edge follow
-/// each other. Linear in their number but for vertices of very many edges.
+/// All sides of `triangles`, whose corners are below `vertex_count`, sorted by (low, high, triangle, edge):
+/// those of one edge follow each other. Linear in their number but for vertices of very many edges.
 std::vector<HalfEdge> sorted_half_edges(const std::vector<Triangle>& triangles, size_t vertex_count);
 
 /// Builds the connectivity of `mesh`; any triangle list is accepted.

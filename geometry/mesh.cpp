@@ -28,15 +28,19 @@ Vec3 triangle_normal(const TriangleMesh& mesh, int triangle) {
   return unit_or_zero(area_vector(mesh, triangle));
 }
 
-double triangle_area(const TriangleMesh& mesh, int triangle) { return area_vector(mesh, triangle).norm(); }
+double triangle_area(const TriangleMesh& mesh, int triangle) {
+  return area_vector(mesh, triangle).norm();
+}
 
 std::vector<Vec3> vertex_normals(const TriangleMesh& mesh) {
   std::vector<Vec3> normals(mesh.vertices.size(), Vec3::Zero());
   for (int t = 0; t < mesh.triangle_count(); ++t) {
     const Vec3 area = area_vector(mesh, t);
-    for (int corner : mesh.triangles[t]) normals[corner] += area;
+    for (int corner : mesh.triangles[t])
+      normals[corner] += area;
   }
-  for (Vec3& normal : normals) normal = unit_or_zero(normal);
+  for (Vec3& normal : normals)
+    normal = unit_or_zero(normal);
   return normals;
 }
 

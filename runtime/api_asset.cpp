@@ -26,8 +26,8 @@ const fascia::rig::Surface& surface_named(const Asset& asset, const std::string&
   if (name == "teeth_upper") return rig.skull.teeth_upper;
   if (name == "teeth_lower") return rig.skull.teeth_lower;
   if (name == "smas") return rig.smas.surface;
-  throw Failure(FASCIA_ERROR_NAME, "there is no surface " + name +
-                                       ": use cranium, mandible, teeth_upper, teeth_lower or smas");
+  throw Failure(FASCIA_ERROR_NAME,
+                "there is no surface " + name + ": use cranium, mandible, teeth_upper, teeth_lower or smas");
 }
 
 template <class T>
@@ -40,7 +40,9 @@ const uint32_t* indices(const std::vector<T>& lists) {
   return lists.empty() ? nullptr : reinterpret_cast<const uint32_t*>(lists.data());
 }
 
-uint32_t count32(std::size_t count) { return static_cast<uint32_t>(count); }
+uint32_t count32(std::size_t count) {
+  return static_cast<uint32_t>(count);
+}
 
 }  // namespace
 
@@ -56,7 +58,9 @@ fascia_result fascia_asset_load(const void* bytes, size_t size, fascia_asset** a
   });
 }
 
-void fascia_asset_release(fascia_asset* asset) { delete asset; }
+void fascia_asset_release(fascia_asset* asset) {
+  delete asset;
+}
 
 fascia_result fascia_asset_get_info(const fascia_asset* handle, fascia_asset_info* info) {
   return guarded([&] {
@@ -105,10 +109,11 @@ fascia_result fascia_asset_get_mesh(const fascia_asset* handle, uint32_t index, 
 fascia_result fascia_asset_get_channels(const fascia_asset* handle, fascia_channels* channels) {
   return guarded([&] {
     const Asset& asset = checked(handle);
-    hand_out(fascia_channels{0, count32(asset.channel_names.size()), asset.channel_names.data(),
-                             asset.channel_groups.data(), asset.channel_units.data(), asset.channel_minimum.data(),
-                             asset.channel_maximum.data(), asset.channel_rest.data()},
-             channels);
+    hand_out(
+        fascia_channels{0, count32(asset.channel_names.size()), asset.channel_names.data(),
+                        asset.channel_groups.data(), asset.channel_units.data(), asset.channel_minimum.data(),
+                        asset.channel_maximum.data(), asset.channel_rest.data()},
+        channels);
     return FASCIA_OK;
   });
 }
@@ -130,7 +135,8 @@ int32_t fascia_asset_find_channel(const fascia_asset* handle, const char* name) 
   guarded([&] {
     require(name != nullptr, "the name is null");
     const auto target = checked(handle).find(name);
-    if (target && target->kind == fascia::runtime::Target::Kind::channel) index = static_cast<int32_t>(target->index);
+    if (target && target->kind == fascia::runtime::Target::Kind::channel)
+      index = static_cast<int32_t>(target->index);
     return FASCIA_OK;
   });
   return index;
@@ -153,8 +159,8 @@ fascia_result fascia_asset_fibres(const fascia_asset* handle, uint32_t index, fa
     check_index(index, asset.rig().tissue.levels.size(), "level");
     const auto& level = asset.rig().tissue.levels[index];
     hand_out(fascia_fibres{0, count32(level.fibre_muscle.size()), count32(level.fibre_rest.size()), 0,
-                           level.fibre_offsets.data(), level.fibre_channel.data(), asset.fibre_muscles[index].data(),
-                           floats(level.fibre_rest)},
+                           level.fibre_offsets.data(), level.fibre_channel.data(),
+                           asset.fibre_muscles[index].data(), floats(level.fibre_rest)},
              fibres);
     return FASCIA_OK;
   });

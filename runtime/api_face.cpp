@@ -58,12 +58,14 @@ fascia_face_options fascia_default_face_options(void) {
   return {sizeof(fascia_face_options), FASCIA_SPACE_MESH, FASCIA_SOLVER_OWN, -1, 0};
 }
 
-fascia_result fascia_face_create(fascia_asset* asset, const fascia_face_options* options, fascia_face** face) {
+fascia_result fascia_face_create(fascia_asset* asset, const fascia_face_options* options,
+                                 fascia_face** face) {
   return guarded([&] {
     require(asset != nullptr && face != nullptr, "fascia_face_create: asset or face is null");
     fascia_face_options chosen = fascia_default_face_options();
     if (options != nullptr) {
-      require(options->struct_size >= 2 * sizeof(uint32_t), "struct_size is not set: it must be sizeof the structure");
+      require(options->struct_size >= 2 * sizeof(uint32_t),
+              "struct_size is not set: it must be sizeof the structure");
       std::memcpy(&chosen, options, std::min<std::size_t>(options->struct_size, sizeof chosen));
     }
     auto made = std::make_unique<Face>(asset->asset, chosen);
@@ -72,9 +74,13 @@ fascia_result fascia_face_create(fascia_asset* asset, const fascia_face_options*
   });
 }
 
-void fascia_face_release(fascia_face* face) { delete face; }
+void fascia_face_release(fascia_face* face) {
+  delete face;
+}
 
-float* fascia_face_values(fascia_face* face) { return face == nullptr ? nullptr : face->face->values().data(); }
+float* fascia_face_values(fascia_face* face) {
+  return face == nullptr ? nullptr : face->face->values().data();
+}
 
 const float* fascia_face_effective_values(const fascia_face* face) {
   return face == nullptr ? nullptr : face->face->effective_values().data();
@@ -122,22 +128,26 @@ fascia_result fascia_face_step(fascia_face* handle, float seconds) {
   });
 }
 
-fascia_result fascia_faces_step(fascia_face* const* faces, uint32_t count, float seconds, const fascia_tasks* tasks) {
+fascia_result fascia_faces_step(fascia_face* const* faces, uint32_t count, float seconds,
+                                const fascia_tasks* tasks) {
   return guarded([&] {
     require(faces != nullptr || count == 0, "the list of faces is null");
     require(seconds >= 0.0F && seconds <= 1.0F, "seconds must lie between 0 and 1");
     fascia_tasks given{};
     if (tasks != nullptr) {
-      require(tasks->struct_size >= sizeof(uint32_t), "struct_size is not set: it must be sizeof the structure");
+      require(tasks->struct_size >= sizeof(uint32_t),
+              "struct_size is not set: it must be sizeof the structure");
       std::memcpy(&given, tasks, std::min<std::size_t>(tasks->struct_size, sizeof given));
       require(given.begin != nullptr && given.finish != nullptr, "the host's tasks lack begin or finish");
     }
     std::vector<Face*> list;
-    for (uint32_t i = 0; i < count; ++i) list.push_back(&checked(faces[i]));
+    for (uint32_t i = 0; i < count; ++i)
+      list.push_back(&checked(faces[i]));
     std::vector<Face*> sorted = list;
     std::sort(sorted.begin(), sorted.end());
     require(std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end(), "a face is listed twice");
-    const std::size_t diverged = fascia::runtime::step_all(list, static_cast<double>(seconds), tasks != nullptr ? &given : nullptr);
+    const std::size_t diverged =
+        fascia::runtime::step_all(list, static_cast<double>(seconds), tasks != nullptr ? &given : nullptr);
     if (diverged == 0) return FASCIA_OK;
     const std::string message = std::to_string(diverged) + " of " + std::to_string(count) +
                                 " faces became unsound and were put back to where their bones stand";
@@ -189,7 +199,8 @@ fascia_result fascia_face_move_head(fascia_face* face, const float matrix[16], f
   return guarded([&] {
     require(matrix != nullptr, "the matrix is null");
     const Eigen::Matrix4f place = Eigen::Map<const Eigen::Matrix4f>(matrix);
-    require(place.allFinite() && std::isfinite(inertia_scale), "the matrix or the scale is not a finite number");
+    require(place.allFinite() && std::isfinite(inertia_scale),
+            "the matrix or the scale is not a finite number");
     checked(face).move_head(place, inertia_scale);
     return FASCIA_OK;
   });
@@ -200,7 +211,8 @@ fascia_result fascia_face_touch(fascia_face* handle, uint32_t mesh, uint32_t ver
     require(force != nullptr && std::isfinite(force[0]) && std::isfinite(force[1]) && std::isfinite(force[2]),
             "the force is null or not a finite number");
     require(vertex < with_mesh(handle, mesh).vertex_count(mesh), "the mesh has no such vertex");
-    require(checked(handle).touch(mesh, vertex, {force[0], force[1], force[2]}), "there are 64 touches already");
+    require(checked(handle).touch(mesh, vertex, {force[0], force[1], force[2]}),
+            "there are 64 touches already");
     return FASCIA_OK;
   });
 }
@@ -212,7 +224,8 @@ fascia_result fascia_face_clear_touches(fascia_face* face) {
   });
 }
 
-fascia_result fascia_face_write_positions(fascia_face* face, uint32_t mesh, void* to, size_t stride, size_t capacity) {
+fascia_result fascia_face_write_positions(fascia_face* face, uint32_t mesh, void* to, size_t stride,
+                                          size_t capacity) {
   return guarded([&] {
     const auto& positions = with_mesh(face, mesh).positions(mesh);
     require(to != nullptr && stride >= 12, "the memory is null or the stride below 12 bytes");
@@ -254,7 +267,9 @@ fascia_result fascia_curves_load(const void* bytes, size_t size, fascia_curves**
   });
 }
 
-void fascia_curves_release(fascia_curves* curves) { delete curves; }
+void fascia_curves_release(fascia_curves* curves) {
+  delete curves;
+}
 
 fascia_result fascia_curves_get_info(const fascia_curves* curves, fascia_curves_info* info) {
   return guarded([&] {
@@ -281,7 +296,8 @@ fascia_result fascia_curves_match(const fascia_curves* curves, const fascia_asse
   });
 }
 
-fascia_result fascia_curves_apply(const fascia_curves* curves, double seconds, float weight, fascia_face* handle) {
+fascia_result fascia_curves_apply(const fascia_curves* curves, double seconds, float weight,
+                                  fascia_face* handle) {
   return guarded([&] {
     require(curves != nullptr, "the curves are null");
     require(std::isfinite(seconds) && std::isfinite(weight), "the time or weight is not a finite number");

@@ -11,8 +11,8 @@ std::string lower_case(std::string_view text) {
   return lower;
 }
 
-Asset::Asset(std::span<const uint8_t> bytes) : file_(rig::read(bytes)), models_(file_.rig.tissue.levels.size()),
-      realtime_models_(models_.size()) {
+Asset::Asset(std::span<const uint8_t> bytes)
+    : file_(rig::read(bytes)), models_(file_.rig.tissue.levels.size()), realtime_models_(models_.size()) {
   index_channels();
   index_sets();
   find_jaw_muscles();
@@ -62,15 +62,18 @@ void Asset::index_sets() {
   }
 }
 
-/// Muscles with one end on the mandible and the other on a bone that stands still: of each the mean of its fibres.
+/// Muscles with one end on the mandible and the other on a bone that stands still: of each the mean of its
+/// fibres.
 void Asset::find_jaw_muscles() {
   std::vector<sim::JawMuscle> pulls;
   const auto& channels = rig().actuation.channels;
   for (uint32_t c = 0; c < channels.size(); ++c) {
     if (channels[c].muscle < 0) continue;
     const rig::Muscle& muscle = rig().muscles[static_cast<std::size_t>(channels[c].muscle)];
-    const bool ends_there = muscle.insertion == rig::FibreEnd::mandible && muscle.origin == rig::FibreEnd::cranium;
-    const bool begins_there = muscle.origin == rig::FibreEnd::mandible && muscle.insertion == rig::FibreEnd::cranium;
+    const bool ends_there =
+        muscle.insertion == rig::FibreEnd::mandible && muscle.origin == rig::FibreEnd::cranium;
+    const bool begins_there =
+        muscle.origin == rig::FibreEnd::mandible && muscle.insertion == rig::FibreEnd::cranium;
     if ((!ends_there && !begins_there) || muscle.fibre_offsets.size() < 2) continue;
     sim::JawMuscle pull;
     pull.channel = c;
@@ -119,11 +122,13 @@ const sim::realtime::Model& Asset::realtime_model(std::size_t level) const {
 }
 
 const std::vector<std::unique_ptr<MeshShape>>& Asset::shapes(std::size_t level, fascia_space space) const {
-  require(space == FASCIA_SPACE_MESH || space == FASCIA_SPACE_INPUT || space == FASCIA_SPACE_METRES, "unknown space");
+  require(space == FASCIA_SPACE_MESH || space == FASCIA_SPACE_INPUT || space == FASCIA_SPACE_METRES,
+          "unknown space");
   const std::lock_guard lock(models_mutex_);
   auto& shapes = shapes_[{level, space}];
   for (std::size_t i = shapes.size(); i < primitives().size(); ++i)
-    shapes.push_back(std::make_unique<MeshShape>(primitives()[i], binding(level, i), rig().input_to_metres, space));
+    shapes.push_back(
+        std::make_unique<MeshShape>(primitives()[i], binding(level, i), rig().input_to_metres, space));
   return shapes;
 }
 
@@ -133,7 +138,8 @@ const sim::FaceModel& Asset::model_under_lock(std::size_t level) const {
     auto made = std::make_unique<sim::FaceModel>(sim::lattice_of(rig().tissue.levels[level]),
                                                  sim::jaw_of(rig().skull.jaw));
     if (!made->valid())
-      throw Failure(FASCIA_ERROR_FORMAT, "FASCIA_tissue/levels/" + std::to_string(level) + ": " + made->fault());
+      throw Failure(FASCIA_ERROR_FORMAT,
+                    "FASCIA_tissue/levels/" + std::to_string(level) + ": " + made->fault());
     model = std::move(made);
   }
   return *model;

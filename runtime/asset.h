@@ -57,15 +57,15 @@ class Asset {
   const sim::FaceModel& model(std::size_t level) const;
   /// The same, laid out for real time.
   const sim::realtime::Model& realtime_model(std::size_t level) const;
-  /// The primitives as faces of a level see them in `space`, made on first use; any thread may ask. Throws Failure when there
-  /// is no such space.
+  /// The primitives as faces of a level see them in `space`, made on first use; any thread may ask. Throws
+  /// Failure when there is no such space.
   const std::vector<std::unique_ptr<MeshShape>>& shapes(std::size_t level, fascia_space space) const;
 
   // Arrays of texts in the shape the C interface hands them out.
   std::vector<const char*> channel_names, channel_groups, channel_units;
   std::vector<float> channel_minimum, channel_maximum, channel_rest;
-  std::vector<std::vector<const char*>> set_members;     ///< by set
-  std::vector<std::vector<const char*>> fibre_muscles;   ///< by level
+  std::vector<std::vector<const char*>> set_members;    ///< by set
+  std::vector<std::vector<const char*>> fibre_muscles;  ///< by level
 
  private:
   void index_channels();

@@ -18,7 +18,8 @@ void BoundMesh::follow(const BonePose& pose) {
       const Vec3f arm = rest - pose.eye_centres[follower.eye - 1];
       moved = pose.eyes[follower.eye - 1] * arm - arm;
     } else {
-      for (uint32_t i = follower.first; i < follower.end; ++i) moved += weights[i] * pose.displacements[nodes[i]];
+      for (uint32_t i = follower.first; i < follower.end; ++i)
+        moved += weights[i] * pose.displacements[nodes[i]];
       if (follower.jaw_share != 0.0F) moved += follower.jaw_share * (turn * rest + shift - rest);
     }
     positions_[follower.vertex] = shape_->rest()[follower.vertex] + from_metres * moved;

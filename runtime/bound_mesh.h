@@ -12,12 +12,13 @@ namespace fascia::runtime {
 struct BonePose {
   std::span<const Vec3f> displacements;  ///< #nodes, metres
   sim::RigidTransform jaw;
-  std::array<Eigen::Matrix3f, 2> eyes = {Eigen::Matrix3f::Identity(), Eigen::Matrix3f::Identity()};  ///< left, right
+  std::array<Eigen::Matrix3f, 2> eyes = {Eigen::Matrix3f::Identity(),
+                                         Eigen::Matrix3f::Identity()};  ///< left, right
   std::array<Vec3f, 2> eye_centres = {Vec3f::Zero(), Vec3f::Zero()};
 };
 
-/// One primitive of the file as a face sees it: its vertices follow the lattice, the jaw and the eyes. At rest they are the
-/// file's own, to the last bit. A mesh nobody has asked for costs neither memory nor time.
+/// One primitive of the file as a face sees it: its vertices follow the lattice, the jaw and the eyes. At
+/// rest they are the file's own, to the last bit. A mesh nobody has asked for costs neither memory nor time.
 class BoundMesh {
  public:
   /// `shape` must outlive this.

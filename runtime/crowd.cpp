@@ -15,7 +15,8 @@ struct Work {
   std::exception_ptr fault;  ///< the first; nothing may pass through the host's code
 
   void run(std::size_t first, std::size_t end) {
-    for (std::size_t i = first; i < end && i < faces.size(); ++i) try {
+    for (std::size_t i = first; i < end && i < faces.size(); ++i)
+      try {
         if (!faces[i]->step(seconds)) ++diverged;
       } catch (...) {
         const std::lock_guard lock(mutex);
@@ -24,7 +25,9 @@ struct Work {
   }
 };
 
-void run_range(uint32_t first, uint32_t end, void* context) { static_cast<Work*>(context)->run(first, end); }
+void run_range(uint32_t first, uint32_t end, void* context) {
+  static_cast<Work*>(context)->run(first, end);
+}
 
 }  // namespace
 
@@ -32,7 +35,8 @@ std::size_t step_all(std::span<Face* const> faces, double seconds, const fascia_
   Work work{faces, seconds, {}, {}, {}};
   if (tasks == nullptr || faces.empty()) {
     work.run(0, faces.size());
-  } else if (void* task = tasks->begin(run_range, static_cast<uint32_t>(faces.size()), 1, &work, tasks->user); task != nullptr) {
+  } else if (void* task = tasks->begin(run_range, static_cast<uint32_t>(faces.size()), 1, &work, tasks->user);
+             task != nullptr) {
     tasks->finish(task, tasks->user);
   }
   if (work.fault) std::rethrow_exception(work.fault);

@@ -10,10 +10,13 @@ namespace {
 /// Rotation of an eye: yaw to the subject's left about +Y, then pitch upward about the head's lateral axis.
 Eigen::Matrix3f eye_rotation(float yaw, float pitch) {
   if (yaw == 0.0F && pitch == 0.0F) return Eigen::Matrix3f::Identity();
-  return (Eigen::AngleAxisf(yaw, Vec3f::UnitY()) * Eigen::AngleAxisf(-pitch, Vec3f::UnitX())).toRotationMatrix();
+  return (Eigen::AngleAxisf(yaw, Vec3f::UnitY()) * Eigen::AngleAxisf(-pitch, Vec3f::UnitX()))
+      .toRotationMatrix();
 }
 
-float finite(float value) { return std::isfinite(value) ? value : 0.0F; }
+float finite(float value) {
+  return std::isfinite(value) ? value : 0.0F;
+}
 
 std::size_t chosen_level(const Asset& asset, int32_t level) {
   const std::size_t levels = asset.rig().tissue.levels.size();
@@ -37,10 +40,12 @@ Face::Face(std::shared_ptr<const Asset> asset, const fascia_face_options& option
   displacements_.assign(rig.tissue.levels[level_].rest.size(), Vec3f::Zero());
   fibre_points_ = rig.tissue.levels[level_].fibre_rest;
   touches_.reserve(256);
-  for (const sim::Vec3& place : model_->rest()) face_centre_ += place / static_cast<double>(model_->rest().size());
+  for (const sim::Vec3& place : model_->rest())
+    face_centre_ += place / static_cast<double>(model_->rest().size());
   bones_.displacements = displacements_;
   bones_.eye_centres = {rig.skull.eye_left.centre, rig.skull.eye_right.centre};
-  for (const auto& shape : asset_->shapes(level_, options.space)) meshes_.emplace_back(*shape);
+  for (const auto& shape : asset_->shapes(level_, options.space))
+    meshes_.emplace_back(*shape);
 }
 
 void Face::set(const Target& target, float value) {
@@ -65,7 +70,8 @@ void Face::add(const Target& target, float value, float weight) {
 
 void Face::gather() {
   for (std::size_t c = 0; c < values_.size(); ++c)
-    effective_[c] = (std::isfinite(values_[c]) ? values_[c] : asset_->channel_rest[c]) + finite(curve_channels_[c]);
+    effective_[c] =
+        (std::isfinite(values_[c]) ? values_[c] : asset_->channel_rest[c]) + finite(curve_channels_[c]);
   for (std::size_t m = 0; m < members_.size(); ++m) {
     const float value = finite(members_[m]) + finite(curve_members_[m]);
     if (value == 0.0F) continue;
@@ -80,7 +86,9 @@ void Face::gather() {
 
 sim::JawPose Face::wanted_jaw() const {
   const BoneChannels& channels = asset_->bones();
-  return sim::clamped(asset_->jaw_muscles().moved({effective(channels.jaw_open), effective(channels.jaw_forward), effective(channels.jaw_lateral)}, effective_));
+  return sim::clamped(asset_->jaw_muscles().moved(
+      {effective(channels.jaw_open), effective(channels.jaw_forward), effective(channels.jaw_lateral)},
+      effective_));
 }
 
 sim::Drive Face::drive() const {
@@ -129,7 +137,8 @@ bool Face::touch(std::size_t mesh, std::size_t vertex, const sim::Vec3& force) {
   if (binding == nullptr) return true;  // what stands still cannot be pressed
   if (touches_.size() + binding->influences > touches_.capacity()) return false;
   for (std::size_t i = vertex * binding->influences; i < (vertex + 1) * binding->influences; ++i)
-    if (binding->weights[i] != 0.0F) touches_.push_back({binding->nodes[i], static_cast<double>(binding->weights[i]) * force});
+    if (binding->weights[i] != 0.0F)
+      touches_.push_back({binding->nodes[i], static_cast<double>(binding->weights[i]) * force});
   return true;
 }
 
@@ -185,7 +194,8 @@ const std::vector<Vec3f>& Face::fibre_points() {
       continue;
     }
     for (int k = 0; k < 3; ++k)
-      fibre_points_[p] += level.fibre_weights[p][k] * displacements_[level.fibre_nodes[p][static_cast<std::size_t>(k)]];
+      fibre_points_[p] +=
+          level.fibre_weights[p][k] * displacements_[level.fibre_nodes[p][static_cast<std::size_t>(k)]];
   }
   return fibre_points_;
 }

@@ -71,8 +71,9 @@ class Face {
   struct HeadMotion {
     Eigen::Matrix4d place = Eigen::Matrix4d::Identity();
     double scale = 0.0;
-    sim::Vec3 centre = sim::Vec3::Zero(), velocity = sim::Vec3::Zero();  ///< of the face's middle, in the world
-    int known = 0;  ///< how many of place and velocity are
+    sim::Vec3 centre = sim::Vec3::Zero(),
+              velocity = sim::Vec3::Zero();  ///< of the face's middle, in the world
+    int known = 0;                           ///< how many of place and velocity are
     bool is_moved = false;
   } head_;
   sim::Vec3 face_centre_ = sim::Vec3::Zero();

@@ -23,7 +23,8 @@ std::vector<uint32_t> first_at_place(const std::vector<Vec3f>& positions) {
 
 }  // namespace
 
-MeshShape::MeshShape(const rig::Primitive& primitive, const rig::Binding* binding, const rig::Mat4f& input_to_metres, fascia_space space)
+MeshShape::MeshShape(const rig::Primitive& primitive, const rig::Binding* binding,
+                     const rig::Mat4f& input_to_metres, fascia_space space)
     : primitive_(primitive) {
   const rig::Mat4f to_rig = binding != nullptr ? binding->to_rig : input_to_metres;
   rig::Mat4f mesh_to_space = rig::Mat4f::Identity();
@@ -45,13 +46,15 @@ MeshShape::MeshShape(const rig::Primitive& primitive, const rig::Binding* bindin
   }
   for (uint32_t v = 0; binding != nullptr && v < rest_.size(); ++v) {
     Follower follower{v, static_cast<uint32_t>(nodes_.size()), 0, binding->jaw_weights[v], binding->eye[v]};
-    for (size_t i = v * static_cast<size_t>(binding->influences); follower.eye == 0 && i < (v + 1) * static_cast<size_t>(binding->influences); ++i) {
+    for (size_t i = v * static_cast<size_t>(binding->influences);
+         follower.eye == 0 && i < (v + 1) * static_cast<size_t>(binding->influences); ++i) {
       if (binding->weights[i] == 0.0F) continue;
       nodes_.push_back(binding->nodes[i]);
       weights_.push_back(binding->weights[i]);
     }
     follower.end = static_cast<uint32_t>(nodes_.size());
-    if (follower.first < follower.end || follower.jaw_share != 0.0F || follower.eye != 0) followers_.push_back(follower);
+    if (follower.first < follower.end || follower.jaw_share != 0.0F || follower.eye != 0)
+      followers_.push_back(follower);
   }
 }
 
@@ -66,7 +69,8 @@ const MeshShape::Normals& MeshShape::normals() const {
   return normals_;
 }
 
-void MeshShape::surface_normals(const std::vector<Vec3f>& positions, const std::vector<uint32_t>& welded, std::vector<Vec3f>& normals) const {
+void MeshShape::surface_normals(const std::vector<Vec3f>& positions, const std::vector<uint32_t>& welded,
+                                std::vector<Vec3f>& normals) const {
   normals.assign(positions.size(), Vec3f::Zero());
   for (const rig::Triangle& triangle : primitive_.triangles) {
     const Vec3f& a = positions[triangle[0]];

@@ -10,37 +10,44 @@ namespace fascia::runtime {
 
 using rig::Vec3f;
 
-/// One primitive of the file at rest in one space and what its vertices follow at one level of detail; shared by all faces.
+/// One primitive of the file at rest in one space and what its vertices follow at one level of detail; shared
+/// by all faces.
 class MeshShape {
  public:
   /// `binding` may be null: nothing then moves the mesh. Both references must outlive this.
-  MeshShape(const rig::Primitive& primitive, const rig::Binding* binding, const rig::Mat4f& input_to_metres, fascia_space space);
+  MeshShape(const rig::Primitive& primitive, const rig::Binding* binding, const rig::Mat4f& input_to_metres,
+            fascia_space space);
 
   /// What moves a vertex.
   struct Follower {
     uint32_t vertex = 0;
     uint32_t first = 0, end = 0;  ///< into `nodes` and `weights`
     float jaw_share = 0.0F;
-    uint8_t eye = 0;              ///< 0 none, 1 left, 2 right
+    uint8_t eye = 0;  ///< 0 none, 1 left, 2 right
   };
 
   const rig::Primitive& primitive() const { return primitive_; }
-  const std::vector<Vec3f>& rest() const { return rest_; }                   ///< #vertices, in the space: the file's own, to the last bit
+  const std::vector<Vec3f>& rest() const {
+    return rest_;
+  }  ///< #vertices, in the space: the file's own, to the last bit
   const Vec3f& rest_metres(uint32_t vertex) const { return rest_metres_[vertex]; }
-  const Eigen::Matrix3f& from_metres() const { return from_metres_; }        ///< displacement in metres to one in the space
-  const std::vector<Follower>& followers() const { return followers_; }      ///< vertices that anything moves
+  const Eigen::Matrix3f& from_metres() const {
+    return from_metres_;
+  }  ///< displacement in metres to one in the space
+  const std::vector<Follower>& followers() const { return followers_; }  ///< vertices that anything moves
   const std::vector<uint32_t>& nodes() const { return nodes_; }
   const std::vector<float>& weights() const { return weights_; }
 
   /// Normals at rest, made on first use; any thread may ask.
   struct Normals {
-    std::vector<uint32_t> welded;       ///< #vertices: the first vertex at the same place
-    std::vector<Vec3f> rest, surface;   ///< the file's own, or else the surface's; the surface's
+    std::vector<uint32_t> welded;      ///< #vertices: the first vertex at the same place
+    std::vector<Vec3f> rest, surface;  ///< the file's own, or else the surface's; the surface's
   };
   const Normals& normals() const;
 
   /// Unit normals of the surface at `positions`, #vertices each.
-  void surface_normals(const std::vector<Vec3f>& positions, const std::vector<uint32_t>& welded, std::vector<Vec3f>& normals) const;
+  void surface_normals(const std::vector<Vec3f>& positions, const std::vector<uint32_t>& welded,
+                       std::vector<Vec3f>& normals) const;
 
  private:
   const rig::Primitive& primitive_;

@@ -29,22 +29,35 @@ uint32_t fascia_version(void) {
 
 const char* fascia_result_name(fascia_result result) {
   switch (result) {
-    case FASCIA_OK: return "FASCIA_OK";
-    case FASCIA_ERROR_ARGUMENT: return "FASCIA_ERROR_ARGUMENT";
-    case FASCIA_ERROR_FORMAT: return "FASCIA_ERROR_FORMAT";
-    case FASCIA_ERROR_VERSION: return "FASCIA_ERROR_VERSION";
-    case FASCIA_ERROR_MISMATCH: return "FASCIA_ERROR_MISMATCH";
-    case FASCIA_ERROR_NAME: return "FASCIA_ERROR_NAME";
-    case FASCIA_ERROR_MEMORY: return "FASCIA_ERROR_MEMORY";
-    case FASCIA_ERROR_DIVERGED: return "FASCIA_ERROR_DIVERGED";
-    case FASCIA_ERROR_MODULE: return "FASCIA_ERROR_MODULE";
-    case FASCIA_ERROR_INTERNAL: return "FASCIA_ERROR_INTERNAL";
-    case FASCIA_RESULT_32: break;
+    case FASCIA_OK:
+      return "FASCIA_OK";
+    case FASCIA_ERROR_ARGUMENT:
+      return "FASCIA_ERROR_ARGUMENT";
+    case FASCIA_ERROR_FORMAT:
+      return "FASCIA_ERROR_FORMAT";
+    case FASCIA_ERROR_VERSION:
+      return "FASCIA_ERROR_VERSION";
+    case FASCIA_ERROR_MISMATCH:
+      return "FASCIA_ERROR_MISMATCH";
+    case FASCIA_ERROR_NAME:
+      return "FASCIA_ERROR_NAME";
+    case FASCIA_ERROR_MEMORY:
+      return "FASCIA_ERROR_MEMORY";
+    case FASCIA_ERROR_DIVERGED:
+      return "FASCIA_ERROR_DIVERGED";
+    case FASCIA_ERROR_MODULE:
+      return "FASCIA_ERROR_MODULE";
+    case FASCIA_ERROR_INTERNAL:
+      return "FASCIA_ERROR_INTERNAL";
+    case FASCIA_RESULT_32:
+      break;
   }
   return "unknown result";
 }
 
-const char* fascia_last_message(void) { return fascia::runtime::last_message.c_str(); }
+const char* fascia_last_message(void) {
+  return fascia::runtime::last_message.c_str();
+}
 
 void fascia_set_log(fascia_log_function function, void* user) {
   fascia::runtime::log_function = function;

@@ -51,7 +51,8 @@ fascia_result guarded(const Body& body) noexcept {
   }
 }
 
-/// Copies `value` to the caller's structure, as much of it as the caller knows. `to->struct_size` says how much.
+/// Copies `value` to the caller's structure, as much of it as the caller knows. `to->struct_size` says how
+/// much.
 template <class Struct>
 void hand_out(const Struct& value, Struct* to) {
   require(to != nullptr, "the structure to fill is null");

@@ -17,7 +17,8 @@ template <class Face, class StepOptions>
 class FaceSolver : public Solver {
  public:
   template <class Model, class Options>
-  FaceSolver(const Model& model, std::size_t channels, int pose_iterations, const Options& step) : face_(model, channels), step_(step) {
+  FaceSolver(const Model& model, std::size_t channels, int pose_iterations, const Options& step)
+      : face_(model, channels), step_(step) {
     pose_.solver.iterations = pose_iterations;
   }
 
@@ -76,7 +77,8 @@ class ModuleSolver : public Solver {
 /// Folder this library lies in, with a slash at its end; empty when it is not known.
 std::string own_folder() {
   Dl_info info{};
-  if (dladdr(reinterpret_cast<const void*>(&fascia_version), &info) == 0 || info.dli_fname == nullptr) return "";
+  if (dladdr(reinterpret_cast<const void*>(&fascia_version), &info) == 0 || info.dli_fname == nullptr)
+    return "";
   const std::string path = info.dli_fname;
   const std::size_t slash = path.rfind('/');
   return slash == std::string::npos ? "" : path.substr(0, slash + 1);
@@ -90,30 +92,36 @@ sim::MakeSolver bullet_entry() {
     return found != nullptr ? found : dlopen(name.c_str(), RTLD_NOW | RTLD_LOCAL);
   }();
   if (module == nullptr)
-    throw Failure(FASCIA_ERROR_MODULE,
-                  "the module libfascia_bullet is not there; install it beside this library, or use FASCIA_SOLVER_OWN");
+    throw Failure(
+        FASCIA_ERROR_MODULE,
+        "the module libfascia_bullet is not there; install it beside this library, or use FASCIA_SOLVER_OWN");
   void* const entry = dlsym(module, sim::solver_entry);
-  if (entry == nullptr) throw Failure(FASCIA_ERROR_MODULE, "libfascia_bullet is of another version than this library");
+  if (entry == nullptr)
+    throw Failure(FASCIA_ERROR_MODULE, "libfascia_bullet is of another version than this library");
   return reinterpret_cast<sim::MakeSolver>(entry);
 }
 
 }  // namespace
 
-std::unique_ptr<Solver> make_solver(const fascia_face_options& options, const Asset& asset, std::size_t level) {
+std::unique_ptr<Solver> make_solver(const fascia_face_options& options, const Asset& asset,
+                                    std::size_t level) {
   const std::size_t channels = asset.channel_names.size();
   const fascia_solver kind = options.solver;
   require(options.iterations >= 0 && options.iterations <= 32, "iterations must lie between 0 and 32");
   if (kind == FASCIA_SOLVER_OWN) {
     sim::realtime::StepOptions step;
     if (options.iterations > 0) step.iterations = options.iterations;
-    return std::make_unique<FaceSolver<sim::realtime::Face, sim::realtime::StepOptions>>(asset.realtime_model(level), channels, 2000, step);
+    return std::make_unique<FaceSolver<sim::realtime::Face, sim::realtime::StepOptions>>(
+        asset.realtime_model(level), channels, 2000, step);
   }
   const sim::FaceModel& model = asset.model(level);
   if (kind == FASCIA_SOLVER_REFERENCE)
-    return std::make_unique<FaceSolver<sim::Face, sim::StepOptions>>(model, channels, 200, sim::StepOptions{});
+    return std::make_unique<FaceSolver<sim::Face, sim::StepOptions>>(model, channels, 200,
+                                                                     sim::StepOptions{});
   require(kind == FASCIA_SOLVER_BULLET, "unknown solver");
   std::unique_ptr<sim::Solver> solver(bullet_entry()(&model, channels));
-  if (!solver) throw Failure(FASCIA_ERROR_MODULE, "the module libfascia_bullet could not make a solver of this rig");
+  if (!solver)
+    throw Failure(FASCIA_ERROR_MODULE, "the module libfascia_bullet could not make a solver of this rig");
   return std::make_unique<ModuleSolver>(std::move(solver), model);
 }
 

@@ -20,8 +20,9 @@ class Solver {
 
 class Asset;
 
-/// Makes a solver on a level of `asset`, which must outlive it. Throws Failure when the options are at fault or the solver's module is
-/// not there.
-std::unique_ptr<Solver> make_solver(const fascia_face_options& options, const Asset& asset, std::size_t level);
+/// Makes a solver on a level of `asset`, which must outlive it. Throws Failure when the options are at fault
+/// or the solver's module is not there.
+std::unique_ptr<Solver> make_solver(const fascia_face_options& options, const Asset& asset,
+                                    std::size_t level);
 
 }  // namespace fascia::runtime

@@ -17,7 +17,9 @@ struct ActivationDynamics {
 /// does not change where it arrives). Both spans #channels.
 inline void follow(const ActivationDynamics& dynamics, double seconds, std::span<const float> excitations,
                    std::span<float> activations) {
-  const auto share = [seconds](double constant) { return constant > 0.0 ? 1.0 - std::exp(-seconds / constant) : 1.0; };
+  const auto share = [seconds](double constant) {
+    return constant > 0.0 ? 1.0 - std::exp(-seconds / constant) : 1.0;
+  };
   const double rise = share(dynamics.rise), decay = share(dynamics.decay);
   for (size_t i = 0; i < activations.size() && i < excitations.size(); ++i) {
     const double gap = static_cast<double>(excitations[i]) - activations[i];

@@ -4,12 +4,14 @@
 
 #include "sim/face.h"
 
-// How a static pose moves with what drives it: the adjoint of the equilibrium, gradient(x, activations) = 0. For a loss of
-// the pose, d loss / d a = -lambda . d gradient / d a with H lambda = d loss / d x, H the Hessian where the pose stands
-// (Nocedal & Wright 2006, section 10.1; Sifakis, Neverov & Fedkiw 2005 for faces).
+// How a static pose moves with what drives it: the adjoint of the equilibrium, gradient(x, activations) = 0.
+// For a loss of the pose, d loss / d a = -lambda . d gradient / d a with H lambda = d loss / d x, H the
+// Hessian where the pose stands (Nocedal & Wright 2006, section 10.1; Sifakis, Neverov & Fedkiw 2005 for
+// faces).
 namespace fascia::sim {
 
-AdjointResult Face::static_gradient(const Drive& drive, std::span<const Vec3> slope, std::span<double> by_channel, std::array<double, 3>& by_jaw,
+AdjointResult Face::static_gradient(const Drive& drive, std::span<const Vec3> slope,
+                                    std::span<double> by_channel, std::array<double, 3>& by_jaw,
                                     const AdjointOptions& options) {
   AdjointResult result;
   const auto& unknowns = model_->unknowns();
@@ -33,11 +35,14 @@ AdjointResult Face::static_gradient(const Drive& drive, std::span<const Vec3> sl
     energy += a.packed[i].dot(a.residual[i]);
   }
   double left = size;
-  while (result.iterations < options.iterations && left > options.tolerance * options.tolerance * size && energy > 0.0) {
+  while (result.iterations < options.iterations && left > options.tolerance * options.tolerance * size &&
+         energy > 0.0) {
     model_->hessian_times(pose_frame_, pose_.data(), a.direction.data(), a.product.data(), a.work);
     double curvature = 0.0;
-    for (const uint32_t i : unknowns) curvature += a.direction[i].dot(a.product[i]);
-    if (!(curvature > 0.0)) break;  // a direction that costs nothing: what is found so far is the best there is
+    for (const uint32_t i : unknowns)
+      curvature += a.direction[i].dot(a.product[i]);
+    if (!(curvature > 0.0))
+      break;  // a direction that costs nothing: what is found so far is the best there is
     const double length = energy / curvature;
     left = 0.0;
     for (size_t i = 0; i < unknowns.size(); ++i) {
@@ -48,7 +53,8 @@ AdjointResult Face::static_gradient(const Drive& drive, std::span<const Vec3> sl
     }
     model_->pose_factor().solve(a.packed, a.scratch);
     double next = 0.0;
-    for (size_t i = 0; i < unknowns.size(); ++i) next += a.packed[i].dot(a.residual[i]);
+    for (size_t i = 0; i < unknowns.size(); ++i)
+      next += a.packed[i].dot(a.residual[i]);
     for (size_t i = 0; i < unknowns.size(); ++i)
       a.direction[unknowns[i]] = a.packed[i] + (next / energy) * a.direction[unknowns[i]];
     energy = next;
@@ -59,8 +65,10 @@ AdjointResult Face::static_gradient(const Drive& drive, std::span<const Vec3> sl
 
   std::fill(by_channel.begin(), by_channel.end(), 0.0);
   model_->channel_slopes(pose_frame_, drive, pose_.data(), a.lambda.data(), by_channel);
-  for (double& value : by_channel) value = -value;
-  // The jaw moves bones, anchors and prescribed nodes all at once: differences of the gradient, at free nodes' fixed places.
+  for (double& value : by_channel)
+    value = -value;
+  // The jaw moves bones, anchors and prescribed nodes all at once: differences of the gradient, at free
+  // nodes' fixed places.
   for (size_t k = 0; k < 3; ++k) {
     const float step = 1e-3F;
     double ends[2];
@@ -75,12 +83,15 @@ AdjointResult Face::static_gradient(const Drive& drive, std::span<const Vec3> sl
         if (model_->prescribed(i) && i < slope.size()) sum += slope[i].dot(a.moved[i] - pose_[i]);
       }
       model_->energy(pose_frame_, a.moved.data(), a.product.data());
-      for (const uint32_t i : unknowns) sum -= a.lambda[i].dot(a.product[i]);
+      for (const uint32_t i : unknowns)
+        sum -= a.lambda[i].dot(a.product[i]);
       ends[end] = sum;
     }
     const JawPose low = clamped({drive.jaw.open - step, drive.jaw.forward - step, drive.jaw.lateral - step});
     const JawPose high = clamped({drive.jaw.open + step, drive.jaw.forward + step, drive.jaw.lateral + step});
-    const double width = k == 0 ? high.open - low.open : k == 1 ? high.forward - low.forward : high.lateral - low.lateral;
+    const double width = k == 0   ? high.open - low.open
+                         : k == 1 ? high.forward - low.forward
+                                  : high.lateral - low.lateral;
     by_jaw[k] = width > 0.0 ? (ends[1] - ends[0]) / width : 0.0;
   }
   model_->place(drive, pose_frame_);

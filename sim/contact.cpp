@@ -12,7 +12,8 @@ namespace {
 void order_in_space(std::span<uint32_t> list, const std::vector<Vec3>& places) {
   if (list.size() <= 8) return;
   Eigen::AlignedBox3d box;
-  for (const uint32_t i : list) box.extend(places[i]);
+  for (const uint32_t i : list)
+    box.extend(places[i]);
   Eigen::Index axis = 0;
   box.sizes().maxCoeff(&axis);
   const auto middle = list.begin() + static_cast<std::ptrdiff_t>(list.size() / 2);
@@ -26,14 +27,17 @@ void order_in_space(std::span<uint32_t> list, const std::vector<Vec3>& places) {
 }  // namespace
 
 DistanceField::DistanceField(const Lattice& lattice, size_t index)
-    : size_(lattice.contact_field_size[index]), origin_(lattice.contact_field_origin[index].cast<double>()),
-      spacing_(lattice.contact_field_spacing[index]), step_(lattice.contact_field_step[index]) {
+    : size_(lattice.contact_field_size[index]),
+      origin_(lattice.contact_field_origin[index].cast<double>()),
+      spacing_(lattice.contact_field_spacing[index]),
+      step_(lattice.contact_field_step[index]) {
   const auto count = [&](size_t f) {
     const auto& size = lattice.contact_field_size[f];
     return static_cast<size_t>(size[0]) * size[1] * size[2];
   };
   size_t first = 0;
-  for (size_t f = 0; f < index; ++f) first += count(f);
+  for (size_t f = 0; f < index; ++f)
+    first += count(f);
   values_ = lattice.contact_field_values.subspan(first, count(index));
 }
 
@@ -45,7 +49,8 @@ double DistanceField::sample(const Vec3& point, Vec3& gradient) const {
   double weight[3][3], slope[3][3];
   for (int axis = 0; axis < 3; ++axis) {
     const double most = static_cast<double>(size_[static_cast<size_t>(axis)]) - 1.5;
-    const bool is_inside = at[axis] > 0.5 && at[axis] < most;  // beyond, the field goes on as it ends: no jump at its border
+    const bool is_inside =
+        at[axis] > 0.5 && at[axis] < most;  // beyond, the field goes on as it ends: no jump at its border
     const double place = is_inside ? at[axis] : at[axis] >= most ? most : 0.5;
     const double middle = std::min(std::floor(place + 0.5), most - 0.5), t = place - middle;
     first[axis] = static_cast<size_t>(middle) - 1;
@@ -65,20 +70,24 @@ double DistanceField::sample(const Vec3& point, Vec3& gradient) const {
       const double along = weight[0][0] * v[0] + weight[0][1] * v[1] + weight[0][2] * v[2];
       const double change = slope[0][0] * v[0] + slope[0][1] * v[1] + slope[0][2] * v[2];
       value += weight[1][j] * weight[2][k] * along;
-      gradient += Vec3(weight[1][j] * weight[2][k] * change, slope[1][j] * weight[2][k] * along, weight[1][j] * slope[2][k] * along);
+      gradient += Vec3(weight[1][j] * weight[2][k] * change, slope[1][j] * weight[2][k] * along,
+                       weight[1][j] * slope[2][k] * along);
     }
   gradient *= step_ / spacing_;
   return step_ * (value - 128.0);
 }
 
-Contacts::Contacts(const Lattice& lattice, const std::vector<Vec3>& rest, const ContactOptions& options) : options_(options) {
+Contacts::Contacts(const Lattice& lattice, const std::vector<Vec3>& rest, const ContactOptions& options)
+    : options_(options) {
   for (size_t c = 0; c < lattice.globe_contact_node.size(); ++c) {
     const uint32_t globe = lattice.globe_contact_globe[c], node = lattice.globe_contact_node[c];
     globe_nodes_.push_back(node);
     globe_centres_.push_back(lattice.globe_centre[globe].cast<double>());
-    globe_radii_.push_back(std::min<double>(lattice.globe_radius[globe], (rest[node] - globe_centres_.back()).norm()));
+    globe_radii_.push_back(
+        std::min<double>(lattice.globe_radius[globe], (rest[node] - globe_centres_.back()).norm()));
   }
-  for (size_t f = 0; f < lattice.contact_field_bone.size(); ++f) fields_.emplace_back(lattice, f);
+  for (size_t f = 0; f < lattice.contact_field_bone.size(); ++f)
+    fields_.emplace_back(lattice, f);
   field_bones_.assign(lattice.contact_field_bone.begin(), lattice.contact_field_bone.end());
   for (size_t c = 0; c < lattice.contact_node.size(); ++c) {
     Vec3 gradient;
@@ -103,7 +112,8 @@ Contacts::Contacts(const Lattice& lattice, const std::vector<Vec3>& rest, const 
     side.triangles.push_back(lattice.triangles[lattice.facing_prism[f]]);
     auto& corners = side.corners.emplace_back();
     for (size_t k = 0; k < 3; ++k) {
-      const auto [fan, is_new] = known.try_emplace(side.triangles.back()[k], static_cast<uint32_t>(side.fans.size()));
+      const auto [fan, is_new] =
+          known.try_emplace(side.triangles.back()[k], static_cast<uint32_t>(side.fans.size()));
       if (is_new) side.fans.emplace_back();
       side.fans[fan->second].push_back(triangle);
       corners[k] = fan->second;
@@ -118,10 +128,12 @@ Contacts::Contacts(const Lattice& lattice, const std::vector<Vec3>& rest, const 
     }
   soft_nodes_ = globe_nodes_;
   for (const Side& side : sides_)
-    for (const auto& t : side.triangles) soft_nodes_.insert(soft_nodes_.end(), t.begin(), t.end());
+    for (const auto& t : side.triangles)
+      soft_nodes_.insert(soft_nodes_.end(), t.begin(), t.end());
   std::sort(soft_nodes_.begin(), soft_nodes_.end());
   soft_nodes_.erase(std::unique(soft_nodes_.begin(), soft_nodes_.end()), soft_nodes_.end());
-  for (const uint8_t side : facing_sides_) facing_margins_.push_back(side < 2 ? options.thickness : options.lid_thickness);
+  for (const uint8_t side : facing_sides_)
+    facing_margins_.push_back(side < 2 ? options.thickness : options.lid_thickness);
   FacingSearch search = make_search();
   for (size_t i = 0; i < facing_nodes_.size(); ++i) {
     FacingPair pair;
@@ -148,7 +160,8 @@ Contacts::Touch Contacts::bone_touch(size_t c, const RigidTransform& mandible, c
       moves ? Vec3(mandible.rotation.transpose() * (place - mandible.translation)) : place, gradient);
   if (!(distance < bone_margins_[c])) return touch;
   touch.depth = bone_margins_[c] - distance;
-  touch.normal = moves ? Vec3(mandible.rotation * gradient) : gradient;  // the field's slope: unit but for its grid
+  touch.normal =
+      moves ? Vec3(mandible.rotation * gradient) : gradient;  // the field's slope: unit but for its grid
   return touch;
 }
 
@@ -159,8 +172,10 @@ double Contacts::energy(const RigidTransform& mandible, const Vec3* x, Vec3* gra
     energy += 0.5 * stiffness * touch.depth * touch.depth;
     gradient[node] -= (stiffness * touch.depth) * touch.normal;
   };
-  for (size_t c = 0; c < globe_nodes_.size(); ++c) push(globe_nodes_[c], globe_touch(c, x), options_.globe_stiffness);
-  for (size_t c = 0; c < bone_nodes_.size(); ++c) push(bone_nodes_[c], bone_touch(c, mandible, x), options_.bone_stiffness);
+  for (size_t c = 0; c < globe_nodes_.size(); ++c)
+    push(globe_nodes_[c], globe_touch(c, x), options_.globe_stiffness);
+  for (size_t c = 0; c < bone_nodes_.size(); ++c)
+    push(bone_nodes_[c], bone_touch(c, mandible, x), options_.bone_stiffness);
   return energy;
 }
 
@@ -173,7 +188,8 @@ double Contacts::facing_energy(std::span<const FacingPair> pairs, const Vec3* x,
     const Vec3 push = (options_.facing_stiffness * depth) * pair.normal;
     energy += 0.5 * options_.facing_stiffness * depth * depth;
     gradient[pair.node] -= push;
-    for (size_t k = 0; k < 3; ++k) gradient[pair.corners[k]] += pair.weights[static_cast<int>(k)] * push;
+    for (size_t k = 0; k < 3; ++k)
+      gradient[pair.corners[k]] += pair.weights[static_cast<int>(k)] * push;
   }
   return energy;
 }
@@ -184,44 +200,58 @@ double Contacts::grip_energy(std::span<const Grip> grips, const Vec3* x, Vec3* g
     Vec3 slip = x[grip.node] - grip.anchor;
     const bool facing = grip.corners[0] != FacingPair::none;
     if (facing)
-      for (size_t k = 0; k < 3; ++k) slip -= grip.weights[static_cast<int>(k)] * x[grip.corners[k]];
+      for (size_t k = 0; k < 3; ++k)
+        slip -= grip.weights[static_cast<int>(k)] * x[grip.corners[k]];
     const double along = grip.normal.dot(slip);
-    const Vec3 force = grip.stiffness * (slip - along * grip.normal) + (grip.normal_stiffness * along) * grip.normal;
+    const Vec3 force =
+        grip.stiffness * (slip - along * grip.normal) + (grip.normal_stiffness * along) * grip.normal;
     energy += 0.5 * force.dot(slip);
     gradient[grip.node] += force;
     if (facing)
-      for (size_t k = 0; k < 3; ++k) gradient[grip.corners[k]] -= grip.weights[static_cast<int>(k)] * force;
+      for (size_t k = 0; k < 3; ++k)
+        gradient[grip.corners[k]] -= grip.weights[static_cast<int>(k)] * force;
   }
   return energy;
 }
 
-void Contacts::add_curvature(const RigidTransform& mandible, std::span<const FacingPair> pairs, std::span<const Grip> grips, const Vec3* x,
-                             Curvature& out) const {
+void Contacts::add_curvature(const RigidTransform& mandible, std::span<const FacingPair> pairs,
+                             std::span<const Grip> grips, const Vec3* x, Curvature& out) const {
   const auto press = [&](uint32_t node, const Touch& touch, double stiffness) {
-    if (touch.depth > 0.0) out.points.push_back({{node}, {1.0}, stiffness * touch.normal * touch.normal.transpose()});
+    if (touch.depth > 0.0)
+      out.points.push_back({{node}, {1.0}, stiffness * touch.normal * touch.normal.transpose()});
   };
-  for (size_t c = 0; c < globe_nodes_.size(); ++c) press(globe_nodes_[c], globe_touch(c, x), options_.globe_stiffness);
-  for (size_t c = 0; c < bone_nodes_.size(); ++c) press(bone_nodes_[c], bone_touch(c, mandible, x), options_.bone_stiffness);
-  const auto quad = [&](uint32_t node, const std::array<uint32_t, 3>& corners, const Vec3& weights, const Mat3& block) {
-    if (corners[0] == FacingPair::none) out.points.push_back({{node}, {1.0}, block});
-    else out.quads.push_back({{node, corners[0], corners[1], corners[2]}, {1.0, -weights[0], -weights[1], -weights[2]}, block});
+  for (size_t c = 0; c < globe_nodes_.size(); ++c)
+    press(globe_nodes_[c], globe_touch(c, x), options_.globe_stiffness);
+  for (size_t c = 0; c < bone_nodes_.size(); ++c)
+    press(bone_nodes_[c], bone_touch(c, mandible, x), options_.bone_stiffness);
+  const auto quad = [&](uint32_t node, const std::array<uint32_t, 3>& corners, const Vec3& weights,
+                        const Mat3& block) {
+    if (corners[0] == FacingPair::none)
+      out.points.push_back({{node}, {1.0}, block});
+    else
+      out.quads.push_back(
+          {{node, corners[0], corners[1], corners[2]}, {1.0, -weights[0], -weights[1], -weights[2]}, block});
   };
   for (const FacingPair& pair : pairs)
     if (pair.is_found() && pair.gap(x) < pair.margin)
-      quad(pair.node, pair.corners, pair.weights, options_.facing_stiffness * pair.normal * pair.normal.transpose());
+      quad(pair.node, pair.corners, pair.weights,
+           options_.facing_stiffness * pair.normal * pair.normal.transpose());
   for (const Grip& grip : grips) {
     const Mat3 along = grip.normal * grip.normal.transpose();
-    quad(grip.node, grip.corners, grip.weights, grip.stiffness * (Mat3::Identity() - along) + grip.normal_stiffness * along);
+    quad(grip.node, grip.corners, grip.weights,
+         grip.stiffness * (Mat3::Identity() - along) + grip.normal_stiffness * along);
   }
 }
 
-size_t Contacts::find_grips(const RigidTransform& mandible, const RigidTransform& mandible_step, std::span<const FacingPair> pairs,
-                            const Vec3* before, const Vec3* x, std::span<Grip> grips, const std::vector<uint32_t>* near_bones) const {
+size_t Contacts::find_grips(const RigidTransform& mandible, const RigidTransform& mandible_step,
+                            std::span<const FacingPair> pairs, const Vec3* before, const Vec3* x,
+                            std::span<Grip> grips, const std::vector<uint32_t>* near_bones) const {
   size_t count = 0;
   const auto add = [&](Grip grip, double force, const Vec3& slid) {
     if (count >= grips.size()) return;
     const Vec3 along = slid - grip.normal.dot(slid) * grip.normal;
-    // Coulomb's force at the speed of the last step, as a spring over the next; it sticks below a hundredth of a millimetre.
+    // Coulomb's force at the speed of the last step, as a spring over the next; it sticks below a hundredth
+    // of a millimetre.
     grip.stiffness = options_.friction * force / std::max(along.norm(), 1e-5);
     grips[count++] = grip;
   };
@@ -275,8 +305,10 @@ size_t Contacts::find_grips(const RigidTransform& mandible, const RigidTransform
 
 double Contacts::deepest(const RigidTransform& mandible, const Vec3* x) const {
   double most = 0.0;
-  for (size_t c = 0; c < globe_nodes_.size(); ++c) most = std::max(most, globe_touch(c, x).depth);
-  for (size_t c = 0; c < bone_nodes_.size(); ++c) most = std::max(most, bone_touch(c, mandible, x).depth);
+  for (size_t c = 0; c < globe_nodes_.size(); ++c)
+    most = std::max(most, globe_touch(c, x).depth);
+  for (size_t c = 0; c < bone_nodes_.size(); ++c)
+    most = std::max(most, bone_touch(c, mandible, x).depth);
   FacingPair pair;
   FacingSearch search = make_search();
   for (size_t i = 0; i < facing_nodes_.size(); ++i) {

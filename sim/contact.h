@@ -10,16 +10,19 @@
 
 namespace fascia::sim {
 
-/// What touches what, and how hard it resists. Penalties: a node that comes nearer than its margin is pushed back by
-/// stiffness times what lacks. A margin is never more than the distance at rest, so that rest stays rest.
+/// What touches what, and how hard it resists. Penalties: a node that comes nearer than its margin is pushed
+/// back by stiffness times what lacks. A margin is never more than the distance at rest, so that rest stays
+/// rest.
 struct ContactOptions {
   double globe_stiffness = 200.0;   ///< newton per metre a node
   double bone_stiffness = 150.0;    ///< newton per metre a node
   double facing_stiffness = 150.0;  ///< newton per metre a node
   double thickness = 0.0004;        ///< metres kept between skin and bone, lip and lip
-  double lid_thickness = -0.0003;   ///< between lid and lid: edges overlap a little, so that no slit is left between nodes
-  double friction = 0.3;            ///< of moist mucosa and skin, Coulomb's coefficient; in steps of time only
-  double stickiness = 0.0;          ///< 0..1: how far lips that have met hold together before they part; in steps of time only
+  double lid_thickness =
+      -0.0003;  ///< between lid and lid: edges overlap a little, so that no slit is left between nodes
+  double friction = 0.3;  ///< of moist mucosa and skin, Coulomb's coefficient; in steps of time only
+  double stickiness =
+      0.0;  ///< 0..1: how far lips that have met hold together before they part; in steps of time only
 };
 
 /// A grid of distances to a bone that stands still in the bone's own frame.
@@ -27,8 +30,8 @@ class DistanceField {
  public:
   /// Field `index` of the lattice, which must be sound.
   DistanceField(const Lattice& lattice, size_t index);
-  /// Distance in metres at `point`, negative inside, and its gradient: quadratic B-splines on the grid, so the gradient is
-  /// continuous. Outside the grid it goes on as it ends.
+  /// Distance in metres at `point`, negative inside, and its gradient: quadratic B-splines on the grid, so
+  /// the gradient is continuous. Outside the grid it goes on as it ends.
   double sample(const Vec3& point, Vec3& gradient) const;
 
  private:
@@ -38,7 +41,8 @@ class DistanceField {
   double spacing_, step_;
 };
 
-/// A node before a triangle of the facing lip or lid, both free to move; the normal stands still during one solve.
+/// A node before a triangle of the facing lip or lid, both free to move; the normal stands still during one
+/// solve.
 struct FacingPair {
   static constexpr uint32_t none = std::numeric_limits<uint32_t>::max();
   uint32_t node = none;
@@ -49,25 +53,27 @@ struct FacingPair {
   bool is_found() const { return corners[0] != none; }
   double gap(const Vec3* x) const {
     Vec3 place = Vec3::Zero();
-    for (size_t k = 0; k < 3; ++k) place += weights[static_cast<int>(k)] * x[corners[k]];
+    for (size_t k = 0; k < 3; ++k)
+      place += weights[static_cast<int>(k)] * x[corners[k]];
     return normal.dot(x[node] - place);
   }
 };
 
-/// What holds a touching node back along the surface for one step of time: W = stiffness/2 |P (x - place - anchor)|^2, P
-/// taking out the normal. Also what sticks lips together, with a normal part.
+/// What holds a touching node back along the surface for one step of time: W = stiffness/2 |P (x - place -
+/// anchor)|^2, P taking out the normal. Also what sticks lips together, with a normal part.
 struct Grip {
   uint32_t node = 0;
-  std::array<uint32_t, 3> corners{FacingPair::none, FacingPair::none, FacingPair::none};  ///< none: it grips a bone
+  std::array<uint32_t, 3> corners{FacingPair::none, FacingPair::none,
+                                  FacingPair::none};  ///< none: it grips a bone
   Vec3 weights = Vec3::Zero(), normal = Vec3::Zero(), anchor = Vec3::Zero();
   double stiffness = 0.0, normal_stiffness = 0.0;
 };
 
 /// Work memory of a search for what faces what.
 struct FacingSearch {
-  size_t side = 6;              ///< whose triangles these are; 6: nobody's yet
-  size_t bundle = 8;            ///< neighbouring triangles a bundle
-  std::vector<Vec3> centres;    ///< of each bundle
+  size_t side = 6;            ///< whose triangles these are; 6: nobody's yet
+  size_t bundle = 8;          ///< neighbouring triangles a bundle
+  std::vector<Vec3> centres;  ///< of each bundle
   std::vector<double> radii, squared;
   std::vector<Vec3> middles;    ///< of each triangle
   std::vector<double> reaches;  ///< of each triangle, from its middle to its farthest corner
@@ -87,27 +93,34 @@ class Contacts {
   double grip_energy(std::span<const Grip> grips, const Vec3* x, Vec3* gradient) const;
 
   /// Adds what they add to the Hessian: globes, bones, pairs and grips; the surfaces' own bend is left out.
-  void add_curvature(const RigidTransform& mandible, std::span<const FacingPair> pairs, std::span<const Grip> grips, const Vec3* x,
-                     Curvature& out) const;
+  void add_curvature(const RigidTransform& mandible, std::span<const FacingPair> pairs,
+                     std::span<const Grip> grips, const Vec3* x, Curvature& out) const;
 
-  /// Finds for each facing node the nearest place of the other side as the face stands in `x`. #facing nodes; the
-  /// largest change of a gap against the pairs before, metres, is returned.
-  /// With `every` above 1 only the pairs first, first + every, ... are looked at.
-  double find_facing(const Vec3* x, std::span<FacingPair> pairs, FacingSearch& search, size_t first = 0, size_t every = 1) const;
+  /// Finds for each facing node the nearest place of the other side as the face stands in `x`. #facing nodes;
+  /// the largest change of a gap against the pairs before, metres, is returned. With `every` above 1 only the
+  /// pairs first, first + every, ... are looked at.
+  double find_facing(const Vec3* x, std::span<FacingPair> pairs, FacingSearch& search, size_t first = 0,
+                     size_t every = 1) const;
   /// Memory enough for a search.
   FacingSearch make_search() const;
-  /// What grips after a step from `before` to `x`, both #nodes, for the step to come; returns how many of `grips`.
-  /// Bones' own motion of the coming step is `mandible_step`; `near_bones` are the contacts with bone to look at, else all.
-  size_t find_grips(const RigidTransform& mandible, const RigidTransform& mandible_step, std::span<const FacingPair> pairs,
-                    const Vec3* before, const Vec3* x, std::span<Grip> grips, const std::vector<uint32_t>* near_bones = nullptr) const;
+  /// What grips after a step from `before` to `x`, both #nodes, for the step to come; returns how many of
+  /// `grips`. Bones' own motion of the coming step is `mandible_step`; `near_bones` are the contacts with
+  /// bone to look at, else all.
+  size_t find_grips(const RigidTransform& mandible, const RigidTransform& mandible_step,
+                    std::span<const FacingPair> pairs, const Vec3* before, const Vec3* x,
+                    std::span<Grip> grips, const std::vector<uint32_t>* near_bones = nullptr) const;
 
   size_t facing_count() const { return facing_nodes_.size(); }
   size_t grip_capacity() const { return globe_nodes_.size() + bone_nodes_.size() + facing_nodes_.size(); }
   std::span<const uint32_t> globe_nodes() const { return globe_nodes_; }
   std::span<const uint32_t> bone_nodes() const { return bone_nodes_; }
-  std::span<const uint32_t> soft_nodes() const { return soft_nodes_; }  ///< against eyeballs, and of surfaces that face others
+  std::span<const uint32_t> soft_nodes() const {
+    return soft_nodes_;
+  }  ///< against eyeballs, and of surfaces that face others
   std::span<const double> bone_margins() const { return bone_margins_; }
-  bool bone_moves(size_t contact) const { return field_bones_[bone_fields_[contact]] == 1; }  ///< with the mandible
+  bool bone_moves(size_t contact) const {
+    return field_bones_[bone_fields_[contact]] == 1;
+  }  ///< with the mandible
   const DistanceField& bone_field(size_t contact) const { return fields_[bone_fields_[contact]]; }
   std::span<const Vec3> globe_centres() const { return globe_centres_; }  ///< of each contact, as the radii
   std::span<const double> globe_radii() const { return globe_radii_; }
@@ -134,8 +147,8 @@ class Contacts {
 
   ContactOptions options_;
   std::vector<uint32_t> globe_nodes_;
-  std::vector<Vec3> globe_centres_;      ///< of each contact
-  std::vector<double> globe_radii_;      ///< of each contact
+  std::vector<Vec3> globe_centres_;  ///< of each contact
+  std::vector<double> globe_radii_;  ///< of each contact
   std::vector<DistanceField> fields_;
   std::vector<uint8_t> field_bones_;
   std::vector<uint32_t> bone_nodes_, bone_fields_;

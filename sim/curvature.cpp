@@ -14,9 +14,11 @@ template <size_t Count>
 void apply(const std::vector<Curvature::Stencil<Count>>& list, const Vec3* v, Vec3* out) {
   for (const auto& s : list) {
     Vec3 sum = s.weights[0] * v[s.nodes[0]];
-    for (size_t i = 1; i < Count; ++i) sum += s.weights[i] * v[s.nodes[i]];
+    for (size_t i = 1; i < Count; ++i)
+      sum += s.weights[i] * v[s.nodes[i]];
     const Vec3 force = s.block * sum;
-    for (size_t i = 0; i < Count; ++i) out[s.nodes[i]] += s.weights[i] * force;
+    for (size_t i = 0; i < Count; ++i)
+      out[s.nodes[i]] += s.weights[i] * force;
   }
 }
 
@@ -67,21 +69,27 @@ void Curvature::times(const Vec3* v, Vec3* out) const {
   }
   for (const Bend& b : bends) {
     Vec3 sum = b.slopes[0] * v[b.nodes[0]];
-    for (size_t i = 1; i < 4; ++i) sum += b.slopes[i] * v[b.nodes[i]];
+    for (size_t i = 1; i < 4; ++i)
+      sum += b.slopes[i] * v[b.nodes[i]];
     sum *= b.stiffness;
-    for (size_t i = 0; i < 4; ++i) out[b.nodes[i]] += b.slopes[i].transpose() * sum;
+    for (size_t i = 0; i < 4; ++i)
+      out[b.nodes[i]] += b.slopes[i].transpose() * sum;
   }
   for (const Volume& p : volumes) {
     double sum = 0.0;
-    for (size_t i = 0; i < 6; ++i) sum += p.slopes[i].dot(v[p.nodes[i]]);
+    for (size_t i = 0; i < 6; ++i)
+      sum += p.slopes[i].dot(v[p.nodes[i]]);
     sum *= p.stiffness;
-    for (size_t i = 0; i < 6; ++i) out[p.nodes[i]] += sum * p.slopes[i];
+    for (size_t i = 0; i < 6; ++i)
+      out[p.nodes[i]] += sum * p.slopes[i];
   }
   for (const Pull& p : pulls) {
     double sum = 0.0;
-    for (size_t i = p.first; i < p.first + p.count; ++i) sum += pull_slopes[i].dot(v[pull_nodes[i]]);
+    for (size_t i = p.first; i < p.first + p.count; ++i)
+      sum += pull_slopes[i].dot(v[pull_nodes[i]]);
     sum *= p.stiffness;
-    for (size_t i = p.first; i < p.first + p.count; ++i) out[pull_nodes[i]] += sum * pull_slopes[i];
+    for (size_t i = p.first; i < p.first + p.count; ++i)
+      out[pull_nodes[i]] += sum * pull_slopes[i];
   }
 }
 
@@ -90,10 +98,12 @@ void add_spring(const Spring& s, const Vec3* x, Curvature& out) {
   const double length = along.norm(), stretch = length - s.length;
   if ((s.one_sided && stretch <= 0.0) || length < 1e-12) return;
   const double slope = stretch > s.limit ? s.second_stiffness : s.stiffness;
-  const double force = s.stiffness * stretch + (s.second_stiffness - s.stiffness) * std::max(0.0, stretch - s.limit);
+  const double force =
+      s.stiffness * stretch + (s.second_stiffness - s.stiffness) * std::max(0.0, stretch - s.limit);
   const double across = std::max(0.0, force / length);
   const Vec3 unit = along / length;
-  out.pairs.push_back({s.nodes, {1.0, -1.0}, across * Mat3::Identity() + (slope - across) * unit * unit.transpose()});
+  out.pairs.push_back(
+      {s.nodes, {1.0, -1.0}, across * Mat3::Identity() + (slope - across) * unit * unit.transpose()});
 }
 
 void add_membrane(const Membrane& m, const Vec3* x, Curvature& out) {
@@ -101,8 +111,8 @@ void add_membrane(const Membrane& m, const Vec3* x, Curvature& out) {
   edges.col(0) = x[m.nodes[1]] - x[m.nodes[0]];
   edges.col(1) = x[m.nodes[2]] - x[m.nodes[0]];
   const Mat32 f = edges * m.inverse_rest;
-  // Principal stretches and directions: an isotropic energy's Hessian is known in them (Smith, de Goes & Kim 2019,
-  // "Analytic eigensystems for isotropic distortion energies"; here for surfaces).
+  // Principal stretches and directions: an isotropic energy's Hessian is known in them (Smith, de Goes & Kim
+  // 2019, "Analytic eigensystems for isotropic distortion energies"; here for surfaces).
   const double a = f.col(0).squaredNorm(), b = f.col(0).dot(f.col(1)), c = f.col(1).squaredNorm();
   const double angle = 0.5 * std::atan2(2.0 * b, a - c);
   const Eigen::Vector2d v1(std::cos(angle), std::sin(angle)), v2(-v1.y(), v1.x());
@@ -118,9 +128,11 @@ void add_membrane(const Membrane& m, const Vec3* x, Curvature& out) {
   const auto add = [&](const Vec6& mode, double stiffness) {
     if (stiffness > 0.0) plate.block.noalias() += (m.area * stiffness) * mode * mode.transpose();
   };
-  const double w11 = 2.0 * m.mu + m.lambda + crush.curvature * s2 * s2, w22 = 2.0 * m.mu + m.lambda + crush.curvature * s1 * s1;
+  const double w11 = 2.0 * m.mu + m.lambda + crush.curvature * s2 * s2,
+               w22 = 2.0 * m.mu + m.lambda + crush.curvature * s1 * s1;
   const double w12 = m.lambda + crush.slope + crush.curvature * s1 * s2;
-  const double turn = 0.5 * std::atan2(2.0 * w12, w11 - w22), mean = 0.5 * (w11 + w22), reach = std::hypot(0.5 * (w11 - w22), w12);
+  const double turn = 0.5 * std::atan2(2.0 * w12, w11 - w22), mean = 0.5 * (w11 + w22),
+               reach = std::hypot(0.5 * (w11 - w22), w12);
   const Vec6 first = stacked(u1, v1), second = stacked(u2, v2);
   add(std::cos(turn) * first + std::sin(turn) * second, mean + reach);
   add(-std::sin(turn) * first + std::cos(turn) * second, mean - reach);
@@ -145,7 +157,8 @@ void add_hinge(const Hinge& h, const Vec3* x, Curvature& out) {
   const Mat3 by_edge = turn * (h.scale_b * cross_matrix(arm_b) - h.scale_a * cross_matrix(arm_a));
   const Mat3 by_a = h.scale_a * turn * cross_matrix(edge), by_b = -h.scale_b * turn * cross_matrix(edge);
   Curvature::Bend bend{n, {}, h.stiffness};
-  for (size_t i = 0; i < 4; ++i) bend.slopes[i] = h.weights[i] * Mat3::Identity();
+  for (size_t i = 0; i < 4; ++i)
+    bend.slopes[i] = h.weights[i] * Mat3::Identity();
   bend.slopes[0] += by_edge + by_a + by_b;
   bend.slopes[1] -= by_edge;
   bend.slopes[2] -= by_a;
@@ -161,7 +174,8 @@ void add_prism(const Prism& p, const Vec3* x, Curvature& out) {
 
 void add_tether(const Tether& t, const Vec3& normal, Curvature& out) {
   const double extra = t.normal_stiffness - t.tangential_stiffness;
-  out.points.push_back({{t.node}, {1.0}, t.tangential_stiffness * Mat3::Identity() + extra * normal * normal.transpose()});
+  out.points.push_back(
+      {{t.node}, {1.0}, t.tangential_stiffness * Mat3::Identity() + extra * normal * normal.transpose()});
 }
 
 }  // namespace fascia::sim

@@ -7,9 +7,9 @@
 
 namespace fascia::sim {
 
-/// A positive semidefinite stand-in for the Hessian of a face's energies at one place, element by element: each
-/// element's own Hessian without its negative curvatures (Teran et al. 2005, "Robust quasistatic finite elements and
-/// flesh simulation", section 5). Newton steps on it always lead downhill.
+/// A positive semidefinite stand-in for the Hessian of a face's energies at one place, element by element:
+/// each element's own Hessian without its negative curvatures (Teran et al. 2005, "Robust quasistatic finite
+/// elements and flesh simulation", section 5). Newton steps on it always lead downhill.
 ///
 /// Lists are by node; applying it allocates nothing, making it may, until the lists have grown to their size.
 class Curvature {

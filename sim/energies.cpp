@@ -8,7 +8,7 @@
 namespace fascia::sim {
 namespace {
 
-constexpr double tiny_area = 1e-16;      // square metres: an edge of 10 nanometres
+constexpr double tiny_area = 1e-16;  // square metres: an edge of 10 nanometres
 
 /// The closed surface of a prism as triangles with their weights: both ends, and each bilinear side
 /// as the mean of its two diagonal splits. Corners 0..2 outer, 3..5 inner; outward.
@@ -16,11 +16,10 @@ struct Face {
   int a, b, c;
   double weight;
 };
-constexpr Face prism_faces[] = {
-    {0, 1, 2, 1.0}, {3, 5, 4, 1.0},                                  // ends
-    {0, 3, 4, 0.5}, {0, 4, 1, 0.5}, {0, 3, 1, 0.5}, {1, 3, 4, 0.5},  // sides
-    {1, 4, 5, 0.5}, {1, 5, 2, 0.5}, {1, 4, 2, 0.5}, {2, 4, 5, 0.5},
-    {2, 5, 3, 0.5}, {2, 3, 0, 0.5}, {2, 5, 0, 0.5}, {0, 5, 3, 0.5}};
+constexpr Face prism_faces[] = {{0, 1, 2, 1.0}, {3, 5, 4, 1.0},                                  // ends
+                                {0, 3, 4, 0.5}, {0, 4, 1, 0.5}, {0, 3, 1, 0.5}, {1, 3, 4, 0.5},  // sides
+                                {1, 4, 5, 0.5}, {1, 5, 2, 0.5}, {1, 4, 2, 0.5}, {2, 4, 5, 0.5},
+                                {2, 5, 3, 0.5}, {2, 3, 0, 0.5}, {2, 5, 0, 0.5}, {0, 5, 3, 0.5}};
 
 struct HingeFrame {
   Vec3 edge, normal_a, normal_b;  // normals scaled by twice the areas
@@ -85,7 +84,8 @@ Wall wall(double ratio, double begin, double end) {
   if (ratio >= begin) return {};
   const double r = std::max(ratio, end), share = begin / r, lack = share - 1.0, below = ratio - r;
   const double slope = -2.0 * lack * share / r, curvature = 2.0 * share * (3.0 * share - 2.0) / (r * r);
-  return {lack * lack + slope * below + 0.5 * curvature * below * below, slope + curvature * below, curvature};
+  return {lack * lack + slope * below + 0.5 * curvature * below * below, slope + curvature * below,
+          curvature};
 }
 
 }  // namespace
@@ -125,11 +125,14 @@ double membrane_energy(const Membrane& m, const Vec3* x, Vec3* gradient) {
   return m.area * (m.mu * (squares - 2.0 * trace + 2.0) + 0.5 * m.lambda * spread * spread + crush.energy);
 }
 
-double hinge_angle(const std::array<uint32_t, 4>& nodes, const Vec3* x) { return angle_of(hinge_frame(nodes, x)); }
+double hinge_angle(const std::array<uint32_t, 4>& nodes, const Vec3* x) {
+  return angle_of(hinge_frame(nodes, x));
+}
 
 Hinge make_hinge(std::array<uint32_t, 4> nodes, double rigidity, const Vec3* rest) {
   const HingeFrame f = hinge_frame(nodes, rest);
-  const double twice_a = std::sqrt(f.area_a), twice_b = std::sqrt(f.area_b), areas = 0.5 * (twice_a + twice_b);
+  const double twice_a = std::sqrt(f.area_a), twice_b = std::sqrt(f.area_b),
+               areas = 0.5 * (twice_a + twice_b);
   Hinge hinge;
   hinge.nodes = nodes;
   hinge.stiffness = rigidity * f.length * f.length / std::max(areas, tiny_area);
@@ -138,11 +141,13 @@ Hinge make_hinge(std::array<uint32_t, 4> nodes, double rigidity, const Vec3* res
   const double over_a = f.length / twice_a, over_b = f.length / twice_b;
   const double along_a = (rest[nodes[2]] - rest[nodes[0]]).dot(unit) / f.length;
   const double along_b = (rest[nodes[3]] - rest[nodes[0]]).dot(unit) / f.length;
-  hinge.weights = {-(1.0 - along_a) * over_a - (1.0 - along_b) * over_b, -along_a * over_a - along_b * over_b, over_a, over_b};
+  hinge.weights = {-(1.0 - along_a) * over_a - (1.0 - along_b) * over_b, -along_a * over_a - along_b * over_b,
+                   over_a, over_b};
   hinge.scale_a = 1.0 / twice_a;
   hinge.scale_b = 1.0 / twice_b;
   Vec3 away = Vec3::Zero();
-  for (size_t i = 0; i < 4; ++i) away += hinge.weights[i] * rest[nodes[i]];
+  for (size_t i = 0; i < 4; ++i)
+    away += hinge.weights[i] * rest[nodes[i]];
   const Vec3 normal = hinge.scale_a * f.normal_a + hinge.scale_b * f.normal_b;
   const double length = std::sqrt(normal.squaredNorm() + fold_softness);
   hinge.bend = away.dot(normal) * length / std::max(normal.squaredNorm(), fold_softness);
@@ -161,15 +166,18 @@ HingeNormal hinge_normal(const Hinge& h, const Vec3* x) {
 double hinge_energy(const Hinge& h, const Vec3* x, Vec3* gradient) {
   const auto& n = h.nodes;
   Vec3 away = Vec3::Zero();
-  for (size_t i = 0; i < 4; ++i) away += h.weights[i] * x[n[i]];
+  for (size_t i = 0; i < 4; ++i)
+    away += h.weights[i] * x[n[i]];
   if (h.bend == 0.0) {
-    for (size_t i = 0; i < 4; ++i) gradient[n[i]] += (h.stiffness * h.weights[i]) * away;
+    for (size_t i = 0; i < 4; ++i)
+      gradient[n[i]] += (h.stiffness * h.weights[i]) * away;
     return 0.5 * h.stiffness * away.squaredNorm();
   }
   const Vec3 edge = x[n[1]] - x[n[0]], arm_a = x[n[2]] - x[n[0]], arm_b = x[n[3]] - x[n[0]];
   const auto [normal, length] = hinge_normal(h, x);
   const Vec3 miss = away - h.bend * normal;
-  for (size_t i = 0; i < 4; ++i) gradient[n[i]] += (h.stiffness * h.weights[i]) * miss;
+  for (size_t i = 0; i < 4; ++i)
+    gradient[n[i]] += (h.stiffness * h.weights[i]) * miss;
   // The normal turns with the triangles: d(normal) = (I - normal normal^T) d(sum of normals) / length.
   const Vec3 turn = (-h.stiffness * h.bend / length) * (miss - normal.dot(miss) * normal);
   const Vec3 a = h.scale_a * turn, b = h.scale_b * turn;
@@ -209,7 +217,8 @@ Prism make_prism(std::array<uint32_t, 6> nodes, double stiffness, const Vec3* re
 
 PrismPressure prism_pressure(const Prism& p, double volume) {
   const double rest = std::max(std::abs(p.volume), 1e-12), excess = volume - p.volume;
-  PrismPressure out{0.5 * p.stiffness * excess * excess / rest, p.stiffness * excess / rest, p.stiffness / rest};
+  PrismPressure out{0.5 * p.stiffness * excess * excess / rest, p.stiffness * excess / rest,
+                    p.stiffness / rest};
   if (p.volume <= 0.0) return out;
   const Wall w = wall(volume / rest, turn_begin, turn_end);
   out.energy += turn_modulus * rest * w.value;
@@ -222,7 +231,8 @@ double prism_energy(const Prism& p, const Vec3* x, Vec3* gradient) {
   const PrismPressure at = prism_pressure(p, prism_volume(p.nodes, x));
   if (at.pressure == 0.0) return at.energy;
   const auto parts = prism_volume_gradient(p.nodes, x);
-  for (size_t i = 0; i < 6; ++i) gradient[p.nodes[i]] += at.pressure * parts[i];
+  for (size_t i = 0; i < 6; ++i)
+    gradient[p.nodes[i]] += at.pressure * parts[i];
   return at.energy;
 }
 

@@ -11,13 +11,15 @@
 namespace fascia::sim {
 
 /// Where elements resist ever more, for whoever evaluates the same energies in another way.
-inline constexpr double crush_begin = 0.5;     ///< share of its area below which a membrane does
-inline constexpr double crush_end = 0.1;       ///< share below which its resistance goes on as a parabola
-inline constexpr double turn_begin = 0.4;      ///< share of its volume below which a prism resists being turned inside out
+inline constexpr double crush_begin = 0.5;  ///< share of its area below which a membrane does
+inline constexpr double crush_end = 0.1;    ///< share below which its resistance goes on as a parabola
+inline constexpr double turn_begin =
+    0.4;  ///< share of its volume below which a prism resists being turned inside out
 inline constexpr double turn_end = 0.1;        ///< share below which its resistance goes on as a parabola
 inline constexpr double turn_modulus = 800.0;  ///< pascal, with which it does
 inline constexpr double segment_rounding = 6.25e-8;  ///< square metres: rounds off short stretches of fibre
-inline constexpr double fold_softness = 0.01;  ///< where a hinge's mean normal fades out: folds closer than 6 degrees
+inline constexpr double fold_softness =
+    0.01;  ///< where a hinge's mean normal fades out: folds closer than 6 degrees
 
 /// A spring that may stiffen: `stiffness` up to `limit` metres of stretch, `second_stiffness` beyond.
 /// A one-sided one is slack when shorter than `length`.
@@ -28,18 +30,20 @@ struct Spring {
 };
 
 /// A constant-strain triangle of corotated linear elasticity in plane stress.
-/// W = area (mu |F - R|^2 + lambda/2 (tr S - 2)^2), F = R S (Sifakis & Barbic 2012, section 3.3). Below half of
-/// its area a term mu (1 / (2 J) - 1)^2 is added, from a tenth on by its parabola, so that no triangle collapses.
+/// W = area (mu |F - R|^2 + lambda/2 (tr S - 2)^2), F = R S (Sifakis & Barbic 2012, section 3.3). Below half
+/// of its area a term mu (1 / (2 J) - 1)^2 is added, from a tenth on by its parabola, so that no triangle
+/// collapses.
 struct Membrane {
   std::array<uint32_t, 3> nodes;
   Eigen::Matrix2d inverse_rest;  ///< of the rest edges in the triangle's own plane
   double area, mu, lambda;       ///< mu and lambda in newton per metre
 };
 
-/// An edge with two triangles. L = sum of weights times places is the sum of the two unit vectors that point from
-/// the edge to its opposite corners, 2 sin(angle / 2) long and along the mean normal n: W = stiffness/2 |L - bend n|^2, which
-/// for a flat rest is quadratic (Bergou et al. 2006) and for a bent one (Garg et al. 2007) stays smooth however its
-/// triangles shrink or fold. `nodes` are the edge's two ends and the opposite corners of its first and second triangle.
+/// An edge with two triangles. L = sum of weights times places is the sum of the two unit vectors that point
+/// from the edge to its opposite corners, 2 sin(angle / 2) long and along the mean normal n: W = stiffness/2
+/// |L - bend n|^2, which for a flat rest is quadratic (Bergou et al. 2006) and for a bent one (Garg et al.
+/// 2007) stays smooth however its triangles shrink or fold. `nodes` are the edge's two ends and the opposite
+/// corners of its first and second triangle.
 struct Hinge {
   std::array<uint32_t, 4> nodes;
   std::array<double, 4> weights;  ///< per metre
@@ -47,16 +51,20 @@ struct Hinge {
   double scale_a, scale_b;        ///< of the triangles' normals to unit ones at rest
 };
 
-/// The prism between two layers: W = stiffness/(2 V0) (V - V0)^2, sides bilinear. Below t = 0.4 V0 it resists being
-/// turned inside out ever more, also where the stiffness is 0: W = 800 Pa V0 (t / V - 1)^2, from 0.1 V0 on by its parabola.
+/// The prism between two layers: W = stiffness/(2 V0) (V - V0)^2, sides bilinear. Below t = 0.4 V0 it resists
+/// being turned inside out ever more, also where the stiffness is 0: W = 800 Pa V0 (t / V - 1)^2, from 0.1 V0
+/// on by its parabola.
 struct Prism {
   std::array<uint32_t, 6> nodes;  ///< outer triangle, then inner, same column order
   double volume, stiffness;       ///< cubic metres, pascal
 };
 
-/// Length of a stretch of fibre, metres, rounded off below a quarter of a millimetre: one that has collapsed has no direction left to
-/// pull in, and without the rounding its force would jump from one side to the other.
-inline double segment_length(const Vec3& along) { return std::sqrt(along.squaredNorm() + segment_rounding); }
+/// Length of a stretch of fibre, metres, rounded off below a quarter of a millimetre: one that has collapsed
+/// has no direction left to pull in, and without the rounding its force would jump from one side to the
+/// other.
+inline double segment_length(const Vec3& along) {
+  return std::sqrt(along.squaredNorm() + segment_rounding);
+}
 
 /// A node held to a place: `normal_stiffness` along a normal, `tangential_stiffness` across it.
 struct Tether {
@@ -78,7 +86,8 @@ struct HingeNormal {
 };
 HingeNormal hinge_normal(const Hinge& hinge, const Vec3* x);
 
-/// Energy of a prism of the volume `volume`, joules, with its derivatives by the volume (pascal; pascal per cubic metre).
+/// Energy of a prism of the volume `volume`, joules, with its derivatives by the volume (pascal; pascal per
+/// cubic metre).
 struct PrismPressure {
   double energy = 0.0, pressure = 0.0, slope = 0.0;
 };
@@ -88,10 +97,12 @@ double spring_energy(const Spring& spring, const Vec3* x, Vec3* gradient);
 double membrane_energy(const Membrane& membrane, const Vec3* x, Vec3* gradient);
 double hinge_energy(const Hinge& hinge, const Vec3* x, Vec3* gradient);
 double prism_energy(const Prism& prism, const Vec3* x, Vec3* gradient);
-double tether_energy(const Tether& tether, const Vec3& place, const Vec3& normal, const Vec3* x, Vec3* gradient);
+double tether_energy(const Tether& tether, const Vec3& place, const Vec3& normal, const Vec3* x,
+                     Vec3* gradient);
 
 /// The element at rest in `rest`; `youngs_thickness` in newton per metre.
-Membrane make_membrane(std::array<uint32_t, 3> nodes, double youngs_thickness, double poisson_ratio, const Vec3* rest);
+Membrane make_membrane(std::array<uint32_t, 3> nodes, double youngs_thickness, double poisson_ratio,
+                       const Vec3* rest);
 /// The element at rest; `rigidity` in newton metre. Stiffness = rigidity |edge|^2 / (both areas), which on a
 /// mesh of equilateral triangles is a thin plate's (Seung & Nelson 1988).
 Hinge make_hinge(std::array<uint32_t, 4> nodes, double rigidity, const Vec3* rest);

@@ -6,23 +6,41 @@
 namespace fascia::sim {
 
 Face::Face(const FaceModel& model, size_t channels)
-    : model_(&model), frame_(model.make_frame()), pose_frame_(frame_), position_(model.rest()), previous_(position_),
-      velocity_(position_.size(), Vec3::Zero()), carried_(position_), pose_(position_),
-      pose_offset_(position_.size(), Vec3::Zero()), start_(position_), work_(position_.size()), excitations_(channels),
-      last_excitations_(channels), activations_(channels), workspace_(position_.size(), model.unknowns().size()) {
+    : model_(&model),
+      frame_(model.make_frame()),
+      pose_frame_(frame_),
+      position_(model.rest()),
+      previous_(position_),
+      velocity_(position_.size(), Vec3::Zero()),
+      carried_(position_),
+      pose_(position_),
+      pose_offset_(position_.size(), Vec3::Zero()),
+      start_(position_),
+      work_(position_.size()),
+      excitations_(channels),
+      last_excitations_(channels),
+      activations_(channels),
+      workspace_(position_.size(), model.unknowns().size()) {
   model.step_factor();  // made now, so that no step allocates
 }
 
 MinimiseResult Face::find_pose(const PoseOptions& options) {
-  const auto energy = [this](const Vec3* x, Vec3* gradient) { return model_->energy(pose_frame_, x, gradient); };
+  const auto energy = [this](const Vec3* x, Vec3* gradient) {
+    return model_->energy(pose_frame_, x, gradient);
+  };
   const auto& unknowns = model_->unknowns();
-  MinimiseResult result = minimise(energy, model_->pose_factor(), unknowns, options.solver, workspace_, pose_);
+  MinimiseResult result =
+      minimise(energy, model_->pose_factor(), unknowns, options.solver, workspace_, pose_);
   if (result.converged || !std::isfinite(result.residual) || options.newton.iterations <= 0) return result;
   newton_.resize(pose_.size(), unknowns.size());
-  for (size_t i = 0; i < unknowns.size(); ++i) newton_.weights[i] = model_->stiffness().coeff(static_cast<int>(i), static_cast<int>(i));
-  const auto curvature = [this](const Vec3* x, Curvature& out) { model_->find_curvature(pose_frame_, x, out); };
+  for (size_t i = 0; i < unknowns.size(); ++i)
+    newton_.weights[i] = model_->stiffness().coeff(static_cast<int>(i), static_cast<int>(i));
+  const auto curvature = [this](const Vec3* x, Curvature& out) {
+    model_->find_curvature(pose_frame_, x, out);
+  };
   const int before = result.iterations;
-  result = newton(energy, curvature, model_->pose_factor(), unknowns, options.newton, options.solver.tolerance, workspace_, newton_, pose_);
+  result = newton(energy, curvature, model_->pose_factor(), unknowns, options.newton,
+                  options.solver.tolerance, workspace_, newton_, pose_);
   result.iterations += before;
   return result;
 }
@@ -66,7 +84,8 @@ void Face::reset(const Drive& drive) {
 MinimiseResult Face::settle(const Drive& drive, const PoseOptions& options) {
   const MinimiseResult result = static_pose(drive, options, {});
   reset(drive);
-  for (size_t c = 0; c < activations_.size(); ++c) activations_[c] = drive.activation(c);
+  for (size_t c = 0; c < activations_.size(); ++c)
+    activations_[c] = drive.activation(c);
   last_excitations_ = activations_;
   last_acceleration_ = drive.acceleration;
   position_ = pose_;
@@ -94,7 +113,8 @@ MinimiseResult Face::substep(double share, const Drive& drive, const StepOptions
   RigidTransform mandible_step;
   mandible_step.rotation = frame_.mandible.rotation * mandible.rotation.transpose();
   mandible_step.translation = frame_.mandible.translation - mandible_step.rotation * mandible.translation;
-  frame_.grip_count = model_->contacts().find_grips(mandible, mandible_step, frame_.facing, previous_.data(), position_.data(), frame_.grips);
+  frame_.grip_count = model_->contacts().find_grips(mandible, mandible_step, frame_.facing, previous_.data(),
+                                                    position_.data(), frame_.grips);
 
   // Damping acts on motion relative to the bones, so that the jaw carries its tissue along undamped.
   previous_ = position_;
@@ -114,7 +134,8 @@ MinimiseResult Face::substep(double share, const Drive& drive, const StepOptions
       const uint32_t node = unknowns[i];
       const Vec3 ballistic = x[node] - start_[node], moved = x[node] - carried_[node];
       Vec3 force = masses[node] * drag * moved;
-      for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator e(matrix, static_cast<int>(i)); e; ++e) {
+      for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator e(matrix, static_cast<int>(i)); e;
+           ++e) {
         const uint32_t other = unknowns[static_cast<size_t>(e.col())];
         force += (stiff * e.value()) * (x[other] - carried_[other]);
       }
@@ -127,7 +148,8 @@ MinimiseResult Face::substep(double share, const Drive& drive, const StepOptions
   const MinimiseResult result =
       minimise(potential, model_->step_factor(), unknowns, options.solver, workspace_, position_);
   frame_.grip_count = 0;
-  for (size_t i = 0; i < position_.size(); ++i) velocity_[i] = (position_[i] - previous_[i]) / h;
+  for (size_t i = 0; i < position_.size(); ++i)
+    velocity_[i] = (position_[i] - previous_[i]) / h;
   return result;
 }
 
@@ -163,7 +185,8 @@ StepResult Face::step(double seconds, const Drive& drive, const StepOptions& opt
     }
   }
   left_over_ = std::clamp(due - substeps * h, 0.0, h);
-  for (size_t c = 0; c < last_excitations_.size(); ++c) last_excitations_[c] = drive.activation(c);
+  for (size_t c = 0; c < last_excitations_.size(); ++c)
+    last_excitations_[c] = drive.activation(c);
   last_jaw_ = clamped(drive.jaw);
   last_acceleration_ = drive.acceleration;
   return result;
@@ -177,12 +200,14 @@ void Face::displacements(std::span<Vec3f> out) const {
 
 void Face::positions(std::span<Vec3f> out) const {
   displacements(out);
-  for (size_t i = 0; i < out.size() && i < position_.size(); ++i) out[i] += model_->lattice().rest[i];
+  for (size_t i = 0; i < out.size() && i < position_.size(); ++i)
+    out[i] += model_->lattice().rest[i];
 }
 
 double Face::total_energy() {
   double energy = model_->energy(frame_, position_.data(), work_.data());
-  for (const uint32_t i : model_->unknowns()) energy += 0.5 * model_->masses()[i] * velocity_[i].squaredNorm();
+  for (const uint32_t i : model_->unknowns())
+    energy += 0.5 * model_->masses()[i] * velocity_[i].squaredNorm();
   return energy;
 }
 

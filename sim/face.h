@@ -11,13 +11,14 @@ namespace fascia::sim {
 
 /// How a static pose is solved.
 ///
-/// Quasi-Newton steps first, which end soon in most poses; what they have not brought to an end, Newton steps do.
+/// Quasi-Newton steps first, which end soon in most poses; what they have not brought to an end, Newton steps
+/// do.
 struct PoseOptions {
   MinimiseOptions solver{120};
   NewtonOptions newton;
-  int contact_rounds = 4;             ///< how often at most lips and lids look again for what they face
-  double contact_tolerance = 1e-4;    ///< metres a gap may still change when they do
-  bool from_last_pose = false;  ///< start from the last static pose instead of the bones' motion alone
+  int contact_rounds = 4;           ///< how often at most lips and lids look again for what they face
+  double contact_tolerance = 1e-4;  ///< metres a gap may still change when they do
+  bool from_last_pose = false;      ///< start from the last static pose instead of the bones' motion alone
 };
 
 /// How time passes for a face.
@@ -30,14 +31,15 @@ struct StepOptions {
 
 enum class StepStatus : uint8_t {
   done = 0,
-  reset = 1  ///< the face diverged, or was driven by numbers that are not finite: it stands at its bones again
+  reset =
+      1  ///< the face diverged, or was driven by numbers that are not finite: it stands at its bones again
 };
 
 struct StepResult {
   StepStatus status = StepStatus::done;
   int substeps = 0;
-  int iterations = 0;     ///< of all substeps
-  double move = 0.0;      ///< metres still wanted by the last substep's solver
+  int iterations = 0;  ///< of all substeps
+  double move = 0.0;   ///< metres still wanted by the last substep's solver
 };
 
 /// How the derivative of a static pose is solved.
@@ -54,8 +56,8 @@ struct AdjointResult {
 
 /// One face: its own state on a shared model. Not for two threads at once; different faces are free.
 ///
-/// Positions are #nodes in the head's frame, metres. Nothing here but the constructor, `static_gradient` and the first hard
-/// static pose allocates, and nothing throws.
+/// Positions are #nodes in the head's frame, metres. Nothing here but the constructor, `static_gradient` and
+/// the first hard static pose allocates, and nothing throws.
 class Face {
  public:
   /// `model` must be valid and outlive the face; `channels` is how many activations it listens to.
@@ -64,10 +66,10 @@ class Face {
   /// The pose in which all forces of `drive` balance. Does not touch the state that `step` moves.
   MinimiseResult static_pose(const Drive& drive, const PoseOptions& options, std::span<Vec3f> positions);
 
-  /// The derivative of a loss of the last static pose, which `drive` must have made: one linear solve, whatever the number
-  /// of channels. `slope` is d loss / d position (#nodes, per metre); out come d loss / d activation (#channels) and the
-  /// same for the jaw's open, forward and lateral. Exact but for contact between lips, whose normals are held still.
-  /// Allocates at its first call.
+  /// The derivative of a loss of the last static pose, which `drive` must have made: one linear solve,
+  /// whatever the number of channels. `slope` is d loss / d position (#nodes, per metre); out come d loss / d
+  /// activation (#channels) and the same for the jaw's open, forward and lateral. Exact but for contact
+  /// between lips, whose normals are held still. Allocates at its first call.
   AdjointResult static_gradient(const Drive& drive, std::span<const Vec3> slope, std::span<double> by_channel,
                                 std::array<double, 3>& by_jaw, const AdjointOptions& options = {});
 
@@ -103,8 +105,10 @@ class Face {
   struct Adjoint {
     Positions lambda, direction, product, moved, work, residual, packed, scratch;
     void resize(size_t nodes, size_t unknowns) {
-      for (Positions* list : {&lambda, &direction, &product, &moved}) list->resize(nodes, Vec3::Zero());
-      for (Positions* list : {&residual, &packed, &scratch}) list->resize(unknowns, Vec3::Zero());
+      for (Positions* list : {&lambda, &direction, &product, &moved})
+        list->resize(nodes, Vec3::Zero());
+      for (Positions* list : {&residual, &packed, &scratch})
+        list->resize(unknowns, Vec3::Zero());
       work.resize(3 * nodes, Vec3::Zero());
     }
   };

@@ -31,12 +31,12 @@ void FaceModel::place(const Drive& drive, Frame& frame) const {
     frame.carried[i] = pose.at_rest() ? rest_[i] : carry(weight) * rest_[i];
   }
   for (size_t t = 0; t < tethers_.size(); ++t)
-    frame.tether_normals[t] = pose.at_rest()
-                                  ? tethers_[t].normal
-                                  : Vec3(carry(lattice_.jaw_weights[tethers_[t].node]).rotation * tethers_[t].normal);
+    frame.tether_normals[t] =
+        pose.at_rest() ? tethers_[t].normal
+                       : Vec3(carry(lattice_.jaw_weights[tethers_[t].node]).rotation * tethers_[t].normal);
   for (size_t c = 0; c < frame.carrier_pulls.size(); ++c)
-    frame.carrier_pulls[c] =
-        carrier_pull(c, value_of(drive.activations, lattice_.carrier_channel[c]), frame.carried[lattice_.carrier_node[c]]);
+    frame.carrier_pulls[c] = carrier_pull(c, value_of(drive.activations, lattice_.carrier_channel[c]),
+                                          frame.carried[lattice_.carrier_node[c]]);
   for (size_t p = 0; p < frame.fibre_anchors.size(); ++p) {
     const Vec3 place = lattice_.fibre_rest[p].cast<double>();
     const bool moves = static_cast<FibreAnchor>(lattice_.fibre_anchor[p]) == FibreAnchor::mandible;
@@ -57,19 +57,22 @@ Vec3 FaceModel::fibre_point(const Frame& frame, size_t point, const Vec3* x) con
   if (anchor == FibreAnchor::cranium || anchor == FibreAnchor::mandible) return place;
   const auto& nodes = lattice_.fibre_nodes[point];
   for (size_t k = 0; k < 3; ++k)
-    place += static_cast<double>(lattice_.fibre_weights[point][static_cast<int>(k)]) * (x[nodes[k]] - rest_[nodes[k]]);
+    place += static_cast<double>(lattice_.fibre_weights[point][static_cast<int>(k)]) *
+             (x[nodes[k]] - rest_[nodes[k]]);
   return place;
 }
 
 /// Energy of one fibre; `add_force(node, force)` gets what is to be added to the gradient.
 template <class Force>
-double FaceModel::pull_fibre(const Frame& frame, uint32_t f, double pull, const Vec3* x, Force&& add_force) const {
+double FaceModel::pull_fibre(const Frame& frame, uint32_t f, double pull, const Vec3* x,
+                             Force&& add_force) const {
   const double rest_length = fibre_lengths_[f];
   if (pull == 0.0 || rest_length <= 0.0) return 0.0;
   const uint32_t first = lattice_.fibre_offsets[f], last = lattice_.fibre_offsets[f + 1];
   double length = 0.0;
   for (uint32_t p = first; p + 1 < last; ++p)
-    length += lattice_.fibre_taper[p] * segment_length(fibre_point(frame, p + 1, x) - fibre_point(frame, p, x));
+    length +=
+        lattice_.fibre_taper[p] * segment_length(fibre_point(frame, p + 1, x) - fibre_point(frame, p, x));
   // The pull falls with the fibre's length and ends at its shortest: the rising limb of the
   // force-length curve, as a line. Its integral is convex in length, which keeps the solve stable.
   const double range = 1.0 - lattice_.fibre_shortest[f];
@@ -85,7 +88,9 @@ double FaceModel::pull_fibre(const Frame& frame, uint32_t f, double pull, const 
       if (anchor == FibreAnchor::cranium || anchor == FibreAnchor::mandible) continue;
       const double sign = end == p ? -1.0 : 1.0;
       for (size_t k = 0; k < 3; ++k)
-        add_force(lattice_.fibre_nodes[end][k], Vec3((sign * static_cast<double>(lattice_.fibre_weights[end][static_cast<int>(k)])) * force));
+        add_force(
+            lattice_.fibre_nodes[end][k],
+            Vec3((sign * static_cast<double>(lattice_.fibre_weights[end][static_cast<int>(k)])) * force));
     }
   }
   return 0.5 * tension * left * rest_length - 0.5 * pull * range * rest_length;
@@ -94,7 +99,8 @@ double FaceModel::pull_fibre(const Frame& frame, uint32_t f, double pull, const 
 double FaceModel::fibre_energy(const Frame& frame, const Vec3* x, Vec3* gradient) const {
   double energy = 0.0;
   const auto add = [gradient](uint32_t node, const Vec3& force) { gradient[node] += force; };
-  for (uint32_t f = 0; f < lattice_.fibre_count(); ++f) energy += pull_fibre(frame, f, frame.fibre_pulls[f], x, add);
+  for (uint32_t f = 0; f < lattice_.fibre_count(); ++f)
+    energy += pull_fibre(frame, f, frame.fibre_pulls[f], x, add);
   return energy;
 }
 
@@ -107,7 +113,8 @@ Vec3 FaceModel::carrier_pull(size_t c, double value, const Vec3& carried) const 
   return static_cast<double>(lattice_.carrier_drive[c]) * (Eigen::AngleAxisd(turn, axis) * arm - arm);
 }
 
-void FaceModel::channel_slopes(const Frame& frame, const Drive& drive, const Vec3* x, const Vec3* lambda, std::span<double> by_channel) const {
+void FaceModel::channel_slopes(const Frame& frame, const Drive& drive, const Vec3* x, const Vec3* lambda,
+                               std::span<double> by_channel) const {
   const auto add = [&](uint32_t channel, double slope) {
     if (channel < by_channel.size()) by_channel[channel] += slope;
   };
@@ -122,9 +129,11 @@ void FaceModel::channel_slopes(const Frame& frame, const Drive& drive, const Vec
     const uint32_t node = lattice_.carrier_node[c];
     if (prescribed(node)) continue;
     const double value = value_of(drive.activations, lattice_.carrier_channel[c]), step = 1e-4;
-    const double low = value > 0.0 ? value - std::min(step, value) : value - step;  // not across the bend at 0
+    const double low =
+        value > 0.0 ? value - std::min(step, value) : value - step;  // not across the bend at 0
     const double high = value < 0.0 ? value + std::min(step, -value) : value + step;
-    const Vec3 change = carrier_pull(c, high, frame.carried[node]) - carrier_pull(c, value == 0.0 ? 0.0 : low, frame.carried[node]);
+    const Vec3 change = carrier_pull(c, high, frame.carried[node]) -
+                        carrier_pull(c, value == 0.0 ? 0.0 : low, frame.carried[node]);
     add(lattice_.carrier_channel[c], -lambda[node].dot(change) / (high - (value == 0.0 ? 0.0 : low)));
   }
   for (size_t p = 0; p < lattice_.pressure_prism.size(); ++p) {
@@ -158,12 +167,13 @@ double FaceModel::actuator_energy(const Frame& frame, const Vec3* x, Vec3* gradi
   }
   for (size_t p = 0; p < frame.pressures.size(); ++p) {
     if (frame.pressures[p] == 0.0) continue;
-    // Work of the pressure on the swept volume: to first order a push along the triangle's normal, however far the
-    // patch's rim lies from its middle.
+    // Work of the pressure on the swept volume: to first order a push along the triangle's normal, however
+    // far the patch's rim lies from its middle.
     const SweptPrism swept = swept_prism(frame, p, x);
     energy -= frame.pressures[p] * prism_volume(kSweptCorners, swept.corners.data());
     const auto push = prism_volume_gradient(kSweptCorners, swept.corners.data());
-    for (size_t k = 0; k < 3; ++k) gradient[swept.nodes[k]] -= frame.pressures[p] * push[k];
+    for (size_t k = 0; k < 3; ++k)
+      gradient[swept.nodes[k]] -= frame.pressures[p] * push[k];
   }
   energy += contacts_.energy(frame.mandible, x, gradient);
   energy += contacts_.facing_energy(frame.facing, x, gradient);
@@ -184,11 +194,15 @@ double FaceModel::actuator_energy(const Frame& frame, const Vec3* x, Vec3* gradi
 
 double FaceModel::energy_beside_springs(const Frame& frame, const Vec3* x, Vec3* gradient) const {
   double energy = 0.0;
-  for (const Membrane& membrane : membranes_) energy += membrane_energy(membrane, x, gradient);
-  for (const Hinge& hinge : hinges_) energy += hinge_energy(hinge, x, gradient);
-  for (const Prism& prism : prisms_) energy += prism_energy(prism, x, gradient);
+  for (const Membrane& membrane : membranes_)
+    energy += membrane_energy(membrane, x, gradient);
+  for (const Hinge& hinge : hinges_)
+    energy += hinge_energy(hinge, x, gradient);
+  for (const Prism& prism : prisms_)
+    energy += prism_energy(prism, x, gradient);
   for (size_t t = 0; t < tethers_.size(); ++t)
-    energy += tether_energy(tethers_[t], frame.carried[tethers_[t].node], frame.tether_normals[t], x, gradient);
+    energy +=
+        tether_energy(tethers_[t], frame.carried[tethers_[t].node], frame.tether_normals[t], x, gradient);
   energy += fibre_energy(frame, x, gradient);
   return energy + actuator_energy(frame, x, gradient);
 }
@@ -196,7 +210,8 @@ double FaceModel::energy_beside_springs(const Frame& frame, const Vec3* x, Vec3*
 double FaceModel::raw_energy(const Frame& frame, const Vec3* x, Vec3* gradient) const {
   std::fill(gradient, gradient + rest_.size(), Vec3::Zero());
   double energy = 0.0;
-  for (const Spring& spring : springs_) energy += spring_energy(spring, x, gradient);
+  for (const Spring& spring : springs_)
+    energy += spring_energy(spring, x, gradient);
   return energy + energy_beside_springs(frame, x, gradient);
 }
 
@@ -234,18 +249,22 @@ void FaceModel::hessian_times(const Frame& frame, const Vec3* x, const Vec3* dir
                               Positions& work) const {
   const size_t nodes = rest_.size();
   double largest = 0.0;
-  for (const uint32_t i : unknowns_) largest = std::max(largest, direction[i].cwiseAbs().maxCoeff());
+  for (const uint32_t i : unknowns_)
+    largest = std::max(largest, direction[i].cwiseAbs().maxCoeff());
   std::fill(result, result + nodes, Vec3::Zero());
   if (largest == 0.0) return;
   const double step = 1e-7 / largest;  // 0.1 micrometre where it moves most
   Vec3* moved = work.data();
   Vec3* ahead = moved + nodes;
   Vec3* behind = ahead + nodes;
-  for (size_t i = 0; i < nodes; ++i) moved[i] = unknown_of_node_[i] < 0 ? x[i] : Vec3(x[i] + step * direction[i]);
+  for (size_t i = 0; i < nodes; ++i)
+    moved[i] = unknown_of_node_[i] < 0 ? x[i] : Vec3(x[i] + step * direction[i]);
   energy(frame, moved, ahead);
-  for (size_t i = 0; i < nodes; ++i) moved[i] = unknown_of_node_[i] < 0 ? x[i] : Vec3(x[i] - step * direction[i]);
+  for (size_t i = 0; i < nodes; ++i)
+    moved[i] = unknown_of_node_[i] < 0 ? x[i] : Vec3(x[i] - step * direction[i]);
   energy(frame, moved, behind);
-  for (const uint32_t i : unknowns_) result[i] = (ahead[i] - behind[i]) / (2.0 * step);
+  for (const uint32_t i : unknowns_)
+    result[i] = (ahead[i] - behind[i]) / (2.0 * step);
 }
 
 }  // namespace fascia::sim

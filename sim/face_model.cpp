@@ -28,7 +28,8 @@ FaceModel::FaceModel(const Lattice& lattice, const Jaw& jaw, const FaceModelOpti
   Positions gradient(rest_.size());
   raw_energy(frame, rest_.data(), gradient.data());
   balance_ = gradient;
-  if (!make_factors()) fault_ = "the rest stiffness is not positive definite: some part of the lattice is held by nothing";
+  if (!make_factors())
+    fault_ = "the rest stiffness is not positive definite: some part of the lattice is held by nothing";
 }
 
 void FaceModel::make_elements() {
@@ -53,7 +54,8 @@ void FaceModel::make_elements() {
     const auto& moduli = layer == 0 ? lattice_.skin_membrane : lattice_.smas_membrane;
     for (size_t t = 0; t < lattice_.triangles.size(); ++t) {
       std::array<uint32_t, 3> corners = lattice_.triangles[t];
-      for (uint32_t& corner : corners) corner += layer * columns;
+      for (uint32_t& corner : corners)
+        corner += layer * columns;
       membranes_.push_back(make_membrane(corners, moduli[t], lattice_.poisson_ratio, rest_.data()));
     }
     for (size_t t = 0; t < lattice_.triangles.size(); ++t) {
@@ -75,11 +77,13 @@ void FaceModel::make_elements() {
   }
   column_areas_.assign(columns, 0.0);
   for (size_t t = 0; t < lattice_.triangles.size(); ++t)
-    for (const uint32_t column : lattice_.triangles[t]) column_areas_[column] += membranes_[t].area;
+    for (const uint32_t column : lattice_.triangles[t])
+      column_areas_[column] += membranes_[t].area;
   contacts_ = Contacts(lattice_, rest_, options_.contact);
   Frame frame;
   frame.fibre_anchors.resize(lattice_.fibre_nodes.size());
-  for (size_t p = 0; p < frame.fibre_anchors.size(); ++p) frame.fibre_anchors[p] = lattice_.fibre_rest[p].cast<double>();
+  for (size_t p = 0; p < frame.fibre_anchors.size(); ++p)
+    frame.fibre_anchors[p] = lattice_.fibre_rest[p].cast<double>();
   for (uint32_t f = 0; f < lattice_.fibre_count(); ++f) {
     double length = 0.0;
     for (uint32_t p = lattice_.fibre_offsets[f]; p + 1 < lattice_.fibre_offsets[f + 1]; ++p)
@@ -93,7 +97,8 @@ void FaceModel::make_hinges() {
   // Opposite corner and first triangle's direction of every edge; the second triangle closes the hinge.
   std::map<std::pair<uint32_t, uint32_t>, uint32_t> opposite;
   for (const auto& t : lattice_.triangles)
-    for (size_t e = 0; e < 3; ++e) opposite[{t[e], t[(e + 1) % 3]}] = t[(e + 2) % 3];
+    for (size_t e = 0; e < 3; ++e)
+      opposite[{t[e], t[(e + 1) % 3]}] = t[(e + 2) % 3];
   for (uint32_t layer = 0; layer < 2; ++layer) {
     const auto& rigidity = layer == 0 ? lattice_.skin_bending : lattice_.smas_bending;
     const uint32_t first = layer * lattice_.columns;
@@ -103,7 +108,8 @@ void FaceModel::make_hinges() {
       if (a > b || other == opposite.end()) continue;
       const double mean = 0.5 * (static_cast<double>(rigidity[a]) + rigidity[b]);
       if (mean == 0.0) continue;
-      hinges_.push_back(make_hinge({first + a, first + b, first + corner, first + other->second}, mean, rest_.data()));
+      hinges_.push_back(
+          make_hinge({first + a, first + b, first + corner, first + other->second}, mean, rest_.data()));
     }
   }
 }
@@ -124,7 +130,8 @@ Frame FaceModel::make_frame() const {
 }
 
 bool FaceModel::make_factors() {
-  RestTerms terms{springs_, membranes_, hinges_, prisms_, tethers_, rest_, unknown_of_node_, unknowns_.size()};
+  RestTerms terms{springs_, membranes_, hinges_,          prisms_,
+                  tethers_, rest_,      unknown_of_node_, unknowns_.size()};
   Eigen::SparseMatrix<double> matrix = assemble_rest_stiffness(terms);
   for (size_t c = 0; c < lattice_.carrier_node.size(); ++c) {
     const int32_t unknown = unknown_of_node_[lattice_.carrier_node[c]];

@@ -18,9 +18,9 @@
 namespace fascia::sim {
 
 struct FaceModelOptions {
-  double substep = 1.0 / 120.0;           ///< seconds; frames are cut into these, whatever their length
-  double stiffness_damping = 0.004;       ///< seconds: damping force per stiffness force and unit of rate
-  double mass_damping = 8.0;              ///< per second
+  double substep = 1.0 / 120.0;      ///< seconds; frames are cut into these, whatever their length
+  double stiffness_damping = 0.004;  ///< seconds: damping force per stiffness force and unit of rate
+  double mass_damping = 8.0;         ///< per second
   ContactOptions contact;
 };
 
@@ -34,15 +34,18 @@ struct NodeForce {
 struct Drive {
   std::span<const float> activations;  ///< one a channel; channels beyond its end are 0
   JawPose jaw;
-  Vec3 acceleration = Vec3::Zero();    ///< of free tissue in the head's frame, m/s^2 (gravity change, inertia)
+  Vec3 acceleration = Vec3::Zero();  ///< of free tissue in the head's frame, m/s^2 (gravity change, inertia)
   std::span<const NodeForce> touches = {};  ///< must outlive the solve
 
   /// What channel `c` is driven by; 0 beyond the end, and where it is no number.
-  float activation(size_t c) const { return c < activations.size() && std::isfinite(activations[c]) ? activations[c] : 0.0F; }
+  float activation(size_t c) const {
+    return c < activations.size() && std::isfinite(activations[c]) ? activations[c] : 0.0F;
+  }
   /// True when the acceleration and the first `channels` activations are numbers.
   bool is_finite(size_t channels) const {
     const auto known = activations.first(std::min(channels, activations.size()));
-    return acceleration.allFinite() && std::all_of(known.begin(), known.end(), [](float value) { return std::isfinite(value); });
+    return acceleration.allFinite() &&
+           std::all_of(known.begin(), known.end(), [](float value) { return std::isfinite(value); });
   }
 };
 
@@ -56,9 +59,9 @@ struct Frame {
   std::vector<double> pressures;    ///< #pressures, pascal
   Vec3 acceleration = Vec3::Zero();
   RigidTransform mandible;
-  std::vector<FacingPair> facing;   ///< lip before lip, lid before lid: see FaceModel::face_up
+  std::vector<FacingPair> facing;  ///< lip before lip, lid before lid: see FaceModel::face_up
   FacingSearch facing_search;
-  std::vector<Grip> grips;          ///< capacity of them; friction, in steps of time
+  std::vector<Grip> grips;  ///< capacity of them; friction, in steps of time
   size_t grip_count = 0;
   std::span<const NodeForce> touches;
 };
@@ -78,8 +81,11 @@ class FaceModel {
   /// Moves bones and carriers of `frame` to `drive`. Allocates nothing.
   void place(const Drive& drive, Frame& frame) const;
 
-  /// Finds what lips and lids face as the face stands in `x`; returns the largest change against before, metres.
-  double face_up(const Vec3* x, Frame& frame) const { return contacts_.find_facing(x, frame.facing, frame.facing_search); }
+  /// Finds what lips and lids face as the face stands in `x`; returns the largest change against before,
+  /// metres.
+  double face_up(const Vec3* x, Frame& frame) const {
+    return contacts_.find_facing(x, frame.facing, frame.facing_search);
+  }
 
   /// Joules of the configuration `x` (#nodes), above those of the rest pose; writes the gradient in
   /// newtons (#nodes, zero where a node is prescribed). One set of energies for pose and step.
@@ -90,32 +96,40 @@ class FaceModel {
 
   /// Curvature along a direction: H(x) v, by central differences of the gradient in double precision
   /// (error about 1e-8 of its size). `work` holds 3 x #nodes.
-  void hessian_times(const Frame& frame, const Vec3* x, const Vec3* direction, Vec3* result, Positions& work) const;
+  void hessian_times(const Frame& frame, const Vec3* x, const Vec3* direction, Vec3* result,
+                     Positions& work) const;
 
-  /// Writes a positive semidefinite stand-in for the Hessian at `x`, for Newton steps: each element's own without its
-  /// negative curvatures; pressures' share is left out. Allocates while `out` grows to its size.
+  /// Writes a positive semidefinite stand-in for the Hessian at `x`, for Newton steps: each element's own
+  /// without its negative curvatures; pressures' share is left out. Allocates while `out` grows to its size.
   void find_curvature(const Frame& frame, const Vec3* x, Curvature& out) const;
 
-  /// Adds, for each channel, lambda . d gradient / d activation at `x`: fibres, carriers and pressures (the jaw and eyes move
-  /// bones and are not among them). `frame` must be placed for `drive`; `lambda` is #nodes, zero where prescribed.
-  void channel_slopes(const Frame& frame, const Drive& drive, const Vec3* x, const Vec3* lambda, std::span<double> by_channel) const;
+  /// Adds, for each channel, lambda . d gradient / d activation at `x`: fibres, carriers and pressures (the
+  /// jaw and eyes move bones and are not among them). `frame` must be placed for `drive`; `lambda` is #nodes,
+  /// zero where prescribed.
+  void channel_slopes(const Frame& frame, const Drive& drive, const Vec3* x, const Vec3* lambda,
+                      std::span<double> by_channel) const;
 
   const Lattice& lattice() const { return lattice_; }
   const Jaw& jaw() const { return jaw_; }
   const FaceModelOptions& options() const { return options_; }
   const Positions& rest() const { return rest_; }
-  const std::vector<uint32_t>& unknowns() const { return unknowns_; }  ///< nodes the solver moves
+  const std::vector<uint32_t>& unknowns() const { return unknowns_; }        ///< nodes the solver moves
   bool prescribed(size_t node) const { return unknown_of_node_[node] < 0; }  ///< moves with its bone alone
-  const std::vector<double>& masses() const { return masses_; }        ///< #nodes
-  const RestFactor& pose_factor() const { return pose_factor_; }       ///< rest stiffness
-  const RestFactor& step_factor() const;  ///< mass, damping and stiffness of a substep; made on first use, any thread may ask
-  const Eigen::SparseMatrix<double, Eigen::RowMajor>& stiffness() const { return stiffness_; }  ///< over unknowns
+  const std::vector<double>& masses() const { return masses_; }              ///< #nodes
+  const RestFactor& pose_factor() const { return pose_factor_; }             ///< rest stiffness
+  const RestFactor& step_factor()
+      const;  ///< mass, damping and stiffness of a substep; made on first use, any thread may ask
+  const Eigen::SparseMatrix<double, Eigen::RowMajor>& stiffness() const {
+    return stiffness_;
+  }  ///< over unknowns
   const Contacts& contacts() const { return contacts_; }
-  const std::vector<double>& column_areas() const { return column_areas_; }  ///< #columns, of the skin's triangles around each
+  const std::vector<double>& column_areas() const {
+    return column_areas_;
+  }  ///< #columns, of the skin's triangles around each
   const std::vector<Spring>& springs() const { return springs_; }
   const std::vector<Prism>& prisms() const { return prisms_; }
   const std::vector<Membrane>& membranes() const { return membranes_; }  ///< skin first, then SMAS
-  const std::vector<Hinge>& hinges() const { return hinges_; }            ///< skin first, then SMAS
+  const std::vector<Hinge>& hinges() const { return hinges_; }           ///< skin first, then SMAS
   const std::vector<Tether>& tethers() const { return tethers_; }
   const std::vector<double>& fibre_lengths() const { return fibre_lengths_; }  ///< taper-weighted, at rest
 
@@ -133,8 +147,8 @@ class FaceModel {
   Vec3 carrier_pull(size_t carrier, double value, const Vec3& carried) const;
   /// What the SMAS over one triangle with pressure behind it has swept from where bones alone would carry it.
   struct SweptPrism {
-    std::array<Vec3, 6> corners;       ///< where the SMAS is, then where it was carried to
-    std::array<uint32_t, 3> nodes{};   ///< of the SMAS
+    std::array<Vec3, 6> corners;      ///< where the SMAS is, then where it was carried to
+    std::array<uint32_t, 3> nodes{};  ///< of the SMAS
   };
   SweptPrism swept_prism(const Frame& frame, size_t pressure, const Vec3* x) const;
   double actuator_energy(const Frame& frame, const Vec3* x, Vec3* gradient) const;

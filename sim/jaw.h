@@ -16,12 +16,12 @@ struct RigidTransform {
 struct Jaw {
   Vec3 origin = Vec3::Zero();
   Vec3 lateral = Vec3::UnitX(), forward = Vec3::UnitZ(), up = Vec3::UnitY();
-  double open_angle = 0.436;                  ///< radians of rotation at open = 1
-  Vec3 open_glide = Vec3(0, -0.006, 0.008);   ///< (lateral, up, forward) at open = 1
-  double forward_glide = 0.008;               ///< at forward = 1
-  double forward_drop = 0.003;                ///< downward at forward = 1
-  double lateral_angle = 0.14;                ///< radians about `up` at lateral = 1
-  double lateral_glide = 0.003;               ///< to the subject's left at lateral = 1
+  double open_angle = 0.436;                 ///< radians of rotation at open = 1
+  Vec3 open_glide = Vec3(0, -0.006, 0.008);  ///< (lateral, up, forward) at open = 1
+  double forward_glide = 0.008;              ///< at forward = 1
+  double forward_drop = 0.003;               ///< downward at forward = 1
+  double lateral_angle = 0.14;               ///< radians about `up` at lateral = 1
+  double lateral_glide = 0.003;              ///< to the subject's left at lateral = 1
 };
 
 /// Values of the jaw's channels: `open` and `forward` in 0..1, `lateral` in -1..1 (+ to the left).
@@ -34,8 +34,9 @@ struct JawPose {
 /// `pose` within the joint's limits; values that are not finite become 0.
 JawPose clamped(const JawPose& pose);
 
-/// Where a mandible gets from `from` towards `to` in so many seconds: no motion of the joint goes from one end to the other in less
-/// than `quickest_travel`, so that a channel that jumps does not tear the tissue. Both within the joint's limits.
+/// Where a mandible gets from `from` towards `to` in so many seconds: no motion of the joint goes from one
+/// end to the other in less than `quickest_travel`, so that a channel that jumps does not tear the tissue.
+/// Both within the joint's limits.
 inline constexpr double quickest_travel = 0.12;
 JawPose approached(const JawPose& from, const JawPose& to, double seconds);
 

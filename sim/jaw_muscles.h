@@ -10,13 +10,14 @@ namespace fascia::sim {
 /// A muscle that moves the mandible: a straight pull from a fixed place to one on the mandible.
 struct JawMuscle {
   uint32_t channel = 0;
-  Vec3 origin = Vec3::Zero(), insertion = Vec3::Zero();  ///< metres, at rest; the insertion goes with the mandible
-  double strength = 0.0;                                 ///< newton at full activation
+  Vec3 origin = Vec3::Zero(),
+       insertion = Vec3::Zero();  ///< metres, at rest; the insertion goes with the mandible
+  double strength = 0.0;          ///< newton at full activation
 };
 
-/// How masticatory muscles move the jaw: each one's pull times its lever on each of the joint's three motions, against a
-/// joint whose stiffness is such that all openers together open it to 1, all protruders bring it forward to 1, and one
-/// side's lateral pull turns it to 1. Levers are those of the rest pose.
+/// How masticatory muscles move the jaw: each one's pull times its lever on each of the joint's three
+/// motions, against a joint whose stiffness is such that all openers together open it to 1, all protruders
+/// bring it forward to 1, and one side's lateral pull turns it to 1. Levers are those of the rest pose.
 class JawMuscles {
  public:
   JawMuscles() = default;

@@ -47,18 +47,19 @@ const char* fault_of_layers(const Lattice& l) {
       l.spring_second_stiffness.size() != springs || l.spring_one_sided.size() != springs)
     return "the spring lists differ in length";
   for (const auto& pair : l.spring_nodes)
-    if (!all_below(pair, l.node_count()) || pair[0] == pair[1]) return "a spring names a node that does not exist";
+    if (!all_below(pair, l.node_count()) || pair[0] == pair[1])
+      return "a spring names a node that does not exist";
   if (!all_positive(l.spring_stiffness) || !all_positive(l.spring_limit_strain) ||
       !all_positive(l.spring_second_stiffness))
     return "a spring has a negative stiffness or limit";
-  if (l.skin_membrane.size() != prisms || l.smas_membrane.size() != prisms || l.volume_stiffness.size() != prisms ||
-      l.inner_volume_stiffness.size() != prisms)
+  if (l.skin_membrane.size() != prisms || l.smas_membrane.size() != prisms ||
+      l.volume_stiffness.size() != prisms || l.inner_volume_stiffness.size() != prisms)
     return "membranes and volume stiffnesses need one entry a prism";
   if (l.skin_bending.size() != l.columns || l.smas_bending.size() != l.columns)
     return "bending needs one entry a column";
   if (!all_positive(l.skin_membrane) || !all_positive(l.smas_membrane) || !all_positive(l.volume_stiffness) ||
-      !all_positive(l.inner_volume_stiffness) ||
-      !all_positive(l.skin_bending) || !all_positive(l.smas_bending))
+      !all_positive(l.inner_volume_stiffness) || !all_positive(l.skin_bending) ||
+      !all_positive(l.smas_bending))
     return "a layer stiffness is negative";
   if (!(l.poisson_ratio >= 0.0F && l.poisson_ratio < 0.5F)) return "poisson_ratio is not within 0..0.5";
   const size_t tethers = l.tether_nodes.size();
@@ -75,18 +76,21 @@ const char* fault_of_layers(const Lattice& l) {
 const char* fault_of_fibres(const Lattice& l) {
   const size_t fibres = l.fibre_channel.size(), points = l.fibre_nodes.size();
   if (fibres == 0) return points == 0 ? nullptr : "there are fibre points but no fibres";
-  if (l.fibre_offsets.size() != fibres + 1 || l.fibre_strength.size() != fibres || l.fibre_shortest.size() != fibres)
+  if (l.fibre_offsets.size() != fibres + 1 || l.fibre_strength.size() != fibres ||
+      l.fibre_shortest.size() != fibres)
     return "the fibre lists differ in length";
   if (l.fibre_weights.size() != points || l.fibre_rest.size() != points || l.fibre_anchor.size() != points ||
       l.fibre_taper.size() != points)
     return "the fibre point lists differ in length";
-  if (l.fibre_offsets.front() != 0 || l.fibre_offsets.back() != points) return "fibre_offsets do not span the points";
+  if (l.fibre_offsets.front() != 0 || l.fibre_offsets.back() != points)
+    return "fibre_offsets do not span the points";
   for (size_t f = 0; f < fibres; ++f)
     if (l.fibre_offsets[f] > l.fibre_offsets[f + 1]) return "fibre_offsets fall";
   for (const auto& nodes : l.fibre_nodes)
     if (!all_below(nodes, l.node_count())) return "a fibre names a node that does not exist";
   if (!all_finite(l.fibre_weights) || !all_finite(l.fibre_rest)) return "a fibre point is not finite";
-  if (!all_positive(l.fibre_strength) || !all_positive(l.fibre_taper)) return "a fibre's strength is negative";
+  if (!all_positive(l.fibre_strength) || !all_positive(l.fibre_taper))
+    return "a fibre's strength is negative";
   for (const float share : l.fibre_shortest)
     if (!(share >= 0.0F && share < 1.0F)) return "fibre_shortest is not within 0..1";
   for (const uint8_t anchor : l.fibre_anchor)
@@ -96,8 +100,9 @@ const char* fault_of_fibres(const Lattice& l) {
 
 const char* fault_of_actuators(const Lattice& l) {
   const size_t carriers = l.carrier_channel.size();
-  if (l.carrier_node.size() != carriers || l.carrier_origin.size() != carriers || l.carrier_axis.size() != carriers ||
-      l.carrier_angle.size() != carriers || l.carrier_reverse.size() != carriers || l.carrier_stiffness.size() != carriers ||
+  if (l.carrier_node.size() != carriers || l.carrier_origin.size() != carriers ||
+      l.carrier_axis.size() != carriers || l.carrier_angle.size() != carriers ||
+      l.carrier_reverse.size() != carriers || l.carrier_stiffness.size() != carriers ||
       l.carrier_drive.size() != carriers)
     return "the carrier lists differ in length";
   if (!all_below(l.carrier_node, l.node_count())) return "a carrier names a node that does not exist";
@@ -107,10 +112,12 @@ const char* fault_of_actuators(const Lattice& l) {
   if (l.pressure_prism.size() != l.pressure_channel.size() || l.pressure.size() != l.pressure_channel.size())
     return "the pressure lists differ in length";
   if (!all_below(l.pressure_prism, l.triangles.size())) return "a pressure names a prism that does not exist";
-  if (l.globe_radius.size() != l.globe_centre.size() || !all_finite(l.globe_centre) || !all_positive(l.globe_radius))
+  if (l.globe_radius.size() != l.globe_centre.size() || !all_finite(l.globe_centre) ||
+      !all_positive(l.globe_radius))
     return "the globe lists are at fault";
   if (l.globe_contact_globe.size() != l.globe_contact_node.size() ||
-      !all_below(l.globe_contact_node, l.node_count()) || !all_below(l.globe_contact_globe, l.globe_centre.size()))
+      !all_below(l.globe_contact_node, l.node_count()) ||
+      !all_below(l.globe_contact_globe, l.globe_centre.size()))
     return "a globe contact names what does not exist";
   return nullptr;
 }
@@ -123,15 +130,17 @@ const char* fault_of_contact(const Lattice& l) {
   size_t values = 0;
   for (size_t f = 0; f < fields; ++f) {
     const auto& size = l.contact_field_size[f];
-    if (!(l.contact_field_spacing[f] > 0.0F) || !(l.contact_field_step[f] > 0.0F) || !std::isfinite(l.contact_field_spacing[f]) ||
-        !std::isfinite(l.contact_field_step[f]) || size[0] < 2 || size[1] < 2 || size[2] < 2 || size[0] > 1024 || size[1] > 1024 ||
-        size[2] > 1024 || l.contact_field_bone[f] > 1)
+    if (!(l.contact_field_spacing[f] > 0.0F) || !(l.contact_field_step[f] > 0.0F) ||
+        !std::isfinite(l.contact_field_spacing[f]) || !std::isfinite(l.contact_field_step[f]) ||
+        size[0] < 2 || size[1] < 2 || size[2] < 2 || size[0] > 1024 || size[1] > 1024 || size[2] > 1024 ||
+        l.contact_field_bone[f] > 1)
       return "a contact field is degenerate";
     values += static_cast<size_t>(size[0]) * size[1] * size[2];
   }
   if (!all_finite(l.contact_field_origin) || l.contact_field_values.size() != values)
     return "a contact field has not the values its size tells";
-  if (l.contact_node.size() != l.contact_field.size() || !all_below(l.contact_node, l.node_count()) || !all_below(l.contact_field, fields))
+  if (l.contact_node.size() != l.contact_field.size() || !all_below(l.contact_node, l.node_count()) ||
+      !all_below(l.contact_field, fields))
     return "a bone contact names what does not exist";
   if (l.facing_prism.size() != l.facing_side.size() || !all_below(l.facing_prism, l.triangles.size()))
     return "a facing side names a prism that does not exist";

@@ -8,8 +8,8 @@
 
 namespace fascia::sim {
 
-/// How a lattice node is held. The numbers are those of the rig file. A `fixed_mandible` node goes with the jaw by
-/// its jaw weight: 1 on the bone itself, less in deep tissue that both bones carry.
+/// How a lattice node is held. The numbers are those of the rig file. A `fixed_mandible` node goes with the
+/// jaw by its jaw weight: 1 on the bone itself, less in deep tissue that both bones carry.
 enum class NodeKind : uint8_t {
   free = 0,
   fixed = 1,
@@ -29,10 +29,10 @@ enum class FibreAnchor : uint8_t { smas = 0, skin = 1, cranium = 2, mandible = 3
 /// in metres, stiffnesses in newton per metre unless said otherwise. An optional list may be empty.
 struct Lattice {
   uint32_t columns = 0;
-  std::span<const Vec3f> rest;          ///< #nodes = 3 * columns
-  std::span<const uint8_t> kinds;       ///< #nodes, NodeKind
-  std::span<const float> masses;        ///< #nodes, kilogram
-  std::span<const float> jaw_weights;   ///< #nodes, 0 carried by the cranium .. 1 by the mandible
+  std::span<const Vec3f> rest;         ///< #nodes = 3 * columns
+  std::span<const uint8_t> kinds;      ///< #nodes, NodeKind
+  std::span<const float> masses;       ///< #nodes, kilogram
+  std::span<const float> jaw_weights;  ///< #nodes, 0 carried by the cranium .. 1 by the mandible
   std::span<const std::array<uint32_t, 3>> triangles;  ///< #prisms, columns
 
   std::span<const std::array<uint32_t, 2>> spring_nodes;
@@ -52,15 +52,15 @@ struct Lattice {
   std::span<const float> volume_stiffness;        ///< #prisms, pascal: between skin and SMAS
   std::span<const float> inner_volume_stiffness;  ///< #prisms, pascal: between SMAS and inner layer
 
-  std::span<const uint32_t> fibre_channel;                 ///< #fibres
-  std::span<const uint32_t> fibre_offsets;                 ///< #fibres + 1
-  std::span<const std::array<uint32_t, 3>> fibre_nodes;    ///< #points
-  std::span<const Vec3f> fibre_weights;                    ///< #points
-  std::span<const Vec3f> fibre_rest;                       ///< #points
-  std::span<const uint8_t> fibre_anchor;                   ///< #points, FibreAnchor
-  std::span<const float> fibre_taper;                      ///< #points, tension share of the segment that begins here
-  std::span<const float> fibre_strength;                   ///< #fibres, newton at full activation
-  std::span<const float> fibre_shortest;                   ///< #fibres, share of the rest length where the pull ends
+  std::span<const uint32_t> fibre_channel;               ///< #fibres
+  std::span<const uint32_t> fibre_offsets;               ///< #fibres + 1
+  std::span<const std::array<uint32_t, 3>> fibre_nodes;  ///< #points
+  std::span<const Vec3f> fibre_weights;                  ///< #points
+  std::span<const Vec3f> fibre_rest;                     ///< #points
+  std::span<const uint8_t> fibre_anchor;                 ///< #points, FibreAnchor
+  std::span<const float> fibre_taper;     ///< #points, tension share of the segment that begins here
+  std::span<const float> fibre_strength;  ///< #fibres, newton at full activation
+  std::span<const float> fibre_shortest;  ///< #fibres, share of the rest length where the pull ends
 
   std::span<const uint32_t> carrier_channel, carrier_node;
   std::span<const Vec3f> carrier_origin, carrier_axis;
@@ -72,15 +72,16 @@ struct Lattice {
   std::span<const uint32_t> pressure_channel, pressure_prism;
   std::span<const float> pressure;  ///< pascal at channel value 1
 
-  std::span<const Vec3f> globe_centre;         ///< #globes, eyeballs that lids lie on
-  std::span<const float> globe_radius;         ///< #globes
+  std::span<const Vec3f> globe_centre;                                ///< #globes, eyeballs that lids lie on
+  std::span<const float> globe_radius;                                ///< #globes
   std::span<const uint32_t> globe_contact_node, globe_contact_globe;  ///< pairs that may touch
 
-  std::span<const uint8_t> contact_field_bone;  ///< #fields, 0 cranium, 1 mandible
-  std::span<const Vec3f> contact_field_origin;  ///< #fields
-  std::span<const float> contact_field_spacing, contact_field_step;         ///< #fields
-  std::span<const std::array<uint32_t, 3>> contact_field_size;              ///< #fields, values along x, y, z
-  std::span<const uint8_t> contact_field_values;  ///< one field after the other, x fastest; (value - 128) * step
+  std::span<const uint8_t> contact_field_bone;                       ///< #fields, 0 cranium, 1 mandible
+  std::span<const Vec3f> contact_field_origin;                       ///< #fields
+  std::span<const float> contact_field_spacing, contact_field_step;  ///< #fields
+  std::span<const std::array<uint32_t, 3>> contact_field_size;       ///< #fields, values along x, y, z
+  std::span<const uint8_t>
+      contact_field_values;  ///< one field after the other, x fastest; (value - 128) * step
   std::span<const uint32_t> contact_node, contact_field;  ///< pairs that may touch
 
   std::span<const uint32_t> facing_prism;  ///< outer sides that may touch one another

@@ -29,21 +29,30 @@ struct MinimiseWorkspace {
   std::vector<double> curvatures;
 
   MinimiseWorkspace(size_t nodes, size_t unknowns)
-      : gradient(nodes), direction(nodes), trial(nodes), trial_gradient(nodes), packed(unknowns), scratch(unknowns),
-        steps(history, Positions(unknowns)), changes(history, Positions(unknowns)), curvatures(history, 0.0) {}
+      : gradient(nodes),
+        direction(nodes),
+        trial(nodes),
+        trial_gradient(nodes),
+        packed(unknowns),
+        scratch(unknowns),
+        steps(history, Positions(unknowns)),
+        changes(history, Positions(unknowns)),
+        curvatures(history, 0.0) {}
 };
 
 namespace detail {
 
 inline double dot(const Positions& a, const Positions& b) {
   double sum = 0.0;
-  for (size_t i = 0; i < a.size(); ++i) sum += a[i].dot(b[i]);
+  for (size_t i = 0; i < a.size(); ++i)
+    sum += a[i].dot(b[i]);
   return sum;
 }
 
 inline double largest(const Positions& a) {
   double most = 0.0;
-  for (const Vec3& v : a) most = std::max(most, v.squaredNorm());
+  for (const Vec3& v : a)
+    most = std::max(most, v.squaredNorm());
   return std::sqrt(most);
 }
 
@@ -55,15 +64,18 @@ inline void search_direction(const RestFactor& factor, MinimiseWorkspace& w, siz
   for (size_t k = count; k-- > 0;) {
     const size_t slot = (first + k) % history;
     share[k] = dot(w.steps[slot], w.packed) / w.curvatures[slot];
-    for (size_t i = 0; i < w.packed.size(); ++i) w.packed[i] -= share[k] * w.changes[slot][i];
+    for (size_t i = 0; i < w.packed.size(); ++i)
+      w.packed[i] -= share[k] * w.changes[slot][i];
   }
   factor.solve(w.packed, w.scratch);
   for (size_t k = 0; k < count; ++k) {
     const size_t slot = (first + k) % history;
     const double back = share[k] - dot(w.changes[slot], w.packed) / w.curvatures[slot];
-    for (size_t i = 0; i < w.packed.size(); ++i) w.packed[i] += back * w.steps[slot][i];
+    for (size_t i = 0; i < w.packed.size(); ++i)
+      w.packed[i] += back * w.steps[slot][i];
   }
-  for (Vec3& v : w.packed) v = -v;
+  for (Vec3& v : w.packed)
+    v = -v;
 }
 
 }  // namespace detail
@@ -82,7 +94,8 @@ MinimiseResult minimise(Function&& function, const RestFactor& factor, const std
     result.iterations = iteration;
     result.residual = detail::largest(w.gradient);
     if (!std::isfinite(value) || !std::isfinite(result.residual)) return result;
-    for (size_t i = 0; i < unknowns.size(); ++i) w.packed[i] = w.gradient[unknowns[i]];
+    for (size_t i = 0; i < unknowns.size(); ++i)
+      w.packed[i] = w.gradient[unknowns[i]];
     detail::search_direction(factor, w, first, count);
     result.move = detail::largest(w.packed);
     if (result.move <= options.tolerance) {
@@ -91,7 +104,8 @@ MinimiseResult minimise(Function&& function, const RestFactor& factor, const std
     }
     if (iteration >= options.iterations) return result;
     double slope = 0.0;
-    for (size_t i = 0; i < unknowns.size(); ++i) slope += w.packed[i].dot(w.gradient[unknowns[i]]);
+    for (size_t i = 0; i < unknowns.size(); ++i)
+      slope += w.packed[i].dot(w.gradient[unknowns[i]]);
     if (!(slope < 0.0)) {  // the history misleads: begin again from the rest factor alone
       if (count == 0) return result;
       count = 0;
@@ -101,7 +115,8 @@ MinimiseResult minimise(Function&& function, const RestFactor& factor, const std
     bool fell = false;
     for (int halving = 0; halving < 24 && !fell; ++halving) {
       w.trial = x;
-      for (size_t i = 0; i < unknowns.size(); ++i) w.trial[unknowns[i]] += length * w.packed[i];
+      for (size_t i = 0; i < unknowns.size(); ++i)
+        w.trial[unknowns[i]] += length * w.packed[i];
       trial_value = function(w.trial.data(), w.trial_gradient.data());
       fell = trial_value <= value + 1e-4 * length * slope;
       if (!fell) length *= 0.5;
@@ -123,8 +138,10 @@ MinimiseResult minimise(Function&& function, const RestFactor& factor, const std
     }
     if (curvature > 1e-10 * std::sqrt(change_squared * step_squared)) {
       w.curvatures[slot] = curvature;
-      if (count < history) ++count;
-      else first = (first + 1) % history;
+      if (count < history)
+        ++count;
+      else
+        first = (first + 1) % history;
     }
     std::swap(x, w.trial);
     std::swap(w.gradient, w.trial_gradient);

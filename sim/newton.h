@@ -6,19 +6,20 @@
 namespace fascia::sim {
 
 struct NewtonOptions {
-  int iterations = 60;            ///< Newton steps
-  int inner_iterations = 120;     ///< of conjugate gradients a step
-  double forcing = 0.05;          ///< share of the preconditioned residual a step may leave
+  int iterations = 60;         ///< Newton steps
+  int inner_iterations = 120;  ///< of conjugate gradients a step
+  double forcing = 0.05;       ///< share of the preconditioned residual a step may leave
 };
 
 /// What `newton` needs of memory beside `MinimiseWorkspace`.
 struct NewtonWorkspace {
   Curvature curvature;
-  Positions step, direction, product;   // by node, zero where prescribed
-  Positions residual;                   // by unknown
-  std::vector<double> weights;          // by unknown: newton per metre, what damping multiplies
+  Positions step, direction, product;  // by node, zero where prescribed
+  Positions residual;                  // by unknown
+  std::vector<double> weights;         // by unknown: newton per metre, what damping multiplies
   void resize(size_t nodes, size_t unknowns) {
-    for (Positions* list : {&step, &direction, &product}) list->resize(nodes, Vec3::Zero());
+    for (Positions* list : {&step, &direction, &product})
+      list->resize(nodes, Vec3::Zero());
     residual.resize(unknowns, Vec3::Zero());
     weights.resize(unknowns, 0.0);
   }
@@ -26,23 +27,29 @@ struct NewtonWorkspace {
 
 namespace detail {
 
-/// n.step := about -H^-1 w.gradient: conjugate gradients, the rest factor as preconditioner. Returns iterations.
-inline int newton_step(const RestFactor& factor, const std::vector<uint32_t>& unknowns, const NewtonOptions& options,
-                       double damping, MinimiseWorkspace& w, NewtonWorkspace& n) {
+/// n.step := about -H^-1 w.gradient: conjugate gradients, the rest factor as preconditioner. Returns
+/// iterations.
+inline int newton_step(const RestFactor& factor, const std::vector<uint32_t>& unknowns,
+                       const NewtonOptions& options, double damping, MinimiseWorkspace& w,
+                       NewtonWorkspace& n) {
   std::fill(n.step.begin(), n.step.end(), Vec3::Zero());
   std::fill(n.direction.begin(), n.direction.end(), Vec3::Zero());
-  for (size_t i = 0; i < unknowns.size(); ++i) w.packed[i] = n.residual[i] = -w.gradient[unknowns[i]];
+  for (size_t i = 0; i < unknowns.size(); ++i)
+    w.packed[i] = n.residual[i] = -w.gradient[unknowns[i]];
   factor.solve(w.packed, w.scratch);
   double energy = dot(w.packed, n.residual);
   const double enough = options.forcing * options.forcing * energy;
-  for (size_t i = 0; i < unknowns.size(); ++i) n.direction[unknowns[i]] = w.packed[i];
+  for (size_t i = 0; i < unknowns.size(); ++i)
+    n.direction[unknowns[i]] = w.packed[i];
   int iteration = 0;
   while (iteration < options.inner_iterations && energy > enough && energy > 0.0) {
     std::fill(n.product.begin(), n.product.end(), Vec3::Zero());
     n.curvature.times(n.direction.data(), n.product.data());
-    for (size_t i = 0; i < unknowns.size(); ++i) n.product[unknowns[i]] += damping * n.weights[i] * n.direction[unknowns[i]];
+    for (size_t i = 0; i < unknowns.size(); ++i)
+      n.product[unknowns[i]] += damping * n.weights[i] * n.direction[unknowns[i]];
     double curvature = 0.0;
-    for (const uint32_t node : unknowns) curvature += n.direction[node].dot(n.product[node]);
+    for (const uint32_t node : unknowns)
+      curvature += n.direction[node].dot(n.product[node]);
     if (!(curvature > 0.0)) break;
     const double length = energy / curvature;
     for (size_t i = 0; i < unknowns.size(); ++i) {
@@ -62,13 +69,15 @@ inline int newton_step(const RestFactor& factor, const std::vector<uint32_t>& un
 
 }  // namespace detail
 
-/// Moves the nodes `unknowns` of `x` to a minimum of `function(x, gradient)` by Newton steps on the positive semidefinite
-/// curvature that `find_curvature(x, Curvature&)` gives, each solved by conjugate gradients with the rest factor as
-/// preconditioner and shortened until the function falls (Nocedal & Wright 2006, algorithm 7.1). For poses that
-/// quasi-Newton steps do not bring to an end: stiff contact, collapsed triangles.
+/// Moves the nodes `unknowns` of `x` to a minimum of `function(x, gradient)` by Newton steps on the positive
+/// semidefinite curvature that `find_curvature(x, Curvature&)` gives, each solved by conjugate gradients with
+/// the rest factor as preconditioner and shortened until the function falls (Nocedal & Wright 2006,
+/// algorithm 7.1). For poses that quasi-Newton steps do not bring to an end: stiff contact, collapsed
+/// triangles.
 template <class Function, class FindCurvature>
-MinimiseResult newton(Function&& function, FindCurvature&& find_curvature, const RestFactor& factor, const std::vector<uint32_t>& unknowns,
-                      const NewtonOptions& options, double tolerance, MinimiseWorkspace& w, NewtonWorkspace& n, Positions& x) {
+MinimiseResult newton(Function&& function, FindCurvature&& find_curvature, const RestFactor& factor,
+                      const std::vector<uint32_t>& unknowns, const NewtonOptions& options, double tolerance,
+                      MinimiseWorkspace& w, NewtonWorkspace& n, Positions& x) {
   MinimiseResult result;
   double value = function(x.data(), w.gradient.data()), damping = 0.0;
   for (int iteration = 0;; ++iteration) {
@@ -83,13 +92,15 @@ MinimiseResult newton(Function&& function, FindCurvature&& find_curvature, const
     }
     if (iteration >= options.iterations) return result;
     double slope = 0.0;
-    for (const uint32_t node : unknowns) slope += n.step[node].dot(w.gradient[node]);
+    for (const uint32_t node : unknowns)
+      slope += n.step[node].dot(w.gradient[node]);
     if (!(slope < 0.0)) return result;
     double length = std::min(1.0, 0.02 / result.move), trial_value = 0.0;
     bool fell = false;
     for (int halving = 0; halving < 24 && !fell; ++halving) {
       w.trial = x;
-      for (const uint32_t node : unknowns) w.trial[node] += length * n.step[node];
+      for (const uint32_t node : unknowns)
+        w.trial[node] += length * n.step[node];
       trial_value = function(w.trial.data(), w.trial_gradient.data());
       fell = trial_value <= value + 1e-4 * length * slope;
       if (!fell) length *= 0.5;

@@ -13,7 +13,8 @@ bool RestFactor::compute(const Eigen::SparseMatrix<double>& matrix) {
   const auto& inverse = cholesky.permutationPinv().indices();
   for (size_t k = 0; k < size; ++k) {
     // Eigen leaves the permutation empty when there is nothing to order.
-    order_[k] = inverse.size() == 0 ? static_cast<uint32_t>(k) : static_cast<uint32_t>(inverse[static_cast<int>(k)]);
+    order_[k] =
+        inverse.size() == 0 ? static_cast<uint32_t>(k) : static_cast<uint32_t>(inverse[static_cast<int>(k)]);
   }
   columns_.assign(1, 0);
   rows_.clear();
@@ -35,7 +36,8 @@ bool RestFactor::compute(const Eigen::SparseMatrix<double>& matrix) {
 
 void RestFactor::solve(std::span<Vec3> values, std::span<Vec3> scratch) const {
   const size_t size = order_.size();
-  for (size_t k = 0; k < size; ++k) scratch[k] = values[order_[k]];
+  for (size_t k = 0; k < size; ++k)
+    scratch[k] = values[order_[k]];
   for (size_t k = 0; k < size; ++k) {
     const Vec3 value = scratch[k] * inverse_diagonal_[k];
     scratch[k] = value;
@@ -48,7 +50,8 @@ void RestFactor::solve(std::span<Vec3> values, std::span<Vec3> scratch) const {
       value -= static_cast<double>(values_[e]) * scratch[rows_[e]];
     scratch[k] = value * inverse_diagonal_[k];
   }
-  for (size_t k = 0; k < size; ++k) values[order_[k]] = scratch[k];
+  for (size_t k = 0; k < size; ++k)
+    values[order_[k]] = scratch[k];
 }
 
 }  // namespace fascia::sim

@@ -33,7 +33,8 @@ void add_prism(const Prism& p, const Positions& x, const std::vector<int32_t>& u
   const double weight = p.stiffness / std::max(std::abs(p.volume), 1e-12);
   for (int axis = 0; axis < 3; ++axis) {
     double row[6];
-    for (size_t i = 0; i < 6; ++i) row[i] = gradient[i][axis];
+    for (size_t i = 0; i < 6; ++i)
+      row[i] = gradient[i][axis];
     add_square(p.nodes.data(), row, 6, weight, unknown, out);
   }
 }
@@ -43,12 +44,17 @@ void add_prism(const Prism& p, const Positions& x, const std::vector<int32_t>& u
 Eigen::SparseMatrix<double> assemble_rest_stiffness(const RestTerms& t) {
   Triplets triplets;
   const double ends[2] = {1.0, -1.0}, one = 1.0;
-  for (const Spring& s : t.springs) add_square(s.nodes.data(), ends, 2, s.stiffness, t.unknown_of_node, triplets);
-  for (const Membrane& m : t.membranes) add_membrane(m, t.unknown_of_node, triplets);
-  for (const Hinge& h : t.hinges) add_square(h.nodes.data(), h.weights.data(), 4, h.stiffness, t.unknown_of_node, triplets);
-  for (const Prism& p : t.prisms) add_prism(p, t.rest, t.unknown_of_node, triplets);
+  for (const Spring& s : t.springs)
+    add_square(s.nodes.data(), ends, 2, s.stiffness, t.unknown_of_node, triplets);
+  for (const Membrane& m : t.membranes)
+    add_membrane(m, t.unknown_of_node, triplets);
+  for (const Hinge& h : t.hinges)
+    add_square(h.nodes.data(), h.weights.data(), 4, h.stiffness, t.unknown_of_node, triplets);
+  for (const Prism& p : t.prisms)
+    add_prism(p, t.rest, t.unknown_of_node, triplets);
   for (const Tether& h : t.tethers)
-    add_square(&h.node, &one, 1, (h.normal_stiffness + 2.0 * h.tangential_stiffness) / 3.0, t.unknown_of_node, triplets);
+    add_square(&h.node, &one, 1, (h.normal_stiffness + 2.0 * h.tangential_stiffness) / 3.0, t.unknown_of_node,
+               triplets);
   // A breath of stiffness on every node keeps the factor definite where an element has none across itself.
   for (size_t i = 0; i < t.unknowns; ++i) {
     const auto k = static_cast<int>(i);

@@ -4,8 +4,8 @@
 
 namespace fascia::sim {
 
-/// A solver of a face behind one interface, so that a host may choose. `Face` needs none of this; other solvers, some
-/// in libraries loaded on demand, are reached through it.
+/// A solver of a face behind one interface, so that a host may choose. `Face` needs none of this; other
+/// solvers, some in libraries loaded on demand, are reached through it.
 class Solver {
  public:
   virtual ~Solver() = default;
@@ -18,8 +18,8 @@ class Solver {
   virtual void positions(std::span<Vec3f> out) const = 0;
 };
 
-/// What a solver library exports under the name in `solver_entry`: makes a solver on `model`, which outlives it, for
-/// so many channels; null when the model is not valid. The caller deletes it.
+/// What a solver library exports under the name in `solver_entry`: makes a solver on `model`, which outlives
+/// it, for so many channels; null when the model is not valid. The caller deletes it.
 using MakeSolver = Solver* (*)(const FaceModel* model, size_t channels);
 inline constexpr const char* solver_entry = "fascia_make_solver";
 

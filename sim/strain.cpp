@@ -14,7 +14,8 @@ void skin_strain(const FaceModel& model, std::span<const Vec3f> displacements, s
   std::fill(out.begin(), out.end(), Strain::Zero());
   std::span<const Membrane> skin(model.membranes().data(), lattice.triangles.size());
   for (const Membrane& m : skin) {
-    // In the triangle's plane, F = I + grad u: the strain comes from displacements alone, so that rest gives exact zeros.
+    // In the triangle's plane, F = I + grad u: the strain comes from displacements alone, so that rest gives
+    // exact zeros.
     const Vec3 first = rest[m.nodes[1]] - rest[m.nodes[0]], second = rest[m.nodes[2]] - rest[m.nodes[0]];
     const Vec3 along = first.normalized(), across = first.cross(second).cross(first).normalized();
     Eigen::Matrix<double, 3, 2> moved, axes;
@@ -28,8 +29,10 @@ void skin_strain(const FaceModel& model, std::span<const Vec3f> displacements, s
     const Mat3 full = axes * green * axes.transpose();
     Strain strain;
     const double parts[6] = {full(0, 0), full(1, 1), full(2, 2), full(0, 1), full(1, 2), full(2, 0)};
-    for (int k = 0; k < 6; ++k) strain[k] = static_cast<float>(m.area * parts[k]);
-    for (const uint32_t node : m.nodes) out[node] += strain;
+    for (int k = 0; k < 6; ++k)
+      strain[k] = static_cast<float>(m.area * parts[k]);
+    for (const uint32_t node : m.nodes)
+      out[node] += strain;
   }
   const std::vector<double>& areas = model.column_areas();
   for (uint32_t c = 0; c < lattice.columns; ++c)

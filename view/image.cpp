@@ -21,9 +21,11 @@
 
 namespace fascia::view {
 
-Image::Image(int image_width, int image_height, Colour background) : width(image_width), height(image_height) {
+Image::Image(int image_width, int image_height, Colour background)
+    : width(image_width), height(image_height) {
   pixels.resize(static_cast<size_t>(width) * static_cast<size_t>(height) * 3);
-  for (size_t i = 0; i < pixels.size(); ++i) pixels[i] = background[i % 3];
+  for (size_t i = 0; i < pixels.size(); ++i)
+    pixels[i] = background[i % 3];
 }
 
 void write_png(const std::filesystem::path& path, const Image& image) {
@@ -32,7 +34,8 @@ void write_png(const std::filesystem::path& path, const Image& image) {
   std::filesystem::path beside = path;
   beside += ".part";
   if (!stbi_write_png(beside.c_str(), image.width, image.height, 3, image.pixels.data(), image.width * 3))
-    throw Error("'" + path.string() + "' cannot be written: check the folder, its permissions and free space");
+    throw Error("'" + path.string() +
+                "' cannot be written: check the folder, its permissions and free space");
   std::filesystem::rename(beside, path, status);
   if (status) throw Error("'" + path.string() + "' cannot be written: " + status.message());
 }
@@ -44,7 +47,8 @@ std::vector<uint8_t> encode_png(const Image& image) {
     auto* out = static_cast<std::vector<uint8_t>*>(target);
     out->insert(out->end(), first, first + size);
   };
-  if (!stbi_write_png_to_func(add, &bytes, image.width, image.height, 3, image.pixels.data(), image.width * 3))
+  if (!stbi_write_png_to_func(add, &bytes, image.width, image.height, 3, image.pixels.data(),
+                              image.width * 3))
     throw Error("a picture of " + std::to_string(image.width) + " by " + std::to_string(image.height) +
                 " pixels cannot be written as PNG");
   return bytes;
@@ -54,8 +58,10 @@ void paste(Image& target, const Image& source, int x, int y) {
   const int first = std::max(0, -x), last = std::min(source.width, target.width - x);
   if (first >= last) return;
   for (int row = std::max(0, -y); row < std::min(source.height, target.height - y); ++row) {
-    const size_t from = 3 * (static_cast<size_t>(row) * static_cast<size_t>(source.width) + static_cast<size_t>(first));
-    const size_t to = 3 * (static_cast<size_t>(row + y) * static_cast<size_t>(target.width) + static_cast<size_t>(first + x));
+    const size_t from =
+        3 * (static_cast<size_t>(row) * static_cast<size_t>(source.width) + static_cast<size_t>(first));
+    const size_t to = 3 * (static_cast<size_t>(row + y) * static_cast<size_t>(target.width) +
+                           static_cast<size_t>(first + x));
     std::memcpy(&target.pixels[to], &source.pixels[from], 3 * static_cast<size_t>(last - first));
   }
 }
@@ -64,12 +70,14 @@ void write_label(Image& image, const std::string& text, int x, int y, int scale,
   // The font comes as quads of four vertices (x, y, z, colour), 16 bytes each, one unit a dot.
   std::vector<char> buffer(text.size() * 300 + 1024);
   std::string copy = text;
-  const int quads = stb_easy_font_print(0, 0, copy.data(), nullptr, buffer.data(), static_cast<int>(buffer.size()));
+  const int quads =
+      stb_easy_font_print(0, 0, copy.data(), nullptr, buffer.data(), static_cast<int>(buffer.size()));
   for (int q = 0; q < quads; ++q) {
     float corners[16];
     std::memcpy(corners, &buffer[static_cast<size_t>(q) * 64], 64);
     const int left = x + static_cast<int>(corners[0]) * scale, top = y + static_cast<int>(corners[1]) * scale;
-    const int right = x + static_cast<int>(corners[8]) * scale, bottom = y + static_cast<int>(corners[9]) * scale;
+    const int right = x + static_cast<int>(corners[8]) * scale,
+              bottom = y + static_cast<int>(corners[9]) * scale;
     for (int row = std::max(0, top); row < std::min(bottom, image.height); ++row)
       for (int column = std::max(0, left); column < std::min(right, image.width); ++column)
         std::copy(colour.begin(), colour.end(),
@@ -84,7 +92,8 @@ Image contact_sheet(const std::vector<Tile>& tiles, int columns) {
   const int rows = (static_cast<int>(tiles.size()) + columns - 1) / columns;
   Image sheet(columns * (width + gap) + gap, rows * (height + gap) + gap, {30, 33, 38});
   for (size_t i = 0; i < tiles.size(); ++i) {
-    const int x = gap + static_cast<int>(i) % columns * (width + gap), y = gap + static_cast<int>(i) / columns * (height + gap);
+    const int x = gap + static_cast<int>(i) % columns * (width + gap),
+              y = gap + static_cast<int>(i) / columns * (height + gap);
     paste(sheet, tiles[i].image, x, y);
     const int scale = static_cast<int>(tiles[i].caption.size()) * 12 < width ? 2 : 1;
     write_label(sheet, tiles[i].caption, x + 6, y + tiles[i].image.height + 6, scale, {225, 225, 225});

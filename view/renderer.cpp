@@ -79,9 +79,11 @@ GLuint compile(GLenum kind, const char* source) {
 GLuint link(const char* fragment) {
   const GLuint program = glCreateProgram();
   const GLuint parts[2] = {compile(GL_VERTEX_SHADER, vertex_source), compile(GL_FRAGMENT_SHADER, fragment)};
-  for (GLuint part : parts) glAttachShader(program, part);
+  for (GLuint part : parts)
+    glAttachShader(program, part);
   glLinkProgram(program);
-  for (GLuint part : parts) glDeleteShader(part);
+  for (GLuint part : parts)
+    glDeleteShader(part);
   return program;
 }
 
@@ -118,9 +120,11 @@ std::vector<Vec3> seamless_normals(const DrawSurface& surface) {
     shared.push_back(first.try_emplace({p[0], p[1], p[2]}, static_cast<int>(shared.size())).first->second);
   TriangleMesh welded{surface.positions, surface.triangles};
   for (Triangle& t : welded.triangles)
-    for (int& corner : t) corner = shared[static_cast<size_t>(corner)];
+    for (int& corner : t)
+      corner = shared[static_cast<size_t>(corner)];
   std::vector<Vec3> normals = vertex_normals(welded);
-  for (size_t v = 0; v < normals.size(); ++v) normals[v] = normals[static_cast<size_t>(shared[v])];
+  for (size_t v = 0; v < normals.size(); ++v)
+    normals[v] = normals[static_cast<size_t>(shared[v])];
   return normals;
 }
 
@@ -130,8 +134,10 @@ std::vector<float> interleave(const std::vector<Vec3>& positions, const std::vec
   std::vector<float> data;
   data.reserve(positions.size() * 9);
   for (size_t i = 0; i < positions.size(); ++i)
-    for (const Vec3& v : {positions[i], normals.empty() ? Vec3(Vec3::UnitZ()) : normals[i], colours.empty() ? colour : colours[i]})
-      for (int k = 0; k < 3; ++k) data.push_back(static_cast<float>(v[k]));
+    for (const Vec3& v : {positions[i], normals.empty() ? Vec3(Vec3::UnitZ()) : normals[i],
+                          colours.empty() ? colour : colours[i]})
+      for (int k = 0; k < 3; ++k)
+        data.push_back(static_cast<float>(v[k]));
   return data;
 }
 
@@ -139,15 +145,22 @@ std::vector<float> interleave(const std::vector<Vec3>& positions, const std::vec
 
 Camera named_camera(const std::string& view, const Bounds& box, double fill) {
   Camera camera;
-  if (view == "front") camera.yaw = 0;
-  else if (view == "side") camera.yaw = 90;
-  else if (view == "right") camera.yaw = -90;
-  else if (view == "three-quarter") camera.yaw = 38;
-  else if (view == "back") camera.yaw = 180;
-  else throw Error("view '" + view + "' is unknown: use front, side, right, three-quarter, back or turntable");
+  if (view == "front")
+    camera.yaw = 0;
+  else if (view == "side")
+    camera.yaw = 90;
+  else if (view == "right")
+    camera.yaw = -90;
+  else if (view == "three-quarter")
+    camera.yaw = 38;
+  else if (view == "back")
+    camera.yaw = 180;
+  else
+    throw Error("view '" + view + "' is unknown: use front, side, right, three-quarter, back or turntable");
   camera.target = box.centre();
   const double height = std::max({box.size()[1], box.size()[0], 0.8 * box.size()[2]});
-  camera.distance = 0.5 * height / fill / std::tan(camera.field_of_view * EIGEN_PI / 360.0) + 0.35 * box.size()[2];
+  camera.distance =
+      0.5 * height / fill / std::tan(camera.field_of_view * EIGEN_PI / 360.0) + 0.35 * box.size()[2];
   return camera;
 }
 
@@ -161,12 +174,14 @@ struct Renderer::State {
   GLuint array = 0, vertices = 0, indices = 0;
 
   void make_context() {
-    const auto get_display = reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(eglGetProcAddress("eglGetPlatformDisplayEXT"));
+    const auto get_display =
+        reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(eglGetProcAddress("eglGetPlatformDisplayEXT"));
     if (get_display) display = get_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
     if (display == EGL_NO_DISPLAY) display = eglGetDisplay(EGL_DEFAULT_DISPLAY);
     if (display == EGL_NO_DISPLAY || !eglInitialize(display, nullptr, nullptr) || !eglBindAPI(EGL_OPENGL_API))
       throw Error("no OpenGL without a display: install Mesa's EGL (Debian: libegl1 libgl1-mesa-dri)");
-    const EGLint wanted[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
+    const EGLint wanted[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT,
+                             EGL_NONE};
     EGLConfig config = nullptr;
     EGLint count = 0;
     eglChooseConfig(display, wanted, &config, 1, &count);
@@ -192,7 +207,8 @@ struct Renderer::State {
     glRenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, width, height);
     glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, buffers[2]);
     if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-      throw Error("pictures of " + std::to_string(width) + " x " + std::to_string(height) + " are too large for OpenGL here");
+      throw Error("pictures of " + std::to_string(width) + " x " + std::to_string(height) +
+                  " are too large for OpenGL here");
   }
 
   void make_arrays() {
@@ -204,14 +220,16 @@ struct Renderer::State {
     glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices);
     for (GLuint k = 0; k < 3; ++k) {
       glEnableVertexAttribArray(k);
-      glVertexAttribPointer(k, 3, GL_FLOAT, GL_FALSE, 36, reinterpret_cast<void*>(static_cast<uintptr_t>(12 * k)));
+      glVertexAttribPointer(k, 3, GL_FLOAT, GL_FALSE, 36,
+                            reinterpret_cast<void*>(static_cast<uintptr_t>(12 * k)));
     }
   }
 
   void set_matrices(GLuint program, const Camera& camera) const {
     const Mat4 eye = look(camera);
     const Eigen::Matrix4f to_eye = eye.cast<float>();
-    const Eigen::Matrix4f to_clip = (perspective(camera, static_cast<double>(width) / height) * eye).cast<float>();
+    const Eigen::Matrix4f to_clip =
+        (perspective(camera, static_cast<double>(width) / height) * eye).cast<float>();
     glUseProgram(program);
     glUniformMatrix4fv(glGetUniformLocation(program, "to_eye"), 1, GL_FALSE, to_eye.data());
     glUniformMatrix4fv(glGetUniformLocation(program, "to_clip"), 1, GL_FALSE, to_clip.data());
@@ -219,14 +237,19 @@ struct Renderer::State {
 
   void draw_surface(const DrawSurface& surface) const {
     const std::vector<Vec3> normals = seamless_normals(surface);
-    const std::vector<float> data = interleave(surface.positions, normals, surface.vertex_colours, surface.colour);
+    const std::vector<float> data =
+        interleave(surface.positions, normals, surface.vertex_colours, surface.colour);
     glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(data.size() * 4), data.data(), GL_STREAM_DRAW);
-    glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(surface.triangles.size() * 12), surface.triangles.data(), GL_STREAM_DRAW);
+    glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(surface.triangles.size() * 12),
+                 surface.triangles.data(), GL_STREAM_DRAW);
     glUniform1f(glGetUniformLocation(surface_program, "opacity"), static_cast<float>(surface.opacity));
     glUniform1f(glGetUniformLocation(surface_program, "shine"), static_cast<float>(surface.shine));
-    if (surface.is_two_sided) glDisable(GL_CULL_FACE);
-    else glEnable(GL_CULL_FACE);
-    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(surface.triangles.size() * 3), GL_UNSIGNED_INT, nullptr);
+    if (surface.is_two_sided)
+      glDisable(GL_CULL_FACE);
+    else
+      glEnable(GL_CULL_FACE);
+    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(surface.triangles.size() * 3), GL_UNSIGNED_INT,
+                   nullptr);
   }
 
   void draw_lines(const DrawLines& bundle) const {
@@ -241,7 +264,8 @@ struct Renderer::State {
 };
 
 Renderer::Renderer(int width, int height) : state_(std::make_unique<State>()) {
-  if (width < 1 || height < 1 || width > 8192 || height > 8192) throw Error("a picture must be 1 to 8192 pixels wide and high");
+  if (width < 1 || height < 1 || width > 8192 || height > 8192)
+    throw Error("a picture must be 1 to 8192 pixels wide and high");
   state_->width = width;
   state_->height = height;
   state_->make_context();
@@ -271,7 +295,8 @@ Image Renderer::draw(const DrawList& list, const Camera& camera, Colour backgrou
   for (const DrawSurface& surface : list.surfaces)
     if (surface.opacity >= 1.0 && !surface.triangles.empty()) state_->draw_surface(surface);
   state_->set_matrices(state_->line_program, camera);
-  for (const DrawLines& bundle : list.lines) state_->draw_lines(bundle);
+  for (const DrawLines& bundle : list.lines)
+    state_->draw_lines(bundle);
   // Glass last: its depth first, so that only its nearest side is blended.
   state_->set_matrices(state_->surface_program, camera);
   for (const DrawSurface& surface : list.surfaces) {
@@ -288,15 +313,17 @@ Image Renderer::draw(const DrawList& list, const Camera& camera, Colour backgrou
   }
   glBindFramebuffer(GL_READ_FRAMEBUFFER, state_->drawn);
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, state_->resolved);
-  glBlitFramebuffer(0, 0, state_->width, state_->height, 0, 0, state_->width, state_->height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  glBlitFramebuffer(0, 0, state_->width, state_->height, 0, 0, state_->width, state_->height,
+                    GL_COLOR_BUFFER_BIT, GL_NEAREST);
   glBindFramebuffer(GL_READ_FRAMEBUFFER, state_->resolved);
   Image image(state_->width, state_->height, background), flipped = image;
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
   glReadPixels(0, 0, state_->width, state_->height, GL_RGB, GL_UNSIGNED_BYTE, flipped.pixels.data());
   const size_t row = static_cast<size_t>(state_->width) * 3;
   for (int y = 0; y < state_->height; ++y)
-    std::copy_n(flipped.pixels.begin() + static_cast<std::ptrdiff_t>(row * static_cast<size_t>(state_->height - 1 - y)), row,
-                image.pixels.begin() + static_cast<std::ptrdiff_t>(row * static_cast<size_t>(y)));
+    std::copy_n(flipped.pixels.begin() +
+                    static_cast<std::ptrdiff_t>(row * static_cast<size_t>(state_->height - 1 - y)),
+                row, image.pixels.begin() + static_cast<std::ptrdiff_t>(row * static_cast<size_t>(y)));
   return image;
 }
 

@@ -13,11 +13,11 @@ namespace fascia::view {
 struct DrawSurface {
   std::vector<Vec3> positions;
   std::vector<Triangle> triangles;
-  Vec3 colour = Vec3(0.8, 0.8, 0.8);     ///< sRGB, 0..1
-  std::vector<Vec3> vertex_colours;      ///< one a vertex, or none
-  double opacity = 1.0;                  ///< below 1 the surface is drawn last and blended
-  double shine = 0.2;                    ///< strength of the highlight
-  bool is_two_sided = true;              ///< else the back is not drawn
+  Vec3 colour = Vec3(0.8, 0.8, 0.8);  ///< sRGB, 0..1
+  std::vector<Vec3> vertex_colours;   ///< one a vertex, or none
+  double opacity = 1.0;               ///< below 1 the surface is drawn last and blended
+  double shine = 0.2;                 ///< strength of the highlight
+  bool is_two_sided = true;           ///< else the back is not drawn
 };
 
 /// Polylines to draw.
@@ -41,8 +41,8 @@ struct Camera {
   double field_of_view = 22.0;  ///< vertical, degrees
 };
 
-/// The camera of a named view (front, side, right, three-quarter, back) that frames `box`; `fill` is the share of the
-/// picture's height that the box takes. Throws fascia::Error for another name.
+/// The camera of a named view (front, side, right, three-quarter, back) that frames `box`; `fill` is the
+/// share of the picture's height that the box takes. Throws fascia::Error for another name.
 Camera named_camera(const std::string& view, const Bounds& box, double fill = 0.9);
 
 /// An OpenGL renderer without a display: EGL's surfaceless platform, on the processor where there is no

@@ -20,7 +20,8 @@ namespace {
 /// A path as one word for the shell.
 std::string quoted(const std::string& path) {
   std::string word = "'";
-  for (char c : path) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  for (char c : path)
+    word += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return word + "'";
 }
 
@@ -36,10 +37,11 @@ Video::Video(const std::filesystem::path& path, int width, int height, double fr
   state_->width = width;
   state_->height = height;
   std::signal(SIGPIPE, SIG_IGN);
-  const std::string command = "ffmpeg -y -loglevel error -f rawvideo -pix_fmt rgb24 -s " + std::to_string(width) + "x" +
-                              std::to_string(height) + " -r " + std::to_string(frames_per_second) +
-                              " -i - -an -c:v libx264 -crf 20 -pix_fmt yuv420p -movflags +faststart -threads 1 " +
-                              quoted(state_->beside.string());
+  const std::string command =
+      "ffmpeg -y -loglevel error -f rawvideo -pix_fmt rgb24 -s " + std::to_string(width) + "x" +
+      std::to_string(height) + " -r " + std::to_string(frames_per_second) +
+      " -i - -an -c:v libx264 -crf 20 -pix_fmt yuv420p -movflags +faststart -threads 1 " +
+      quoted(state_->beside.string());
   state_->pipe = popen(command.c_str(), "w");
   if (!state_->pipe) throw Error("ffmpeg cannot be started");
 }
@@ -52,8 +54,10 @@ Video::~Video() {
 }
 
 void Video::add(const Image& frame) {
-  if (frame.width != state_->width || frame.height != state_->height) throw Error("a frame has another size than its film");
-  state_->is_broken |= std::fwrite(frame.pixels.data(), 1, frame.pixels.size(), state_->pipe) != frame.pixels.size();
+  if (frame.width != state_->width || frame.height != state_->height)
+    throw Error("a frame has another size than its film");
+  state_->is_broken |=
+      std::fwrite(frame.pixels.data(), 1, frame.pixels.size(), state_->pipe) != frame.pixels.size();
 }
 
 void Video::finish() {

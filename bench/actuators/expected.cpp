@@ -17,7 +17,8 @@ const std::vector<Expectation>& expectations() {
       {"orbicularis_oculi_orbital_upper", 1, "superciliare_left", {0, -1, 0}, 0.7, 6},
       {"orbicularis_oculi_orbital_lower", 1, "zygomaxillare_skin_left", {0, 1, 0}, 0.7, 6},
       {"levator_palpebrae_superioris", 1, "palpebrale_superius_left", {0, 1, 0}, 0.5, 4},
-      // Slung over the nose from side to side, the two press the skin beside the ala onto it: against the outward normal of the groove.
+      // Slung over the nose from side to side, the two press the skin beside the ala onto it: against the
+      // outward normal of the groove.
       {"both:nasalis_transverse", 1, "alar_groove_left", {-0.83, -0.19, -0.53}, 0.2, 3},
       {"nasalis_alar", 1, "alare_left", {0.6, -1, 0}, 0.2, 3},
       {"depressor_septi_nasi", 1, "subnasale", {0, -1, 0}, 0.3, 3},

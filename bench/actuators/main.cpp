@@ -1,14 +1,15 @@
-// What every actuator does alone, on several heads: a contact sheet, and a table of how far the landmark it is there for
-// moves and which way, beside what anatomy expects.
+// What every actuator does alone, on several heads: a contact sheet, and a table of how far the landmark it
+// is there for moves and which way, beside what anatomy expects.
 //
-//   bench_actuators [embedded|neutral|person_0|...]... [--sheet PREFIX] [--level NAME] [--only SUBSTRING] [--layers LIST]
+//   bench_actuators [embedded|neutral|person_0|...]... [--sheet PREFIX] [--level NAME] [--only SUBSTRING]
+//   [--layers LIST]
 //                   [--keep FOLDER] [--zoom FACTOR]
 //
 // Pairs are shown on the left; a row is marked when a travel lies outside the expected range.
 
+#include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <chrono>
 #include <map>
 
 #include "anatomy/anatomy.h"
@@ -33,7 +34,7 @@ struct Request {
   std::vector<std::string> people;
   std::string sheet, level, only, layers = "skin,eyes";
   double zoom = 1.0;  ///< towards the landmark
-  fs::path keep;  ///< folder that the rigs stay in; empty: they are removed
+  fs::path keep;      ///< folder that the rigs stay in; empty: they are removed
 };
 
 /// A rig written to a file of its own, gone with this.
@@ -50,8 +51,10 @@ struct BuiltRig {
 std::unique_ptr<BuiltRig> build(const std::string& person, const fs::path& keep) {
   const auto [scene, landmarks] = read_person(person);
   const rigging::BuildResult built = rigging::build_rig(scene, landmarks, anatomy::load_generic(), {});
-  for (const std::string& warning : built.report.warnings) std::printf("%s: %s\n", person.c_str(), warning.c_str());
-  const std::vector<uint8_t> bytes = rig::write(rigging::gltf_source(scene, built.report.input_to_metres), built.rig);
+  for (const std::string& warning : built.report.warnings)
+    std::printf("%s: %s\n", person.c_str(), warning.c_str());
+  const std::vector<uint8_t> bytes =
+      rig::write(rigging::gltf_source(scene, built.report.input_to_metres), built.rig);
   auto out = std::make_unique<BuiltRig>();
   out->is_kept = !keep.empty();
   out->path = (out->is_kept ? keep : fs::temp_directory_path()) / ("fascia_actuators_" + person + ".glb");
@@ -83,7 +86,8 @@ struct Landmarks {
     if (found == vertex.end()) return Vec3::Constant(NAN);
     const auto [m, v] = found->second;
     const auto now = face.positions(m), rest = face.rest(m);
-    return {static_cast<double>(now[3 * v] - rest[3 * v]), static_cast<double>(now[3 * v + 1] - rest[3 * v + 1]),
+    return {static_cast<double>(now[3 * v] - rest[3 * v]),
+            static_cast<double>(now[3 * v + 1] - rest[3 * v + 1]),
             static_cast<double>(now[3 * v + 2] - rest[3 * v + 2])};
   }
 };
@@ -112,7 +116,8 @@ int run(const std::string& person, const Request& request) {
   const std::unique_ptr<BuiltRig> built = build(person, request.keep);
   cli::Face face(built->path, {FASCIA_SPACE_METRES, "own", request.level});
   const Landmarks landmarks(face, built->rig);
-  std::printf("%s\n%-46s %5s  %-32s %21s %7s  %s\n", person.c_str(), "actuator", "value", "landmark", "lateral/up/fwd mm", "travel", "expected");
+  std::printf("%s\n%-46s %5s  %-32s %21s %7s  %s\n", person.c_str(), "actuator", "value", "landmark",
+              "lateral/up/fwd mm", "travel", "expected");
   std::vector<view::Tile> tiles;
   std::unique_ptr<view::Renderer> renderer;
   if (!request.sheet.empty()) renderer = std::make_unique<view::Renderer>(300, 300);
@@ -133,12 +138,15 @@ int run(const std::string& person, const Request& request) {
     const double travel = motion.dot(Vec3(e.direction[0], e.direction[1], e.direction[2]).normalized());
     const bool fits = travel >= e.least && travel <= e.most;
     outside += !fits;
-    std::printf("%-46s %5.1f  %-32s %6.1f %6.1f %6.1f %7.1f  %4.1f..%-4.1f %s %5.2fs\n", name.c_str(), e.value, e.landmark.c_str(), motion.x(),
-                motion.y(), motion.z(), travel, e.least, e.most, fits ? " " : "*", seconds);
+    std::printf("%-46s %5.1f  %-32s %6.1f %6.1f %6.1f %7.1f  %4.1f..%-4.1f %s %5.2fs\n", name.c_str(),
+                e.value, e.landmark.c_str(), motion.x(), motion.y(), motion.z(), travel, e.least, e.most,
+                fits ? " " : "*", seconds);
     if (renderer) {
       char caption[64];
       std::snprintf(caption, sizeof caption, "%.27s %+.1f", bare.c_str(), travel);
-      tiles.push_back({renderer->draw(cli::draw_face(face, built->rig, cli::layers_from(request.layers)), camera_for(built->rig, e.landmark, request.zoom)), caption});
+      tiles.push_back({renderer->draw(cli::draw_face(face, built->rig, cli::layers_from(request.layers)),
+                                      camera_for(built->rig, e.landmark, request.zoom)),
+                       caption});
     }
   }
   std::printf("%d outside the expected range\n\n", outside);
@@ -154,13 +162,20 @@ int main(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
     const bool more = i + 1 < argc;
-    if (word == "--sheet" && more) request.sheet = argv[++i];
-    else if (word == "--level" && more) request.level = argv[++i];
-    else if (word == "--only" && more) request.only = argv[++i];
-    else if (word == "--zoom" && more) request.zoom = std::stod(argv[++i]);
-    else if (word == "--keep" && more) request.keep = argv[++i];
-    else if (word == "--layers" && more) request.layers = argv[++i];
-    else request.people.push_back(word);
+    if (word == "--sheet" && more)
+      request.sheet = argv[++i];
+    else if (word == "--level" && more)
+      request.level = argv[++i];
+    else if (word == "--only" && more)
+      request.only = argv[++i];
+    else if (word == "--zoom" && more)
+      request.zoom = std::stod(argv[++i]);
+    else if (word == "--keep" && more)
+      request.keep = argv[++i];
+    else if (word == "--layers" && more)
+      request.layers = argv[++i];
+    else
+      request.people.push_back(word);
   }
   if (request.people.empty()) request.people = {"embedded"};
   try {

@@ -1,16 +1,17 @@
 // How much of measured expressions the simulated ones explain: for each ARKit shape of a reference face
-// 1 - sum|u-v|^2 / sum|v|^2 over its face, the same over all its skin with the linings of mouth and eye sockets, and the
-// mean error over vertices of the skin that move more than 0.5 mm. Beside them what tells a wrong amplitude from a wrong
-// direction: the factor that would serve best, and the share explained with it.
+// 1 - sum|u-v|^2 / sum|v|^2 over its face, the same over all its skin with the linings of mouth and eye
+// sockets, and the mean error over vertices of the skin that move more than 0.5 mm. Beside them what tells a
+// wrong amplitude from a wrong direction: the factor that would serve best, and the share explained with it.
 //
 //   bench_expressions [neutral|person_0|...]... [--sheet FILE.png] [--level NAME] [--rigs DIR] [--remeshed]
 //
-// With --remeshed copies of each head cut into other triangles are scored too, and how far their poses lie from the head's own
-// where either moves by more than 0.5 mm.
-// With --rigs the rigs are left in DIR and nothing is scored.
+// With --remeshed copies of each head cut into other triangles are scored too, and how far their poses lie
+// from the head's own where either moves by more than 0.5 mm. With --rigs the rigs are left in DIR and
+// nothing is scored.
 //
-// Doing nothing scores 0 and about 3 mm, a half-amplitude copy 0.75 and 1.5 mm. mouthClose is scored as jawOpen + mouthClose.
-// The shapes are one sculpted, nearly mirrored set shared by all people: a reference, not an independent sample.
+// Doing nothing scores 0 and about 3 mm, a half-amplitude copy 0.75 and 1.5 mm. mouthClose is scored as
+// jawOpen + mouthClose. The shapes are one sculpted, nearly mirrored set shared by all people: a reference,
+// not an independent sample.
 
 #include <algorithm>
 #include <cmath>
@@ -50,8 +51,8 @@ struct Score {
   int turned = 0;  ///< triangles that the simulation turns over and the reference does not
 };
 
-Score score(const std::vector<Vec3>& rest, const std::vector<Triangle>& triangles, const std::vector<Vec3>& simulated,
-            const std::vector<Vec3>& truth) {
+Score score(const std::vector<Vec3>& rest, const std::vector<Triangle>& triangles,
+            const std::vector<Vec3>& simulated, const std::vector<Vec3>& truth) {
   Score result;
   double miss[2] = {}, all[2] = {}, own = 0.0, both = 0.0, error = 0.0;  // [0] face, [1] lining
   int moving = 0;
@@ -87,13 +88,15 @@ Score score(const std::vector<Vec3>& rest, const std::vector<Triangle>& triangle
 std::vector<Vec3> simulated_displacement(cli::Face& face, const std::map<std::string, double>& values) {
   face.clear();
   face.reset();
-  for (const auto& [name, value] : values) face.set(name, value);
+  for (const auto& [name, value] : values)
+    face.set(name, value);
   face.pose();
   for (size_t m = 0; m < face.meshes().size(); ++m) {
     if (face.meshes()[m].name != "head") continue;
     std::vector<Vec3> moved;
     const auto now = face.positions(m), rest = face.rest(m);
-    for (size_t i = 0; i + 2 < now.size(); i += 3) moved.emplace_back(now[i] - rest[i], now[i + 1] - rest[i + 1], now[i + 2] - rest[i + 2]);
+    for (size_t i = 0; i + 2 < now.size(); i += 3)
+      moved.emplace_back(now[i] - rest[i], now[i + 1] - rest[i + 1], now[i + 2] - rest[i + 2]);
     return moved;
   }
   throw Error("the rig has no mesh 'head'");
@@ -106,7 +109,8 @@ Vec3 heat(double mm) {
 
 /// Measured, simulated and error side by side.
 void add_tiles(std::vector<view::Tile>& tiles, const view::Renderer& renderer, const formats::SceneMesh& head,
-               const std::vector<Vec3>& simulated, const std::vector<Vec3>& truth, const std::string& name, const Score& result) {
+               const std::vector<Vec3>& simulated, const std::vector<Vec3>& truth, const std::string& name,
+               const Score& result) {
   view::Camera camera;
   camera.target = Vec3(0.0, 0.005, 0.05);
   camera.distance = 0.62;
@@ -123,9 +127,12 @@ void add_tiles(std::vector<view::Tile>& tiles, const view::Renderer& renderer, c
     }
     list.surfaces.push_back(std::move(surface));
     char caption[96];
-    if (kind == 0) std::snprintf(caption, sizeof caption, "%s measured", name.c_str());
-    else if (kind == 1) std::snprintf(caption, sizeof caption, "simulated %.2f", result.explained);
-    else std::snprintf(caption, sizeof caption, "error 0..5 mm: %.2f", result.error_mm);
+    if (kind == 0)
+      std::snprintf(caption, sizeof caption, "%s measured", name.c_str());
+    else if (kind == 1)
+      std::snprintf(caption, sizeof caption, "simulated %.2f", result.explained);
+    else
+      std::snprintf(caption, sizeof caption, "error 0..5 mm: %.2f", result.error_mm);
     tiles.push_back({renderer.draw(list, camera), caption});
   }
 }
@@ -134,15 +141,18 @@ void add_tiles(std::vector<view::Tile>& tiles, const view::Renderer& renderer, c
 struct Subject {
   fs::path path;
   std::unique_ptr<cli::Face> face;
-  Subject(const formats::Scene& scene, const formats::LandmarkFile& landmarks, const std::string& name, const std::string& level,
-          const fs::path& kept = {})
-      : path(kept.empty() ? fs::temp_directory_path() / ("fascia_bench_" + name + ".glb") : kept), is_kept(!kept.empty()) {
+  Subject(const formats::Scene& scene, const formats::LandmarkFile& landmarks, const std::string& name,
+          const std::string& level, const fs::path& kept = {})
+      : path(kept.empty() ? fs::temp_directory_path() / ("fascia_bench_" + name + ".glb") : kept),
+        is_kept(!kept.empty()) {
     rigging::BuildOptions options;
     if (!level.empty()) options.detail = level;
     const rigging::BuildResult built = rigging::build_rig(scene, landmarks, anatomy::load_generic(), options);
-    const std::vector<uint8_t> bytes = rig::write(rigging::gltf_source(scene, built.report.input_to_metres), built.rig);
+    const std::vector<uint8_t> bytes =
+        rig::write(rigging::gltf_source(scene, built.report.input_to_metres), built.rig);
     formats::write_bytes(path, bytes.data(), bytes.size());
-    if (!is_kept) face = std::make_unique<cli::Face>(path, cli::Face::Options{FASCIA_SPACE_INPUT, "own", level});
+    if (!is_kept)
+      face = std::make_unique<cli::Face>(path, cli::Face::Options{FASCIA_SPACE_INPUT, "own", level});
   }
   Subject(const Subject&) = delete;
   ~Subject() {
@@ -163,20 +173,24 @@ struct Goal {
 std::map<std::string, Goal> goals() {
   const std::vector<MeasuredShape> shapes = measured_shapes(measured / "expressions.glb", "head");
   std::map<std::string, Goal> goals;
-  for (const MeasuredShape& shape : shapes) goals[shape.name] = {{{"arkit:" + shape.name, 1.0}}, shape.displacement};
+  for (const MeasuredShape& shape : shapes)
+    goals[shape.name] = {{{"arkit:" + shape.name, 1.0}}, shape.displacement};
   Goal& close = goals.at("mouthClose");
   close.values["arkit:jawOpen"] = 1.0;
-  for (size_t v = 0; v < close.truth.size(); ++v) close.truth[v] += goals.at("jawOpen").truth[v];
+  for (size_t v = 0; v < close.truth.size(); ++v)
+    close.truth[v] += goals.at("jawOpen").truth[v];
   return goals;
 }
 
-void run_person(const std::string& person, const std::string& level, const std::string& sheet, const std::string& rigs) {
+void run_person(const std::string& person, const std::string& level, const std::string& sheet,
+                const std::string& rigs) {
   const auto [scene, landmarks] = read_person(person);
-  const Subject subject(scene, landmarks, person, level, rigs.empty() ? fs::path() : fs::path(rigs) / (person + ".glb"));
+  const Subject subject(scene, landmarks, person, level,
+                        rigs.empty() ? fs::path() : fs::path(rigs) / (person + ".glb"));
   if (!rigs.empty()) return;
   const formats::SceneMesh& head = head_mesh(scene);
-  std::printf("%s\n%-22s %9s %9s %9s %7s %10s %10s\n", person.c_str(), "shape", "explained", "all skin", "error mm", "turned",
-              "best scale", "share at it");
+  std::printf("%s\n%-22s %9s %9s %9s %7s %10s %10s\n", person.c_str(), "shape", "explained", "all skin",
+              "error mm", "turned", "best scale", "share at it");
   std::vector<view::Tile> tiles;
   std::unique_ptr<view::Renderer> renderer;
   if (!sheet.empty()) renderer = std::make_unique<view::Renderer>(300, 340);
@@ -186,8 +200,9 @@ void run_person(const std::string& person, const std::string& level, const std::
   for (const auto& [name, goal] : shapes) {
     const std::vector<Vec3> simulated = simulated_displacement(*subject.face, goal.values);
     const Score result = score(head.positions, head.triangles, simulated, goal.truth);
-    std::printf("%-22s %9.3f %9.3f %9.2f %7d %10.2f %10.3f\n", name.c_str(), result.explained, result.skin_explained,
-                result.error_mm, result.turned, result.best_scale, result.at_best_scale);
+    std::printf("%-22s %9.3f %9.3f %9.2f %7d %10.2f %10.3f\n", name.c_str(), result.explained,
+                result.skin_explained, result.error_mm, result.turned, result.best_scale,
+                result.at_best_scale);
     sum += result.explained;
     skin_sum += result.skin_explained;
     best_sum += result.at_best_scale;
@@ -199,8 +214,8 @@ void run_person(const std::string& person, const std::string& level, const std::
     if (renderer) add_tiles(tiles, *renderer, head, simulated, goal.truth, name, result);
   }
   const auto count = static_cast<double>(shapes.size());
-  std::printf("%-22s %9.3f %9.3f %9.2f %29.3f\n%-22s %9.3f\n\n", "mean", sum / count, skin_sum / count, errors / count,
-              best_sum / count, "mean without eyeLook", sum_without_look / without_look);
+  std::printf("%-22s %9.3f %9.3f %9.2f %29.3f\n%-22s %9.3f\n\n", "mean", sum / count, skin_sum / count,
+              errors / count, best_sum / count, "mean without eyeLook", sum_without_look / without_look);
   if (renderer) view::write_png(sheet, view::contact_sheet(tiles, 9));
 }
 
@@ -212,12 +227,14 @@ void run_copies(const std::string& person, const std::string& level) {
   for (const char* kind : {"half", "uneven"}) {
     const RemeshedCopy copy = remeshed_copy(scene, "head", kind);
     const Subject subject(copy.scene, landmarks, person + "_" + kind, level);
-    std::printf("%s, %s: %zu vertices instead of %zu\n%-22s %9s %9s %12s %9s\n", person.c_str(), kind, copy.head_vertices, head_mesh(scene).positions.size(),
-                "shape", "explained", "original", "apart: mean", "95 % mm");
+    std::printf("%s, %s: %zu vertices instead of %zu\n%-22s %9s %9s %12s %9s\n", person.c_str(), kind,
+                copy.head_vertices, head_mesh(scene).positions.size(), "shape", "explained", "original",
+                "apart: mean", "95 % mm");
     double sum[4] = {};
     for (const auto& [name, goal] : shapes) {
       const std::vector<Vec3> own = simulated_displacement(*original.face, goal.values);
-      const std::vector<Vec3> simulated = carried_over(copy, simulated_displacement(*subject.face, goal.values));
+      const std::vector<Vec3> simulated =
+          carried_over(copy, simulated_displacement(*subject.face, goal.values));
       const std::vector<Vec3>& truth = goal.truth;
       double all = 0.0, miss[2] = {}, mean = 0.0;
       std::vector<double> apart;
@@ -230,10 +247,12 @@ void run_copies(const std::string& person, const std::string& level) {
         mean += apart.back();
       }
       std::sort(apart.begin(), apart.end());
-      const double row[] = {1.0 - miss[0] / all, 1.0 - miss[1] / all, apart.empty() ? 0.0 : mean / static_cast<double>(apart.size()),
+      const double row[] = {1.0 - miss[0] / all, 1.0 - miss[1] / all,
+                            apart.empty() ? 0.0 : mean / static_cast<double>(apart.size()),
                             apart.empty() ? 0.0 : apart[apart.size() * 95 / 100]};
       std::printf("%-22s %9.3f %9.3f %12.2f %9.2f\n", name.c_str(), row[0], row[1], row[2], row[3]);
-      for (size_t k = 0; k < 4; ++k) sum[k] += row[k] / static_cast<double>(shapes.size());
+      for (size_t k = 0; k < 4; ++k)
+        sum[k] += row[k] / static_cast<double>(shapes.size());
     }
     std::printf("%-22s %9.3f %9.3f %12.2f %9.2f\n\n", "mean", sum[0], sum[1], sum[2], sum[3]);
   }
@@ -249,11 +268,16 @@ int main(int argc, char** argv) {
   bool remeshed = false;
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
-    if (word == "--sheet" && i + 1 < argc) sheet = argv[++i];
-    else if (word == "--level" && i + 1 < argc) level = argv[++i];
-    else if (word == "--rigs" && i + 1 < argc) rigs = argv[++i];
-    else if (word == "--remeshed") remeshed = true;
-    else people.push_back(word);
+    if (word == "--sheet" && i + 1 < argc)
+      sheet = argv[++i];
+    else if (word == "--level" && i + 1 < argc)
+      level = argv[++i];
+    else if (word == "--rigs" && i + 1 < argc)
+      rigs = argv[++i];
+    else if (word == "--remeshed")
+      remeshed = true;
+    else
+      people.push_back(word);
   }
   if (people.empty()) people = {"neutral"};
   if (!std::filesystem::exists(fascia::bench::measured)) {

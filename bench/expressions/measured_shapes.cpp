@@ -14,7 +14,8 @@ namespace {
 using nlohmann::json;
 
 size_t view_start(const json& gltf, const json& part) {
-  return gltf["bufferViews"][part["bufferView"].get<size_t>()].value("byteOffset", size_t{0}) + part.value("byteOffset", size_t{0});
+  return gltf["bufferViews"][part["bufferView"].get<size_t>()].value("byteOffset", size_t{0}) +
+         part.value("byteOffset", size_t{0});
 }
 
 /// A float VEC3 accessor, dense or sparse.
@@ -27,7 +28,8 @@ std::vector<Vec3> vectors(const json& gltf, const std::vector<uint8_t>& binary, 
     return Vec3(xyz[0], xyz[1], xyz[2]);
   };
   if (accessor.contains("bufferView"))
-    for (size_t i = 0; i < values.size(); ++i) values[i] = read(view_start(gltf, accessor) + 12 * i);
+    for (size_t i = 0; i < values.size(); ++i)
+      values[i] = read(view_start(gltf, accessor) + 12 * i);
   if (accessor.contains("sparse")) {
     const json& sparse = accessor["sparse"];
     const int type = sparse["indices"]["componentType"];
@@ -51,7 +53,8 @@ std::vector<MeasuredShape> measured_shapes(const std::filesystem::path& path, co
     std::vector<MeasuredShape> shapes;
     const json& targets = entry["primitives"][0]["targets"];
     for (size_t t = 0; t < targets.size(); ++t)
-      shapes.push_back({entry["extras"]["targetNames"][t], vectors(gltf, document.binary, targets[t]["POSITION"])});
+      shapes.push_back(
+          {entry["extras"]["targetNames"][t], vectors(gltf, document.binary, targets[t]["POSITION"])});
     return shapes;
   }
   throw Error("'" + path.string() + "' has no mesh '" + mesh + "'");

@@ -21,8 +21,9 @@ struct RemeshedCopy {
   std::vector<CopiedTo> head;  ///< #vertices of the original's head mesh
 };
 
-/// A copy of `scene` whose mesh `head` is remeshed: `half` has half as many vertices; `uneven` has edges of 0.7 times
-/// their length on the subject's left, 1.4 times on the right, and its vertices shaken about by a fifth of an edge. Throws Error for another `kind`.
+/// A copy of `scene` whose mesh `head` is remeshed: `half` has half as many vertices; `uneven` has edges of
+/// 0.7 times their length on the subject's left, 1.4 times on the right, and its vertices shaken about by a
+/// fifth of an edge. Throws Error for another `kind`.
 RemeshedCopy remeshed_copy(const formats::Scene& scene, const std::string& head, const std::string& kind);
 
 /// `values` of the copy's head vertices at the original's.

@@ -20,10 +20,12 @@ TriangleMesh largest_piece(const TriangleMesh& mesh) {
   const std::vector<int> piece = geodesics::make_surface(mesh).piece;
   const int count = *std::max_element(piece.begin(), piece.end()) + 1;
   std::vector<int> size(count);
-  for (int p : piece) ++size[p];
+  for (int p : piece)
+    ++size[p];
   const int largest = static_cast<int>(std::max_element(size.begin(), size.end()) - size.begin());
   std::vector<bool> keep(piece.size());
-  for (size_t t = 0; t < piece.size(); ++t) keep[t] = piece[t] == largest;
+  for (size_t t = 0; t < piece.size(); ++t)
+    keep[t] = piece[t] == largest;
   return submesh(mesh, keep, nullptr);
 }
 
@@ -37,7 +39,8 @@ TriangleMesh midpoint_subdivided(const TriangleMesh& mesh) {
   };
   for (const Triangle& t : mesh.triangles) {
     const int ab = middle(t[0], t[1]), bc = middle(t[1], t[2]), ca = middle(t[2], t[0]);
-    finer.triangles.insert(finer.triangles.end(), {{t[0], ab, ca}, {t[1], bc, ab}, {t[2], ca, bc}, {ab, bc, ca}});
+    finer.triangles.insert(finer.triangles.end(),
+                           {{t[0], ab, ca}, {t[1], bc, ab}, {t[2], ca, bc}, {ab, bc, ca}});
   }
   return finer;
 }
@@ -59,12 +62,15 @@ void smooth(TriangleMesh& mesh) {
 TriangleMesh simplified(const TriangleMesh& mesh, int triangles) {
   std::vector<float> positions;
   for (const Vec3& p : mesh.vertices)
-    for (int i = 0; i < 3; ++i) positions.push_back(static_cast<float>(p[i]));
+    for (int i = 0; i < 3; ++i)
+      positions.push_back(static_cast<float>(p[i]));
   std::vector<unsigned int> indices, result(3 * mesh.triangles.size());
   for (const Triangle& t : mesh.triangles)
-    for (int corner : t) indices.push_back(static_cast<unsigned int>(corner));
-  const size_t kept = meshopt_simplify(result.data(), indices.data(), indices.size(), positions.data(),
-                                       mesh.vertices.size(), 3 * sizeof(float), 3 * static_cast<size_t>(triangles), 1.f);
+    for (int corner : t)
+      indices.push_back(static_cast<unsigned int>(corner));
+  const size_t kept =
+      meshopt_simplify(result.data(), indices.data(), indices.size(), positions.data(), mesh.vertices.size(),
+                       3 * sizeof(float), 3 * static_cast<size_t>(triangles), 1.f);
   TriangleMesh coarse{mesh.vertices, {}};
   for (size_t i = 0; i < kept; i += 3)
     coarse.triangles.push_back(
@@ -108,7 +114,8 @@ std::vector<PointPair> muscle_pairs(const TriangleMesh& mesh, int count) {
     while (true) {
       const int t = any(random);
       const Triangle& c = mesh.triangles[t];
-      const Vec3 normal = (mesh.vertices[c[1]] - mesh.vertices[c[0]]).cross(mesh.vertices[c[2]] - mesh.vertices[c[0]]);
+      const Vec3 normal =
+          (mesh.vertices[c[1]] - mesh.vertices[c[0]]).cross(mesh.vertices[c[2]] - mesh.vertices[c[0]]);
       double u = unit(random), v = unit(random);
       if (u + v > 1.0) u = 1.0 - u, v = 1.0 - v;
       const SurfacePoint point{t, Vec3(1.0 - u - v, u, v)};

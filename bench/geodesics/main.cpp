@@ -43,8 +43,10 @@ double largest_turn(const geodesics::Surface& surface, const geodesics::Path& pa
     const SurfacePoint& point = path.points[k];
     if (point.barycentric.maxCoeff() > 1.0 - 1e-9) continue;  // at a vertex, counted as pinned
     int e = 0;
-    while (e < 3 && point.barycentric[(e + 2) % 3] != 0.0) ++e;
-    const Vec3 in = path.positions[k] - path.positions[k - 1], out = path.positions[k + 1] - path.positions[k];
+    while (e < 3 && point.barycentric[(e + 2) % 3] != 0.0)
+      ++e;
+    const Vec3 in = path.positions[k] - path.positions[k - 1],
+               out = path.positions[k + 1] - path.positions[k];
     if (e == 3 || in.norm() < 1e-7 || out.norm() < 1e-7) continue;
     const int h = 3 * point.triangle + e;
     const Vec3 along =
@@ -56,8 +58,8 @@ double largest_turn(const geodesics::Surface& surface, const geodesics::Path& pa
 }
 
 struct PathRow {
-  double setup_ms = 0.0, mean_us = 0.0, median_us = 0.0, crossings = 0.0, cut = 0.0, searched = 0.0, passes = 0.0, end_error = 0.0, turn = 0.0,
-         pinned = 0.0;
+  double setup_ms = 0.0, mean_us = 0.0, median_us = 0.0, crossings = 0.0, cut = 0.0, searched = 0.0,
+         passes = 0.0, end_error = 0.0, turn = 0.0, pinned = 0.0;
   std::vector<double> lengths;
 };
 
@@ -77,7 +79,8 @@ PathRow run_paths(const TriangleMesh& mesh, const std::vector<bench::PointPair>&
   std::vector<double> means, each;
   for (int repeat = 0; repeat < 7; ++repeat) {
     const double started = now();
-    for (const auto& pair : pairs) geodesics::connect_into(surface, pair.from, pair.to, {}, workspace, path);
+    for (const auto& pair : pairs)
+      geodesics::connect_into(surface, pair.from, pair.to, {}, workspace, path);
     means.push_back(1e6 * (now() - started) / static_cast<double>(pairs.size()));
   }
   row.mean_us = median(means);
@@ -112,7 +115,8 @@ void run_trace(const TriangleMesh& mesh) {
     const double started = now();
     for (int i = 0; i < 400; ++i) {
       const Vec3 direction(normal(random), normal(random), normal(random));
-      crossings += geodesics::trace(surface, {any(random), Vec3(0.3, 0.3, 0.4)}, direction, 0.3, options).crossings;
+      crossings +=
+          geodesics::trace(surface, {any(random), Vec3(0.3, 0.3, 0.4)}, direction, 0.3, options).crossings;
     }
     each.push_back(1e6 * (now() - started) / static_cast<double>(crossings));
   }
@@ -148,7 +152,8 @@ void run_scaling(const TriangleMesh& mesh) {
 }
 
 #ifdef FASCIA_WITH_CGAL
-void run_exact(const TriangleMesh& mesh, std::vector<bench::PointPair> pairs, int count, const PathRow& ours) {
+void run_exact(const TriangleMesh& mesh, std::vector<bench::PointPair> pairs, int count,
+               const PathRow& ours) {
   pairs.resize(std::min<size_t>(pairs.size(), static_cast<size_t>(count)));
   const auto exact = bench::exact_paths(mesh, pairs);
   std::vector<double> seconds, excess;
@@ -158,20 +163,22 @@ void run_exact(const TriangleMesh& mesh, std::vector<bench::PointPair> pairs, in
     excess.push_back(ours.lengths[i] / exact[i].length - 1.0);
     if (std::abs(excess.back()) < 1e-6) ++same;
   }
-  std::printf("CGAL exact, %zu pairs: median %.0f ms a path, ours %.0f times faster; the same length to 1e-6 in %d,"
-              " else another class: median excess %.2g, largest %.2g, least %.2g\n",
-              exact.size(), 1e3 * median(seconds), 1e6 * median(seconds) / ours.mean_us, same, median(excess),
-              *std::max_element(excess.begin(), excess.end()), *std::min_element(excess.begin(), excess.end()));
+  std::printf(
+      "CGAL exact, %zu pairs: median %.0f ms a path, ours %.0f times faster; the same length to 1e-6 in %d,"
+      " else another class: median excess %.2g, largest %.2g, least %.2g\n",
+      exact.size(), 1e3 * median(seconds), 1e6 * median(seconds) / ours.mean_us, same, median(excess),
+      *std::max_element(excess.begin(), excess.end()), *std::min_element(excess.begin(), excess.end()));
 }
 #endif
 
 void run(const TriangleMesh& mesh, bool exact, int exact_pairs, bool scaling) {
   const auto pairs = bench::muscle_pairs(mesh, 200);
   const PathRow row = run_paths(mesh, pairs);
-  std::printf("%8d triangles  set-up %6.1f ms  mean %7.1f us  median %6.1f us a path  %5.1f crossings  "
-              "cut %.0f %%  searched %.0f %%  passes %.1f  pinned %.2f  end error %.1e m  left-right <= %.1e rad\n",
-              mesh.triangle_count(), row.setup_ms, row.mean_us, row.median_us, row.crossings, row.cut,
-              row.searched, row.passes, row.pinned, row.end_error, row.turn);
+  std::printf(
+      "%8d triangles  set-up %6.1f ms  mean %7.1f us  median %6.1f us a path  %5.1f crossings  "
+      "cut %.0f %%  searched %.0f %%  passes %.1f  pinned %.2f  end error %.1e m  left-right <= %.1e rad\n",
+      mesh.triangle_count(), row.setup_ms, row.mean_us, row.median_us, row.crossings, row.cut, row.searched,
+      row.passes, row.pinned, row.end_error, row.turn);
   run_trace(mesh);
 #ifdef FASCIA_WITH_CGAL
   if (exact && exact_pairs > 0) run_exact(mesh, pairs, exact_pairs, row);
@@ -187,8 +194,10 @@ void run(const TriangleMesh& mesh, bool exact, int exact_pairs, bool scaling) {
 int main(int count, char** arguments) {
   int exact_pairs = 20;
   if (count == 3 && std::strcmp(arguments[1], "--exact") == 0) exact_pairs = std::atoi(arguments[2]);
-  std::printf("200 pairs 40-60 mm apart; goals 34 / 194 / 1170 us a path (a tenth of FlipGeodesics'), tracing 0.1 us\n"
-              "The SMAS of the generic head\n");
+  std::printf(
+      "200 pairs 40-60 mm apart; goals 34 / 194 / 1170 us a path (a tenth of FlipGeodesics'), tracing 0.1 "
+      "us\n"
+      "The SMAS of the generic head\n");
   for (const int triangles : {20000, 100000, 500000})
     run(bench::smas_surface(triangles), triangles == 20000, exact_pairs, triangles == 100000);
   std::printf("The skin of the generic head, with the pockets of eyes, mouth, nose and ears\n");

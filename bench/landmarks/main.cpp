@@ -1,5 +1,6 @@
-// Landmarks found on heads whose landmarks are known: error in millimetres and time, person by person and variant by
-// variant (--quick: two of the people; --variant N: one kind alone). Given files, it prints where the landmarks of those were found instead;
+// Landmarks found on heads whose landmarks are known: error in millimetres and time, person by person and
+// variant by variant (--quick: two of the people; --variant N: one kind alone). Given files, it prints where
+// the landmarks of those were found instead;
 // --sheet FILE.png draws every kind of head with its landmarks.
 #include <Eigen/Geometry>
 #include <chrono>
@@ -16,14 +17,17 @@ using namespace fascia;
 
 namespace {
 
-double seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+double seconds() {
+  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
 
 struct Sums {
   double sum = 0, most = 0;
   int count = 0;
 };
 
-void measure(const testing::MeasuredHead& head, const anatomy::GenericAnatomy& anatomy, std::map<std::string, Sums>& by_landmark, Sums& all) {
+void measure(const testing::MeasuredHead& head, const anatomy::GenericAnatomy& anatomy,
+             std::map<std::string, Sums>& by_landmark, Sums& all) {
   const double start = seconds();
   try {
     const rigging::FoundLandmarks found = rigging::find_landmarks(head.scene, {}, anatomy);
@@ -33,7 +37,8 @@ void measure(const testing::MeasuredHead& head, const anatomy::GenericAnatomy& a
     std::string worst;
     for (const auto& [name, truth] : head.truth) {
       Vec3 position = found.landmarks.at(name).position;
-      if (head.name != "makehuman") position += testing::offset_of_definition(name, *anatomy.landmark(name)->skin);
+      if (head.name != "makehuman")
+        position += testing::offset_of_definition(name, *anatomy.landmark(name)->skin);
       const double error = head.millimetres * (transform_point(to_file, position) - truth).norm();
       least = std::min(least, found.landmarks.at(name).confidence);
       sum += error;
@@ -46,8 +51,11 @@ void measure(const testing::MeasuredHead& head, const anatomy::GenericAnatomy& a
         ++s->count;
       }
     }
-    std::printf("%-48s mean %5.2f max %5.2f mm (%s), least confidence %.2f, %s, %.2f s (head %.2f prepare %.2f landmarks %.2f)\n", head.name.c_str(), sum / static_cast<double>(head.truth.size()),
-                most, worst.c_str(), least, found.head.units.c_str(), time, found.seconds[0], found.seconds[1], found.seconds[2]);
+    std::printf(
+        "%-48s mean %5.2f max %5.2f mm (%s), least confidence %.2f, %s, %.2f s (head %.2f prepare %.2f "
+        "landmarks %.2f)\n",
+        head.name.c_str(), sum / static_cast<double>(head.truth.size()), most, worst.c_str(), least,
+        found.head.units.c_str(), time, found.seconds[0], found.seconds[1], found.seconds[2]);
   } catch (const std::exception& error) {
     std::printf("%-48s FAILED: %s\n", head.name.c_str(), error.what());
   }
@@ -58,7 +66,8 @@ void print_file(const std::string& path, const anatomy::GenericAnatomy& anatomy)
   try {
     const double start = seconds();
     const rigging::FoundLandmarks found = rigging::find_landmarks(formats::read(path), {}, anatomy);
-    std::printf("file %s likeness %.3f units %s %.2f s\n", path.c_str(), found.likeness, found.head.units.c_str(), seconds() - start);
+    std::printf("file %s likeness %.3f units %s %.2f s\n", path.c_str(), found.likeness,
+                found.head.units.c_str(), seconds() - start);
     const Mat4 to_file = found.head.input_to_metres.inverse();
     for (const auto& [name, landmark] : found.landmarks) {
       const Vec3 p = transform_point(to_file, landmark.position);
@@ -69,17 +78,21 @@ void print_file(const std::string& path, const anatomy::GenericAnatomy& anatomy)
   }
 }
 
-testing::MeasuredHead stretched(testing::MeasuredHead head, const std::string& name, const std::function<Vec3(const Vec3&)>& change) {
+testing::MeasuredHead stretched(testing::MeasuredHead head, const std::string& name,
+                                const std::function<Vec3(const Vec3&)>& change) {
   head.name = name;
   for (formats::SceneMesh& mesh : head.scene.meshes)
-    for (Vec3& p : mesh.positions) p = change(p);
+    for (Vec3& p : mesh.positions)
+      p = change(p);
   return head;
 }
 
 /// A small child's proportions: the face small under a large vault, the whole smaller.
 Vec3 child(const Vec3& p) {
   const double low = std::clamp((0.06 - p[1]) / 0.14, 0.0, 1.0);
-  return 0.86 * Vec3(p[0] * (1 - 0.16 * low), p[1] < 0.04 ? 0.04 + 0.84 * (p[1] - 0.04) : 0.04 + 1.02 * (p[1] - 0.04), p[2] * (1 - 0.1 * low));
+  return 0.86 * Vec3(p[0] * (1 - 0.16 * low),
+                     p[1] < 0.04 ? 0.04 + 0.84 * (p[1] - 0.04) : 0.04 + 1.02 * (p[1] - 0.04),
+                     p[2] * (1 - 0.1 * low));
 }
 
 /// Mild stylisation: eyes drawn large.
@@ -111,7 +124,8 @@ void draw_sheet(const std::string& path, const anatomy::GenericAnatomy& anatomy)
     return head;
   };
   std::vector<MeasuredHead> heads = {embedded, named(ict_head("neutral"), "mean head")};
-  for (int p = 0; p < 6; ++p) heads.push_back(named(ict_head("person_" + std::to_string(p)), ("person " + std::to_string(p)).c_str()));
+  for (int p = 0; p < 6; ++p)
+    heads.push_back(named(ict_head("person_" + std::to_string(p)), ("person " + std::to_string(p)).c_str()));
   heads.push_back(named(in_units(moved(ict_head("person_0"), upside_down), 100), "upside down, cm"));
   heads.push_back(named(in_units(moved(ict_head("person_1"), away, Vec3(0, 1, 2)), 1000), "turned away, mm"));
   heads.push_back(named(decimated(ict_head("person_5"), 3000), "3000 triangles"));
@@ -124,7 +138,8 @@ void draw_sheet(const std::string& path, const anatomy::GenericAnatomy& anatomy)
   heads.push_back(stretched(ict_head("person_0"), "as a child", child));
   heads.push_back(stretched(ict_head("person_0"), "large eyes", large_eyes));
   heads.push_back(named(makehuman(), "head of a body"));
-  for (const auto& [file, caption] : {std::pair("ct/headsq_skin.ply", "CT, no forehead"), std::pair("bodyparts3d/skin.obj", "BodyParts3D")}) {
+  for (const auto& [file, caption] : {std::pair("ct/headsq_skin.ply", "CT, no forehead"),
+                                      std::pair("bodyparts3d/skin.obj", "BodyParts3D")}) {
     MeasuredHead scan;
     scan.name = caption;
     scan.scene = formats::read(measured_data() / file);
@@ -134,7 +149,8 @@ void draw_sheet(const std::string& path, const anatomy::GenericAnatomy& anatomy)
   int turned = 0;
   for (const MeasuredHead& head : heads) {
     try {
-      tiles.push_back(bench::landmark_tile(rigging::find_landmarks(head.scene, {}, anatomy), head.name, turned++ % 2 ? 32 : 0));
+      tiles.push_back(bench::landmark_tile(rigging::find_landmarks(head.scene, {}, anatomy), head.name,
+                                           turned++ % 2 ? 32 : 0));
     } catch (const std::exception& error) {
       std::printf("%s: %s\n", head.name.c_str(), error.what());
     }
@@ -152,42 +168,55 @@ int main(int argc, char** argv) {
   }
   const bool is_one_variant = argc > 2 && std::strcmp(argv[1], "--variant") == 0;
   if (argc > 1 && std::strcmp(argv[1], "--quick") != 0 && !is_one_variant) {
-    for (int a = 1; a < argc; ++a) print_file(argv[a], anatomy);
+    for (int a = 1; a < argc; ++a)
+      print_file(argv[a], anatomy);
     return 0;
   }
   using testing::MeasuredHead;
   const bool is_quick = argc > 1 && !is_one_variant;
   const auto turn = [](double x, double y, double z) {
     const double degree = EIGEN_PI / 180;
-    return Mat3(Eigen::AngleAxisd(y * degree, Vec3::UnitY()) * Eigen::AngleAxisd(x * degree, Vec3::UnitX()) * Eigen::AngleAxisd(z * degree, Vec3::UnitZ()));
+    return Mat3(Eigen::AngleAxisd(y * degree, Vec3::UnitY()) * Eigen::AngleAxisd(x * degree, Vec3::UnitX()) *
+                Eigen::AngleAxisd(z * degree, Vec3::UnitZ()));
   };
   const std::vector<std::function<MeasuredHead(MeasuredHead)>> variants = {
       [](MeasuredHead h) { return h; },
       [&](MeasuredHead h) { return testing::in_units(testing::moved(std::move(h), turn(25, 35, -15)), 100); },
-      [&](MeasuredHead h) { return testing::in_units(testing::moved(std::move(h), turn(-40, -10, 18), Vec3(0.3, -1, 2)), 1000); },
+      [&](MeasuredHead h) {
+        return testing::in_units(testing::moved(std::move(h), turn(-40, -10, 18), Vec3(0.3, -1, 2)), 1000);
+      },
       [](MeasuredHead h) { return testing::decimated(std::move(h), 3000); },
       [](MeasuredHead h) { return testing::subdivided(std::move(h), 2); },
       [](MeasuredHead h) { return testing::noisy(std::move(h), 1.0, 7); },
       [](MeasuredHead h) { return testing::skin_only(std::move(h)); },
       [](MeasuredHead h) { return testing::without_lining(std::move(h)); },
       [](MeasuredHead h) { return testing::with_holes(testing::without_lining(std::move(h)), 9, 14, 3); },
-      [&](MeasuredHead h) { return testing::in_units(testing::moved(testing::face_alone(std::move(h), 95), turn(-30, 130, 70)), 1000); },
+      [&](MeasuredHead h) {
+        return testing::in_units(testing::moved(testing::face_alone(std::move(h), 95), turn(-30, 130, 70)),
+                                 1000);
+      },
       [](MeasuredHead h) { return testing::face_alone(std::move(h), 85); },
-      [&](MeasuredHead h) { return testing::in_units(testing::moved(testing::cut_above_brows(std::move(h)), turn(80, -60, 10)), 100); }};
+      [&](MeasuredHead h) {
+        return testing::in_units(testing::moved(testing::cut_above_brows(std::move(h)), turn(80, -60, 10)),
+                                 100);
+      }};
   std::map<std::string, Sums> by_landmark;
   for (size_t v = 0; v < variants.size(); ++v) {
     if (is_one_variant && v != static_cast<size_t>(std::atoi(argv[2]))) continue;
     const auto& variant = variants[v];
     Sums all;
-    for (const char* name : {"neutral", "person_0", "person_1", "person_2", "person_3", "person_4", "person_5"}) {
+    for (const char* name :
+         {"neutral", "person_0", "person_1", "person_2", "person_3", "person_4", "person_5"}) {
       if (is_quick && std::string(name) != "person_1" && std::string(name) != "person_3") continue;
       measure(variant(testing::ict_head(name)), anatomy, by_landmark, all);
     }
     if (all.count) std::printf("   all: mean %.2f max %.2f mm\n", all.sum / all.count, all.most);
   }
-  for (const auto& [name, s] : by_landmark) std::printf("%-22s mean %.2f max %.2f mm\n", name.c_str(), s.sum / s.count, s.most);
+  for (const auto& [name, s] : by_landmark)
+    std::printf("%-22s mean %.2f max %.2f mm\n", name.c_str(), s.sum / s.count, s.most);
   Sums all;
   std::map<std::string, Sums> body;
   measure(testing::makehuman(), anatomy, body, all);
-  for (const auto& [name, s] : body) std::printf("  %-22s %.2f mm\n", name.c_str(), s.most);
+  for (const auto& [name, s] : body)
+    std::printf("  %-22s %.2f mm\n", name.c_str(), s.most);
 }

@@ -12,14 +12,17 @@ using Found = rigging::FoundLandmarks;
 
 /// A small ball at each landmark: green where confidence is high, through yellow to red.
 void add_landmark(view::DrawSurface& marks, const Vec3& centre, double confidence, double radius) {
-  static const std::vector<Vec3> corners = {Vec3::UnitX(), -Vec3::UnitX(), Vec3::UnitY(), -Vec3::UnitY(), Vec3::UnitZ(), -Vec3::UnitZ()};
+  static const std::vector<Vec3> corners = {Vec3::UnitX(),  -Vec3::UnitX(), Vec3::UnitY(),
+                                            -Vec3::UnitY(), Vec3::UnitZ(),  -Vec3::UnitZ()};
   const int base = static_cast<int>(marks.positions.size());
-  const Vec3 colour = confidence > 0.5 ? Vec3(2.0 * (1.0 - confidence), 0.85, 0.1) : Vec3(0.95, 1.6 * confidence, 0.1);
+  const Vec3 colour =
+      confidence > 0.5 ? Vec3(2.0 * (1.0 - confidence), 0.85, 0.1) : Vec3(0.95, 1.6 * confidence, 0.1);
   for (const Vec3& c : corners) {
     marks.positions.push_back(centre + radius * c);
     marks.vertex_colours.push_back(colour);
   }
-  for (const Triangle& t : std::vector<Triangle>{{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}})
+  for (const Triangle& t : std::vector<Triangle>{
+           {0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}})
     marks.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
 }
 
@@ -31,10 +34,12 @@ view::Tile landmark_tile(const Found& found, const std::string& caption, double 
     view::DrawSurface surface{mesh.positions, {}, Vec3(0.80, 0.66, 0.57), {}, 1.0, 0.15, true};
     for (const Triangle& t : mesh.triangles) {
       const prepare::Part part = mesh.parts[static_cast<size_t>(t[0])];
-      if (part == prepare::Part::skin || part == prepare::Part::eye_left || part == prepare::Part::eye_right) surface.triangles.push_back(t);
+      if (part == prepare::Part::skin || part == prepare::Part::eye_left || part == prepare::Part::eye_right)
+        surface.triangles.push_back(t);
     }
     if (surface.triangles.empty()) continue;
-    if (mesh.parts[static_cast<size_t>(surface.triangles[0][0])] != prepare::Part::skin) surface.colour = Vec3(0.9, 0.9, 0.88);
+    if (mesh.parts[static_cast<size_t>(surface.triangles[0][0])] != prepare::Part::skin)
+      surface.colour = Vec3(0.9, 0.9, 0.88);
     list.surfaces.push_back(surface);
   }
   view::DrawSurface marks;

@@ -1,11 +1,13 @@
-// Whether the levels of detail give the same poses: for each ARKit shape the distance between two levels' places of the skin's
-// vertices, over those that either moves by more than half a millimetre.
+// Whether the levels of detail give the same poses: for each ARKit shape the distance between two levels'
+// places of the skin's vertices, over those that either moves by more than half a millimetre.
 //
-//   bench_levels [embedded|neutral|person_1|...]... [--solver own|reference] [--only SUBSTRING] [--rigs DIR] [--pose NAME=VALUE]...
+//   bench_levels [embedded|neutral|person_1|...]... [--solver own|reference] [--only SUBSTRING] [--rigs DIR]
+//   [--pose NAME=VALUE]...
 //                [--sheet PREFIX]
 //
-// A sheet shows each pose at the medium and low level, coloured by how far the next finer one lies from it (red: 2 mm).
-// With --rigs the rigs are kept in DIR, and read from there when they are. --pose plays channels instead of shapes.
+// A sheet shows each pose at the medium and low level, coloured by how far the next finer one lies from it
+// (red: 2 mm). With --rigs the rigs are kept in DIR, and read from there when they are. --pose plays channels
+// instead of shapes.
 
 #include <algorithm>
 #include <chrono>
@@ -37,7 +39,8 @@ std::vector<Vec3> motions(cli::Face& face, const std::string& name, double value
   for (size_t m = 0; m < face.meshes().size(); ++m) {
     if (face.meshes()[m].part != "skin") continue;
     const auto now = face.positions(m), rest = face.rest(m);
-    for (size_t i = 0; i + 2 < now.size(); i += 3) moved.emplace_back(now[i] - rest[i], now[i + 1] - rest[i + 1], now[i + 2] - rest[i + 2]);
+    for (size_t i = 0; i + 2 < now.size(); i += 3)
+      moved.emplace_back(now[i] - rest[i], now[i + 1] - rest[i + 1], now[i + 2] - rest[i + 2]);
   }
   return moved;
 }
@@ -71,7 +74,8 @@ Vec3 heat(double mm) {
 }
 
 /// The skin as `moved` has it, coloured by how far `other` lies from it.
-view::Image picture(const view::Renderer& renderer, const cli::Face& face, const std::vector<Vec3>& moved, const std::vector<Vec3>& other) {
+view::Image picture(const view::Renderer& renderer, const cli::Face& face, const std::vector<Vec3>& moved,
+                    const std::vector<Vec3>& other) {
   view::DrawList list;
   size_t first = 0;
   Vec3 front = Vec3(0, 0, -1e9);
@@ -96,18 +100,24 @@ view::Image picture(const view::Renderer& renderer, const cli::Face& face, const
 }
 
 void run(const std::string& name, const Request& request) {
-  const fs::path path = (request.rigs.empty() ? fs::temp_directory_path() : request.rigs) / ("fascia_levels_" + name + ".glb");
+  const fs::path path =
+      (request.rigs.empty() ? fs::temp_directory_path() : request.rigs) / ("fascia_levels_" + name + ".glb");
   if (request.rigs.empty() || !fs::exists(path)) build_rig_file(read_person(name), "high", path);
   const char* const levels[] = {"low", "medium", "high"};
   std::vector<std::unique_ptr<cli::Face>> faces;
-  for (const char* level : levels) faces.push_back(std::make_unique<cli::Face>(path, cli::Face::Options{FASCIA_SPACE_METRES, request.solver, level}));
+  for (const char* level : levels)
+    faces.push_back(
+        std::make_unique<cli::Face>(path, cli::Face::Options{FASCIA_SPACE_METRES, request.solver, level}));
   std::vector<std::pair<std::string, double>> poses;
-  for (const std::string& word : request.poses) poses.emplace_back(word.substr(0, word.find('=')), std::stod(word.substr(word.find('=') + 1)));
+  for (const std::string& word : request.poses)
+    poses.emplace_back(word.substr(0, word.find('=')), std::stod(word.substr(word.find('=') + 1)));
   if (poses.empty())
     for (const std::string& shape : faces[0]->set_members("arkit"))
-      if (shape.find(request.only) != std::string::npos && shape.find("Right") == std::string::npos) poses.emplace_back("arkit:" + shape, 1.0);
-  std::printf("%s, millimetres\n%-26s %6s   %-22s %-22s %s\n%26s %6s   %6s %6s %6s  %6s %6s %6s  %s\n", name.c_str(), "shape", "motion",
-              "medium from high", "low from medium", "seconds", "", "", "mean", "95 %", "most", "mean", "95 %", "most", "low, medium, high");
+      if (shape.find(request.only) != std::string::npos && shape.find("Right") == std::string::npos)
+        poses.emplace_back("arkit:" + shape, 1.0);
+  std::printf("%s, millimetres\n%-26s %6s   %-22s %-22s %s\n%26s %6s   %6s %6s %6s  %6s %6s %6s  %s\n",
+              name.c_str(), "shape", "motion", "medium from high", "low from medium", "seconds", "", "",
+              "mean", "95 %", "most", "mean", "95 %", "most", "low, medium, high");
   Difference sum[2];
   int within = 0;
   std::vector<view::Tile> tiles;
@@ -122,11 +132,14 @@ void run(const std::string& name, const Request& request) {
       seconds[level] = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     }
     const Difference fine = difference(moved[1], moved[2]), coarse = difference(moved[0], moved[1]);
-    std::printf("%-26s %6.2f   %6.2f %6.2f %6.2f  %6.2f %6.2f %6.2f  %.1f %.1f %.1f\n", pose.c_str(), fine.motion, fine.mean, fine.most,
-                fine.largest, coarse.mean, coarse.most, coarse.largest, seconds[0], seconds[1], seconds[2]);
+    std::printf("%-26s %6.2f   %6.2f %6.2f %6.2f  %6.2f %6.2f %6.2f  %.1f %.1f %.1f\n", pose.c_str(),
+                fine.motion, fine.mean, fine.most, fine.largest, coarse.mean, coarse.most, coarse.largest,
+                seconds[0], seconds[1], seconds[2]);
     std::fflush(stdout);
     for (size_t level : {1, 0})
-      if (renderer) tiles.push_back({picture(*renderer, *faces[level], moved[level], moved[level + 1]), pose.substr(pose.find(':') + 1) + " " + levels[level]});
+      if (renderer)
+        tiles.push_back({picture(*renderer, *faces[level], moved[level], moved[level + 1]),
+                         pose.substr(pose.find(':') + 1) + " " + levels[level]});
     within += fine.mean <= 0.5 && fine.most <= 1.5;
     for (int k = 0; k < 2; ++k) {
       const Difference& d = k ? coarse : fine;
@@ -137,9 +150,11 @@ void run(const std::string& name, const Request& request) {
     }
   }
   const auto count = static_cast<double>(poses.size());
-  std::printf("%-26s %6.2f   %6.2f %6.2f %6.2f  %6.2f %6.2f %6.2f\n%d of %zu with medium from high within 0.5 mm in the mean and 1.5 mm in 95 %%\n\n",
-              "mean", sum[0].motion / count, sum[0].mean / count, sum[0].most / count, sum[0].largest / count, sum[1].mean / count,
-              sum[1].most / count, sum[1].largest / count, within, poses.size());
+  std::printf(
+      "%-26s %6.2f   %6.2f %6.2f %6.2f  %6.2f %6.2f %6.2f\n%d of %zu with medium from high within 0.5 mm in "
+      "the mean and 1.5 mm in 95 %%\n\n",
+      "mean", sum[0].motion / count, sum[0].mean / count, sum[0].most / count, sum[0].largest / count,
+      sum[1].mean / count, sum[1].most / count, sum[1].largest / count, within, poses.size());
   if (renderer) view::write_png(request.sheet + "_" + name + ".png", view::contact_sheet(tiles, 6));
   if (request.rigs.empty()) fs::remove(path);
 }
@@ -152,12 +167,18 @@ int main(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
     const bool more = i + 1 < argc;
-    if (word == "--solver" && more) request.solver = argv[++i];
-    else if (word == "--only" && more) request.only = argv[++i];
-    else if (word == "--sheet" && more) request.sheet = argv[++i];
-    else if (word == "--rigs" && more) request.rigs = argv[++i];
-    else if (word == "--pose" && more) request.poses.push_back(argv[++i]);
-    else request.people.push_back(word);
+    if (word == "--solver" && more)
+      request.solver = argv[++i];
+    else if (word == "--only" && more)
+      request.only = argv[++i];
+    else if (word == "--sheet" && more)
+      request.sheet = argv[++i];
+    else if (word == "--rigs" && more)
+      request.rigs = argv[++i];
+    else if (word == "--pose" && more)
+      request.poses.push_back(argv[++i]);
+    else
+      request.people.push_back(word);
   }
   if (request.people.empty()) request.people = {"embedded"};
   try {

@@ -26,7 +26,8 @@ std::unique_ptr<Face> embedded_face(double edge_length) {
     if (const anatomy::MeshObject* row = face->anatomy.skull_object(name)) {
       const int first = teeth.vertex_count();
       teeth.vertices.insert(teeth.vertices.end(), row->mesh.vertices.begin(), row->mesh.vertices.end());
-      for (const Triangle& t : row->mesh.triangles) teeth.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+      for (const Triangle& t : row->mesh.triangles)
+        teeth.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
     }
   if (!teeth.empty()) face->teeth = std::make_unique<spatial::SurfaceQuery>(teeth);
   face->inputs.smas = &face->smas;

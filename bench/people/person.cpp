@@ -17,12 +17,14 @@ const fs::path measured = fs::path(FASCIA_MEASURED_DATA) / "data/ict";
 
 /// The landmarks placed on the mean head, at the same places of another person's mesh.
 formats::LandmarkFile landmarks_on(const formats::Scene& person) {
-  formats::LandmarkFile file = formats::read_landmarks(fs::path(FASCIA_TEST_DATA) / "ict_neutral_landmarks.json");
+  formats::LandmarkFile file =
+      formats::read_landmarks(fs::path(FASCIA_TEST_DATA) / "ict_neutral_landmarks.json");
   const formats::Scene neutral = formats::read(measured / "neutral.glb");
   const formats::SceneMesh& from = head_mesh(neutral);
   const spatial::SurfaceQuery surface({from.positions, from.triangles});
   const TriangleMesh to{head_mesh(person).positions, head_mesh(person).triangles};
-  for (auto& [name, p] : file.points) p = position(to, surface.closest(p).surface);
+  for (auto& [name, p] : file.points)
+    p = position(to, surface.closest(p).surface);
   return file;
 }
 
@@ -38,7 +40,9 @@ Person embedded() {
 
 }  // namespace
 
-bool has_measured_people() { return fs::exists(measured); }
+bool has_measured_people() {
+  return fs::exists(measured);
+}
 
 const formats::SceneMesh& head_mesh(const formats::Scene& scene) {
   for (const formats::SceneMesh& mesh : scene.meshes)
@@ -57,9 +61,12 @@ Person read_person(const std::string& name) {
 void build_rig_file(const Person& person, const std::string& detail, const fs::path& path) {
   rigging::BuildOptions options;
   options.detail = detail;
-  const rigging::BuildResult built = rigging::build_rig(person.scene, person.landmarks, anatomy::load_generic(), options);
-  for (const std::string& warning : built.report.warnings) std::printf("%s: %s\n", path.stem().c_str(), warning.c_str());
-  const std::vector<uint8_t> bytes = rig::write(rigging::gltf_source(person.scene, built.report.input_to_metres), built.rig);
+  const rigging::BuildResult built =
+      rigging::build_rig(person.scene, person.landmarks, anatomy::load_generic(), options);
+  for (const std::string& warning : built.report.warnings)
+    std::printf("%s: %s\n", path.stem().c_str(), warning.c_str());
+  const std::vector<uint8_t> bytes =
+      rig::write(rigging::gltf_source(person.scene, built.report.input_to_metres), built.rig);
   formats::write_bytes(path, bytes.data(), bytes.size());
 }
 

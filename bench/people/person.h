@@ -14,7 +14,8 @@ struct Person {
   formats::LandmarkFile landmarks;
 };
 
-/// `embedded` for the head the library brings along, else the measured one of that name (neutral, person_0 ..).
+/// `embedded` for the head the library brings along, else the measured one of that name (neutral, person_0
+/// ..).
 Person read_person(const std::string& name);
 
 /// Whether the measured heads lie beside the project.

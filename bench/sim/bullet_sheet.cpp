@@ -20,7 +20,8 @@ struct BulletSheet::World {
   int substeps = 1;
 };
 
-BulletSheet::BulletSheet(int n, double spacing, int substeps, int iterations) : world_(std::make_unique<World>()) {
+BulletSheet::BulletSheet(int n, double spacing, int substeps, int iterations)
+    : world_(std::make_unique<World>()) {
   World& w = *world_;
   w.substeps = substeps;
   w.world.setGravity(btVector3(0, btScalar(-9.81), 0));
@@ -32,7 +33,8 @@ BulletSheet::BulletSheet(int n, double spacing, int substeps, int iterations) : 
   std::vector<btVector3> places;
   for (int row = 0; row < n; ++row)
     for (int column = 0; column < n; ++column)
-      places.emplace_back(static_cast<btScalar>(column * spacing), btScalar(0), static_cast<btScalar>(row * spacing));
+      places.emplace_back(static_cast<btScalar>(column * spacing), btScalar(0),
+                          static_cast<btScalar>(row * spacing));
   const std::vector<btScalar> masses(places.size(), btScalar(1e-4));
   w.body = std::make_unique<btSoftBody>(&info, n * n, places.data(), masses.data());
   const int ways[6][2] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}, {0, 2}, {2, 0}};
@@ -42,17 +44,21 @@ BulletSheet::BulletSheet(int n, double spacing, int substeps, int iterations) : 
         const int r = row + way[0], c = column + way[1];
         if (r < n && c >= 0 && c < n) w.body->appendLink(row * n + column, r * n + c);
       }
-  for (int column = 0; column < n; ++column) w.body->setMass(column, 0);
+  for (int column = 0; column < n; ++column)
+    w.body->setMass(column, 0);
   w.body->m_cfg.piterations = iterations;
   w.body->m_cfg.collisions = 0;
   w.body->m_cfg.kDP = 0;
   w.world.addSoftBody(w.body.get());
 }
 
-BulletSheet::~BulletSheet() { world_->world.removeSoftBody(world_->body.get()); }
+BulletSheet::~BulletSheet() {
+  world_->world.removeSoftBody(world_->body.get());
+}
 
 void BulletSheet::step(double seconds) {
-  world_->world.stepSimulation(static_cast<btScalar>(seconds), world_->substeps, static_cast<btScalar>(seconds / world_->substeps));
+  world_->world.stepSimulation(static_cast<btScalar>(seconds), world_->substeps,
+                               static_cast<btScalar>(seconds / world_->substeps));
 }
 
 double BulletSheet::mean_stretch() const {

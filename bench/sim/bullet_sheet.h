@@ -6,7 +6,8 @@
 
 namespace fascia::bench {
 
-/// The sheet of sim/sheet as Bullet's soft body: the same particles and springs, stiffness 1, no damping, no collisions.
+/// The sheet of sim/sheet as Bullet's soft body: the same particles and springs, stiffness 1, no damping, no
+/// collisions.
 class BulletSheet {
  public:
   /// `n` by `n` particles `spacing` metres apart, the first row pinned, level at first.

@@ -1,5 +1,6 @@
-// The soft sheet: 100 x 100 particles, 59,002 springs, one row pinned, let go level under gravity, 60 Hz. Every row states the
-// stretch beside the time; the programs' frames are taken in turn, so that a busy machine is busy for all.
+// The soft sheet: 100 x 100 particles, 59,002 springs, one row pinned, let go level under gravity, 60 Hz.
+// Every row states the stretch beside the time; the programs' frames are taken in turn, so that a busy
+// machine is busy for all.
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
@@ -65,7 +66,8 @@ int main(int argc, char** argv) {
   add_bullet("Bullet, 10 substeps", 10, 1);
 #endif
   for (int frame = 0; frame < frames; ++frame)
-    for (Contender& contender : contenders) contender.frame();
+    for (Contender& contender : contenders)
+      contender.frame();
   std::printf("%-22s %10s %16s %16s %8s\n", "", "ms a frame", "stretch at end %", "worst frame %", "times");
   const double own = bench::median(contenders.front().milliseconds);
   for (const Contender& c : contenders) {
@@ -76,7 +78,8 @@ int main(int argc, char** argv) {
       worst = std::max(worst, c.stretch[i]);
     }
     const double time = bench::median(c.milliseconds);
-    std::printf("%-22s %10.3f %16.3f %16.3f %8.1f\n", c.name.c_str(), time, 100.0 * mean, 100.0 * worst, time / own);
+    std::printf("%-22s %10.3f %16.3f %16.3f %8.1f\n", c.name.c_str(), time, 100.0 * mean, 100.0 * worst,
+                time / own);
   }
   return 0;
 }

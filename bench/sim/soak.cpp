@@ -1,10 +1,12 @@
-// Minutes of random drive on a whole head: does anything become not a number, does the watchdog put the face back, does a prism
-// turn inside out, and does it turn back?
+// Minutes of random drive on a whole head: does anything become not a number, does the watchdog put the face
+// back, does a prism turn inside out, and does it turn back?
 //
-//   bench_soak RIG.glb [--level INDEX] [--seconds S] [--solver own|reference] [--iterations N] [--pull NEWTON] [--shake M/S2] [--seed N] [--rates]
+//   bench_soak RIG.glb [--level INDEX] [--seconds S] [--solver own|reference] [--iterations N] [--pull
+//   NEWTON] [--shake M/S2] [--seed N] [--rates]
 //
-// Every quarter of a second all channels jump to other values; `--pull` presses a finger on a node of skin chosen anew with each
-// jump, `--shake` moves the head. `--rates` compares frame rates and iterations instead.
+// Every quarter of a second all channels jump to other values; `--pull` presses a finger on a node of skin
+// chosen anew with each jump, `--shake` moves the head. `--rates` compares frame rates and iterations
+// instead.
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -67,16 +69,22 @@ void look(const sim::FaceModel& model, const std::vector<sim::Vec3f>& moved, Tal
 
 void print(const sim::FaceModel& model, const Tally& tally, bool is_named) {
   const int longest = *std::max_element(tally.longest_run.begin(), tally.longest_run.end());
-  std::printf("%d frames: %d not finite, %d resets, farthest node %.1f mm; prisms turned in %d frames, %d of %zu at once, the longest for %d frames; %.2f ms a frame\n",
-              tally.frames, tally.not_finite, tally.resets, 1e3 * tally.farthest, tally.frames_turned, tally.most_turned, model.prisms().size(), longest,
-              tally.milliseconds / std::max(1, tally.frames));
+  std::printf(
+      "%d frames: %d not finite, %d resets, farthest node %.1f mm; prisms turned in %d frames, %d of %zu at "
+      "once, the longest for %d frames; %.2f ms a frame\n",
+      tally.frames, tally.not_finite, tally.resets, 1e3 * tally.farthest, tally.frames_turned,
+      tally.most_turned, model.prisms().size(), longest, tally.milliseconds / std::max(1, tally.frames));
   std::vector<size_t> order(tally.turned_by_prism.size());
-  for (size_t p = 0; p < order.size(); ++p) order[p] = p;
-  std::sort(order.begin(), order.end(), [&](size_t a, size_t b) { return tally.turned_by_prism[a] > tally.turned_by_prism[b]; });
-  for (size_t k = 0; is_named && k < std::min<size_t>(12, order.size()) && tally.turned_by_prism[order[k]] > 0; ++k) {
+  for (size_t p = 0; p < order.size(); ++p)
+    order[p] = p;
+  std::sort(order.begin(), order.end(),
+            [&](size_t a, size_t b) { return tally.turned_by_prism[a] > tally.turned_by_prism[b]; });
+  for (size_t k = 0;
+       is_named && k < std::min<size_t>(12, order.size()) && tally.turned_by_prism[order[k]] > 0; ++k) {
     const sim::Prism& prism = model.prisms()[order[k]];
     const Vec3 at = 1e3 * model.rest()[prism.nodes[0]];
-    std::printf("  prism %zu (%s) at %.1f %.1f %.1f mm, volume %.2f mm3: %d frames\n", order[k], prism.nodes[0] < model.lattice().columns ? "outer" : "inner", at.x(), at.y(), at.z(),
+    std::printf("  prism %zu (%s) at %.1f %.1f %.1f mm, volume %.2f mm3: %d frames\n", order[k],
+                prism.nodes[0] < model.lattice().columns ? "outer" : "inner", at.x(), at.y(), at.z(),
                 1e9 * prism.volume, tally.turned_by_prism[order[k]]);
   }
 }
@@ -93,7 +101,8 @@ Tally soak(Face& face, const Options& options, const Request& request, testing::
   for (int frame = 0; frame < frames; ++frame) {
     if (frame % 15 == 0) {
       drives.draw(random);
-      touch = {static_cast<uint32_t>(random() % model.lattice().columns), request.pull * sim::Vec3(chance(), chance(), chance()).normalized()};
+      touch = {static_cast<uint32_t>(random() % model.lattice().columns),
+               request.pull * sim::Vec3(chance(), chance(), chance()).normalized()};
       drives.add_force(request.shake * sim::Vec3(chance(), chance(), chance()));
     }
     if (request.pull > 0.0) drives.touch(std::span(&touch, 1));
@@ -112,19 +121,24 @@ Tally soak(Face& face, const Options& options, const Request& request, testing::
 void compare_rates(const runtime::Asset& asset, size_t level) {
   sim::realtime::StepOptions options;
   const auto row = [](const char* name, int number, const testing::Apart& apart) {
-    std::printf("%4d %s: %.2f %% of the motion off, at most %.2f mm\n", number, name, 100.0 * apart.share, 1e3 * apart.most);
+    std::printf("%4d %s: %.2f %% of the motion off, at most %.2f mm\n", number, name, 100.0 * apart.share,
+                1e3 * apart.most);
   };
   options.iterations = 60;
   options.tolerance = 1e-6;
   options.checks_last = true;
   const auto truth = testing::played(asset, level, 60, options);
-  for (const int rate : {30, 120}) row("Hz, converged", rate, testing::apart(testing::played(asset, level, rate, options), truth));
+  for (const int rate : {30, 120})
+    row("Hz, converged", rate, testing::apart(testing::played(asset, level, rate, options), truth));
   const auto usual = testing::played(asset, level, 60, {});
-  for (const int rate : {30, 120}) row("Hz, two iterations, beside 60 Hz alike", rate, testing::apart(testing::played(asset, level, rate, {}), usual));
+  for (const int rate : {30, 120})
+    row("Hz, two iterations, beside 60 Hz alike", rate,
+        testing::apart(testing::played(asset, level, rate, {}), usual));
   for (const int iterations : {1, 2, 4, 8, 16}) {
     sim::realtime::StepOptions few;
     few.iterations = iterations;
-    row("iterations a substep, 60 Hz", iterations, testing::apart(testing::played(asset, level, 60, few), truth));
+    row("iterations a substep, 60 Hz", iterations,
+        testing::apart(testing::played(asset, level, 60, few), truth));
   }
 }
 
@@ -134,26 +148,40 @@ int main(int argc, char** argv) {
   Request request;
   for (int i = 1; i < argc; ++i) {
     const auto value = [&] { return i + 1 < argc ? argv[++i] : "0"; };
-    if (!std::strcmp(argv[i], "--level")) request.level = static_cast<size_t>(std::atoi(value()));
-    else if (!std::strcmp(argv[i], "--seconds")) request.seconds = std::atof(value());
-    else if (!std::strcmp(argv[i], "--solver")) request.is_reference = !std::strcmp(value(), "reference");
-    else if (!std::strcmp(argv[i], "--iterations")) request.iterations = std::atoi(value());
-    else if (!std::strcmp(argv[i], "--pull")) request.pull = std::atof(value());
-    else if (!std::strcmp(argv[i], "--shake")) request.shake = std::atof(value());
-    else if (!std::strcmp(argv[i], "--seed")) request.seed = static_cast<unsigned>(std::atoi(value()));
-    else if (!std::strcmp(argv[i], "--names")) request.is_named = true;
-    else if (!std::strcmp(argv[i], "--rates")) request.compares_rates = true;
-    else request.rig = argv[i];
+    if (!std::strcmp(argv[i], "--level"))
+      request.level = static_cast<size_t>(std::atoi(value()));
+    else if (!std::strcmp(argv[i], "--seconds"))
+      request.seconds = std::atof(value());
+    else if (!std::strcmp(argv[i], "--solver"))
+      request.is_reference = !std::strcmp(value(), "reference");
+    else if (!std::strcmp(argv[i], "--iterations"))
+      request.iterations = std::atoi(value());
+    else if (!std::strcmp(argv[i], "--pull"))
+      request.pull = std::atof(value());
+    else if (!std::strcmp(argv[i], "--shake"))
+      request.shake = std::atof(value());
+    else if (!std::strcmp(argv[i], "--seed"))
+      request.seed = static_cast<unsigned>(std::atoi(value()));
+    else if (!std::strcmp(argv[i], "--names"))
+      request.is_named = true;
+    else if (!std::strcmp(argv[i], "--rates"))
+      request.compares_rates = true;
+    else
+      request.rig = argv[i];
   }
   if (request.rig == nullptr) {
-    std::fprintf(stderr, "usage: bench_soak RIG.glb [--level INDEX] [--seconds S] [--solver own|reference] [--iterations N] [--pull NEWTON] [--shake M/S2] [--seed N] [--names] [--rates]\n");
+    std::fprintf(stderr,
+                 "usage: bench_soak RIG.glb [--level INDEX] [--seconds S] [--solver own|reference] "
+                 "[--iterations N] [--pull NEWTON] [--shake M/S2] [--seed N] [--names] [--rates]\n");
     return 2;
   }
   std::ifstream file(request.rig, std::ios::binary);
   const std::vector<char> bytes((std::istreambuf_iterator<char>(file)), {});
   try {
-    const auto asset = std::make_shared<const runtime::Asset>(std::span(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()));
-    if (request.level >= asset->rig().tissue.levels.size()) throw std::runtime_error("the rig has no such level");
+    const auto asset = std::make_shared<const runtime::Asset>(
+        std::span(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()));
+    if (request.level >= asset->rig().tissue.levels.size())
+      throw std::runtime_error("the rig has no such level");
     if (request.compares_rates) {
       compare_rates(*asset, request.level);
       return 0;

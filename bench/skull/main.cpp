@@ -1,12 +1,13 @@
 // How true a fitted skull is, and how quickly it follows.
 //
-//   bench_skull [picture=FILE.png] [truth] [curves] [leave-one-out] [noise] [ict] [update]      (all of them without arguments)
+//   bench_skull [picture=FILE.png] [truth] [curves] [leave-one-out] [noise] [ict] [update]      (all of them
+//   without arguments)
 //
-// truth: depth of bone under the skin of a real person (CT), fitted against scanned, by region and by what was
-// given. A table of mean depths has a standard error of 3.7 mm on one person (Stephan), a bound for any single
-// landmark. leave-one-out: every placed landmark in turn is left out, and looked for where the fit without it
-// puts its depth and bone. noise: placed landmarks moved along the skin. ict: people without scanned bone, against the
-// table. update: processor time of one moved landmark.
+// truth: depth of bone under the skin of a real person (CT), fitted against scanned, by region and by what
+// was given. A table of mean depths has a standard error of 3.7 mm on one person (Stephan), a bound for any
+// single landmark. leave-one-out: every placed landmark in turn is left out, and looked for where the fit
+// without it puts its depth and bone. noise: placed landmarks moved along the skin. ict: people without
+// scanned bone, against the table. update: processor time of one moved landmark.
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -43,48 +44,57 @@ struct Bench {
 
   Targets placed() const {
     Targets out;
-    for (const auto& [name, p] : head.given) out[name] = {p, 1};
+    for (const auto& [name, p] : head.given)
+      out[name] = {p, 1};
     return out;
   }
   Targets required() const {
     Targets out;
     for (const auto& [name, p] : head.given)
-      if (const anatomy::Landmark* known = anatomy.landmark(name); known && known->required) out[name] = {p, 1};
+      if (const anatomy::Landmark* known = anatomy.landmark(name); known && known->required)
+        out[name] = {p, 1};
     return out;
   }
   Targets completed(const Targets& from) const {
     std::map<std::string, Vec3> points;
-    for (const auto& [name, landmark] : from) points[name] = landmark.skin;
+    for (const auto& [name, landmark] : from)
+      points[name] = landmark.skin;
     return testing::complete_targets(head.skin, points, anatomy);
   }
 };
 
-double processor_ms() { return 1e3 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+double processor_ms() {
+  return 1e3 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
 
 void print_errors(const std::map<std::string, testing::DepthError>& errors) {
   for (const auto& [region, error] : errors)
-    std::printf("  %-28s %5d samples, %4d missed, mean %5.2f mm, bias %+5.2f, nine in ten below %5.2f\n", region.c_str(),
-                error.samples, error.missed, 1e3 * error.mean, 1e3 * error.bias, 1e3 * error.ninth_decile);
+    std::printf("  %-28s %5d samples, %4d missed, mean %5.2f mm, bias %+5.2f, nine in ten below %5.2f\n",
+                region.c_str(), error.samples, error.missed, 1e3 * error.mean, 1e3 * error.bias,
+                1e3 * error.ninth_decile);
 }
 
 void truth(const Bench& bench) {
   const Targets required = bench.required(), placed = bench.placed();
-  const std::pair<const char*, Targets> sets[] = {{"required landmarks alone", required},
-                                                  {"required, the others carried over", bench.completed(required)},
-                                                  {"all placed landmarks", placed},
-                                                  {"all placed, the others carried over", bench.completed(placed)}};
+  const std::pair<const char*, Targets> sets[] = {
+      {"required landmarks alone", required},
+      {"required, the others carried over", bench.completed(required)},
+      {"all placed landmarks", placed},
+      {"all placed, the others carried over", bench.completed(placed)}};
   for (const auto& [title, targets] : sets) {
     const skull::FitResult fit = skull::fit(bench.generic, bench.skin, targets);
-    std::printf("CT truth, %s (%zu): landmarks %.2f mm rms, %d vertices outside the skin\n", title, targets.size(),
-                1e3 * fit.landmark_rms, fit.bone_outside_skin);
+    std::printf("CT truth, %s (%zu): landmarks %.2f mm rms, %d vertices outside the skin\n", title,
+                targets.size(), 1e3 * fit.landmark_rms, fit.bone_outside_skin);
     print_errors(testing::depth_errors(bench.samples, fit));
   }
 }
 
 void curves(const Bench& bench) {
   const auto show = [&](const char* title, const skull::FitOptions& options) {
-    const auto errors = testing::depth_errors(bench.samples, skull::fit(bench.generic, bench.skin, bench.head.targets, options));
-    std::printf("  %-50s mean %5.2f mm, bias %+5.2f\n", title, 1e3 * errors.at("all").mean, 1e3 * errors.at("all").bias);
+    const auto errors = testing::depth_errors(
+        bench.samples, skull::fit(bench.generic, bench.skin, bench.head.targets, options));
+    std::printf("  %-50s mean %5.2f mm, bias %+5.2f\n", title, 1e3 * errors.at("all").mean,
+                1e3 * errors.at("all").bias);
   };
   std::printf("CT truth by option\n");
   skull::FitOptions options;
@@ -151,7 +161,8 @@ void noise(const Bench& bench) {
       error += testing::depth_errors(bench.samples, fit).at("all").mean / trials;
       const std::vector<Vec3> before = whole.bone_map(std::span<const Vec3>(bench.generic.mandible.vertices)),
                               after = fit.bone_map(std::span<const Vec3>(bench.generic.mandible.vertices));
-      for (size_t v = 0; v < before.size(); ++v) moved += (after[v] - before[v]).norm();
+      for (size_t v = 0; v < before.size(); ++v)
+        moved += (after[v] - before[v]).norm();
       vertices += static_cast<long>(before.size());
     }
     std::printf("  %.0f mm: mandible moves by %.2f mm in the mean, depth error %.2f mm\n", 1e3 * deviation,
@@ -161,7 +172,8 @@ void noise(const Bench& bench) {
 
 void ict(const Bench& bench) {
   std::printf("ICT people: all landmarks given, no scanned bone\n");
-  for (const char* name : {"neutral", "person_0", "person_1", "person_2", "person_3", "person_4", "person_5"}) {
+  for (const char* name :
+       {"neutral", "person_0", "person_1", "person_2", "person_3", "person_4", "person_5"}) {
     if (!testing::has_ict_head(measured, name)) continue;
     const testing::IctHead head =
         testing::read_ict_head(measured, name, fixtures / "ict_neutral_landmarks.json", bench.anatomy);
@@ -172,15 +184,18 @@ void ict(const Bench& bench) {
     double off = 0;
     for (const skull::FittedLandmark& landmark : fit.landmarks)
       off += std::abs(landmark.depth - landmark.table_depth) / static_cast<double>(fit.landmarks.size());
-    std::printf("  %-9s landmarks %.2f mm rms, %.2f max; depth %.2f mm off the table in the mean; outside %d, too near %d, "
-                "corrected %d by at most %.2f mm; %d of %d curve points; uncovered %.1f %%; %.0f ms\n",
-                name, 1e3 * fit.landmark_rms, 1e3 * fit.landmark_max, 1e3 * off, fit.bone_outside_skin,
-                fit.bone_within_clearance, fit.corrected_vertices, 1e3 * fit.corrected_max, fit.curve_points_used,
-                fit.curve_points, 100 * fit.uncovered_share, ms);
+    std::printf(
+        "  %-9s landmarks %.2f mm rms, %.2f max; depth %.2f mm off the table in the mean; outside %d, too "
+        "near %d, "
+        "corrected %d by at most %.2f mm; %d of %d curve points; uncovered %.1f %%; %.0f ms\n",
+        name, 1e3 * fit.landmark_rms, 1e3 * fit.landmark_max, 1e3 * off, fit.bone_outside_skin,
+        fit.bone_within_clearance, fit.corrected_vertices, 1e3 * fit.corrected_max, fit.curve_points_used,
+        fit.curve_points, 100 * fit.uncovered_share, ms);
   }
 }
 
-void update_on(const char* title, const skull::Generic& generic, const skull::Exterior& skin, const Targets& targets) {
+void update_on(const char* title, const skull::Generic& generic, const skull::Exterior& skin,
+               const Targets& targets) {
   double start = processor_ms();
   skull::Fitter fitter(generic, skin, targets);
   const double first = processor_ms() - start;
@@ -197,10 +212,12 @@ void update_on(const char* title, const skull::Generic& generic, const skull::Ex
       times.push_back(processor_ms() - start);
     }
   std::sort(times.begin(), times.end());
-  std::printf("  %-10s %d triangles, %zu landmarks, fit %.0f ms; one landmark moved: median %.1f ms, nine in ten below %.1f ms, "
-              "worst %.1f ms\n",
-              title, triangles, landmarks.size(), first, times[times.size() / 2], times[times.size() * 9 / 10],
-              times.back());
+  std::printf(
+      "  %-10s %d triangles, %zu landmarks, fit %.0f ms; one landmark moved: median %.1f ms, nine in ten "
+      "below %.1f ms, "
+      "worst %.1f ms\n",
+      title, triangles, landmarks.size(), first, times[times.size() / 2], times[times.size() * 9 / 10],
+      times.back());
 }
 
 void update(const Bench& bench) {
@@ -212,7 +229,8 @@ void update(const Bench& bench) {
   update_on("ICT mean", bench.generic, skull::exterior(head.head.skin), head.targets);
 }
 
-/// The fitted skull of the CT head, coloured by its distance to the scanned bone: red in front of it, blue behind.
+/// The fitted skull of the CT head, coloured by its distance to the scanned bone: red in front of it, blue
+/// behind.
 void picture(const Bench& bench, const fs::path& path) {
   const skull::FitResult fit = skull::fit(bench.generic, bench.skin, bench.head.targets);
   const spatial::SurfaceQuery bone(bench.head.bone);
@@ -227,8 +245,9 @@ void picture(const Bench& bench, const fs::path& path) {
       const spatial::ClosestPoint closest = bone.closest(mesh->vertices[v]);
       const double side = (mesh->vertices[v] - closest.position).dot(normals[v]);
       const double off = std::clamp(side / 0.006, -1.0, 1.0);
-      surface.vertex_colours.push_back(off > 0 ? Vec3(0.92, 0.88 - 0.65 * off, 0.78 - 0.65 * off)
-                                               : Vec3(0.92 + 0.70 * off, 0.88 + 0.45 * off, 0.78 + 0.1 * std::abs(off)));
+      surface.vertex_colours.push_back(
+          off > 0 ? Vec3(0.92, 0.88 - 0.65 * off, 0.78 - 0.65 * off)
+                  : Vec3(0.92 + 0.70 * off, 0.88 + 0.45 * off, 0.78 + 0.1 * std::abs(off)));
     }
     all.insert(all.end(), mesh->vertices.begin(), mesh->vertices.end());
     list.surfaces.push_back(std::move(surface));

@@ -1,5 +1,6 @@
 // The SMAS stage on heads with found landmarks: bench_smas_heads HEAD|embedded ...
-// One line a head: processor time (median of five), shape of the triangles, how it lies between skin and bone.
+// One line a head: processor time (median of five), shape of the triangles, how it lies between skin and
+// bone.
 
 #include <algorithm>
 #include <cstdio>
@@ -30,7 +31,8 @@ void run(const std::filesystem::path& file, const anatomy::GenericAnatomy& anato
   inputs.skin = &found.head.skin;
   inputs.cranium = &skull.cranium;
   inputs.mandible = &skull.mandible;
-  for (const auto& [name, landmark] : found.landmarks) inputs.landmarks[name] = landmark.position;
+  for (const auto& [name, landmark] : found.landmarks)
+    inputs.landmarks[name] = landmark.position;
   std::vector<double> seconds;
   smas::Result smas;
   for (int repeat = 0; repeat < 5; ++repeat) {
@@ -39,13 +41,16 @@ void run(const std::filesystem::path& file, const anatomy::GenericAnatomy& anato
     seconds.push_back(bench::processor_time() - started);
   }
   const auto millimetres = [](double metres) { return 1e3 * metres; };
-  std::printf("%-24s %7.0f skin triangles %7.3f s  %5d triangles  angle min %4.1f mean %4.1f  ratio %.3f  %zu loops  folds %d  outside %d  "
-              "to skin %.2f/%.2f mm  to bone %.2f/%.2f mm (least/median)  %d centres  %ld evaluations\n",
-              file.filename().c_str(), static_cast<double>(inputs.skin->triangle_count()), quantile(seconds, 0.5), smas.mesh.triangle_count(),
-              smas.quality.min_angle, smas.quality.mean_min_angle, smas.quality.mean_radius_ratio, smas.boundary.size(),
-              smas.folds, smas.outside_layers, millimetres(quantile(smas.skin_distance, 0.0)),
-              millimetres(quantile(smas.skin_distance, 0.5)), millimetres(quantile(smas.bone_distance, 0.0)),
-              millimetres(quantile(smas.bone_distance, 0.5)), smas.centres, smas.evaluations);
+  std::printf(
+      "%-24s %7.0f skin triangles %7.3f s  %5d triangles  angle min %4.1f mean %4.1f  ratio %.3f  %zu loops  "
+      "folds %d  outside %d  "
+      "to skin %.2f/%.2f mm  to bone %.2f/%.2f mm (least/median)  %d centres  %ld evaluations\n",
+      file.filename().c_str(), static_cast<double>(inputs.skin->triangle_count()), quantile(seconds, 0.5),
+      smas.mesh.triangle_count(), smas.quality.min_angle, smas.quality.mean_min_angle,
+      smas.quality.mean_radius_ratio, smas.boundary.size(), smas.folds, smas.outside_layers,
+      millimetres(quantile(smas.skin_distance, 0.0)), millimetres(quantile(smas.skin_distance, 0.5)),
+      millimetres(quantile(smas.bone_distance, 0.0)), millimetres(quantile(smas.bone_distance, 0.5)),
+      smas.centres, smas.evaluations);
   std::fflush(stdout);
 }
 
@@ -57,14 +62,16 @@ int main(int count, char** arguments) {
     return 2;
   }
   const anatomy::GenericAnatomy anatomy = anatomy::load_generic();
-  for (int i = 1; i < count; ++i) try {
-    std::filesystem::path file = arguments[i];
-    if (std::strcmp(arguments[i], "embedded") == 0) {
-      file = std::filesystem::temp_directory_path() / "fascia_bench_smas_head.obj";
-      cli::write_embedded_head(file, std::filesystem::temp_directory_path() / "fascia_bench_smas_landmarks.json");
+  for (int i = 1; i < count; ++i)
+    try {
+      std::filesystem::path file = arguments[i];
+      if (std::strcmp(arguments[i], "embedded") == 0) {
+        file = std::filesystem::temp_directory_path() / "fascia_bench_smas_head.obj";
+        cli::write_embedded_head(file,
+                                 std::filesystem::temp_directory_path() / "fascia_bench_smas_landmarks.json");
+      }
+      run(file, anatomy);
+    } catch (const Error& error) {
+      std::printf("%-24s %s\n", arguments[i], error.what());
     }
-    run(file, anatomy);
-  } catch (const Error& error) {
-    std::printf("%-24s %s\n", arguments[i], error.what());
-  }
 }

@@ -1,5 +1,5 @@
-// Meshing the zero set of a spline of 2,000 centres, on one core: marching triangles, CGAL's surface mesher and VTK's
-// marching cubes on the same field, evaluated by the same code, at the same number of triangles.
+// Meshing the zero set of a spline of 2,000 centres, on one core: marching triangles, CGAL's surface mesher
+// and VTK's marching cubes on the same field, evaluated by the same code, at the same number of triangles.
 // bench_smas [REPEATS]
 
 #include <algorithm>
@@ -27,7 +27,9 @@ bench::Meshed mesh_ourselves(const splines::Spline& field) {
   options.seeds = {bench::head_like_radius(Vec3::UnitZ()) * Vec3::UnitZ()};
   const double started = bench::processor_time();
   smas::MarchingResult result = smas::marching_triangles(
-      [&](const Vec3& p, Vec3* gradient) { return gradient ? field.fast_value_and_gradient(p, *gradient) : field.scalar(p); },
+      [&](const Vec3& p, Vec3* gradient) {
+        return gradient ? field.fast_value_and_gradient(p, *gradient) : field.scalar(p);
+      },
       options);
   return {std::move(result.mesh), bench::processor_time() - started, result.evaluations};
 }
@@ -65,17 +67,19 @@ void report(const Contender& contender, const splines::Spline& field) {
   const smas::TriangleQuality quality = smas::triangle_quality(mesh);
   double edges = 0.0, off = 0.0;
   for (const Triangle& t : mesh.triangles)
-    for (size_t e = 0; e < 3; ++e) edges += (mesh.vertices[t[e]] - mesh.vertices[t[(e + 1) % 3]]).norm();
+    for (size_t e = 0; e < 3; ++e)
+      edges += (mesh.vertices[t[e]] - mesh.vertices[t[(e + 1) % 3]]).norm();
   for (const Vec3& p : mesh.vertices) {
     Vec3 gradient;
     const double value = field.value_and_gradient(p, gradient);
     off = std::max(off, std::abs(value) / gradient.norm());
   }
-  std::printf("%-20s %5d triangles  mean edge %.2f mm  off the surface <= %7.1e mm  %7ld evaluations  %7.1f ms  "
-              "radius ratio %.3f  min angle %4.1f  %s\n",
-              contender.name, mesh.triangle_count(), 1e3 * edges / (3.0 * mesh.triangle_count()), 1e3 * off,
-              contender.last.evaluations, 1e3 * contender.median(), quality.mean_radius_ratio, quality.min_angle,
-              contender.same ? "same bytes every run" : "other bytes each run");
+  std::printf(
+      "%-20s %5d triangles  mean edge %.2f mm  off the surface <= %7.1e mm  %7ld evaluations  %7.1f ms  "
+      "radius ratio %.3f  min angle %4.1f  %s\n",
+      contender.name, mesh.triangle_count(), 1e3 * edges / (3.0 * mesh.triangle_count()), 1e3 * off,
+      contender.last.evaluations, 1e3 * contender.median(), quality.mean_radius_ratio, quality.min_angle,
+      contender.same ? "same bytes every run" : "other bytes each run");
 }
 
 }  // namespace
@@ -83,25 +87,37 @@ void report(const Contender& contender, const splines::Spline& field) {
 int main(int count, char** arguments) {
   const int repeats = count > 1 ? std::max(2, std::atoi(arguments[1])) : 7;
   const splines::Spline field = bench::head_like_surface();
-  std::printf("%d centres; all on one core in turn, with the same evaluator; medians of %d runs\n", field.coefficients().centres, repeats);
+  std::printf("%d centres; all on one core in turn, with the same evaluator; medians of %d runs\n",
+              field.coefficients().centres, repeats);
   Contender own{"marching triangles", [&] { return mesh_ourselves(field); }, repeats, {}, {}};
   own.run();
   std::vector<Contender*> all = {&own};
 #ifdef FASCIA_WITH_CGAL
-  Contender cgal{"CGAL surface mesher", [&] { return bench::mesh_by_cgal(field, 0.755 * edge_length, tolerance); }, std::min(repeats, 3), {}, {}};
+  Contender cgal{"CGAL surface mesher",
+                 [&] { return bench::mesh_by_cgal(field, 0.755 * edge_length, tolerance); },
+                 std::min(repeats, 3),
+                 {},
+                 {}};
   all.push_back(&cgal);
 #endif
 #ifdef FASCIA_WITH_VTK
   const Bounds box = bounds(own.last.mesh.vertices);
-  Contender vtk{"VTK marching cubes", [&] { return bench::mesh_by_vtk(field, box, 1.115 * edge_length); }, repeats, {}, {}};
+  Contender vtk{"VTK marching cubes",
+                [&] { return bench::mesh_by_vtk(field, box, 1.115 * edge_length); },
+                repeats,
+                {},
+                {}};
   all.push_back(&vtk);
 #endif
   // In turn, so that what else the machine does meets all alike.
   for (int i = 0; i < repeats; ++i)
-    for (Contender* contender : all) contender->run();
-  for (const Contender* contender : all) report(*contender, field);
+    for (Contender* contender : all)
+      contender->run();
+  for (const Contender* contender : all)
+    report(*contender, field);
 #ifdef FASCIA_WITH_CGAL
-  std::printf("against CGAL %.1f times as fast with %.1f times fewer evaluations (goals 10 and 10)\n", cgal.median() / own.median(),
+  std::printf("against CGAL %.1f times as fast with %.1f times fewer evaluations (goals 10 and 10)\n",
+              cgal.median() / own.median(),
               static_cast<double>(cgal.last.evaluations) / static_cast<double>(own.last.evaluations));
 #endif
 #ifdef FASCIA_WITH_VTK

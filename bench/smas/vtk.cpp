@@ -17,12 +17,14 @@ Meshed mesh_by_vtk(const splines::Spline& field, const Bounds& box, double cell)
   const double started = processor_time();
   const Vec3 origin = box.lower - Vec3::Constant(cell);
   int count[3];
-  for (int k = 0; k < 3; ++k) count[k] = static_cast<int>(std::ceil(box.size()[k] / cell)) + 3;
+  for (int k = 0; k < 3; ++k)
+    count[k] = static_cast<int>(std::ceil(box.size()[k] / cell)) + 3;
   std::vector<Vec3> points;
   points.reserve(static_cast<size_t>(count[0]) * count[1] * count[2]);
   for (int z = 0; z < count[2]; ++z)
     for (int y = 0; y < count[1]; ++y)
-      for (int x = 0; x < count[0]; ++x) points.push_back(origin + cell * Vec3(x, y, z));
+      for (int x = 0; x < count[0]; ++x)
+        points.push_back(origin + cell * Vec3(x, y, z));
   const Eigen::MatrixXd values = field.values(points);
   out.evaluations = static_cast<long>(points.size());
   vtkNew<vtkImageData> image;
@@ -50,7 +52,8 @@ Meshed mesh_by_vtk(const splines::Spline& field, const Bounds& box, double cell)
   vtkIdType size;
   const vtkIdType* corners;
   for (cells->InitTraversal(); cells->GetNextCell(size, corners);)
-    out.mesh.triangles.push_back({static_cast<int>(corners[0]), static_cast<int>(corners[1]), static_cast<int>(corners[2])});
+    out.mesh.triangles.push_back(
+        {static_cast<int>(corners[0]), static_cast<int>(corners[1]), static_cast<int>(corners[2])});
   return out;
 }
 

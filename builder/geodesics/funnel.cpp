@@ -30,7 +30,8 @@ void set_node(Node& node, const Vec2& place, int first, bool left) {
 }
 
 /// Nodes of the unfolded strip: node 0 is `from`, the last `to`, one a vertex and stay in the strip.
-void unfold_strip(const Surface& surface, const SurfacePoint& from, const SurfacePoint& to, Workspace& workspace) {
+void unfold_strip(const Surface& surface, const SurfacePoint& from, const SurfacePoint& to,
+                  Workspace& workspace) {
   const std::vector<int>& strip = workspace.strip;
   const int count = static_cast<int>(strip.size());
   workspace.nodes.resize(static_cast<size_t>(count) + 3);
@@ -43,7 +44,8 @@ void unfold_strip(const Surface& surface, const SurfacePoint& from, const Surfac
   const Vec2 behind = unfold(surface, h, right, left);
   const Vec3& weights = from.barycentric;
   set_node(nodes[0],
-           weights[h % 3] * right + weights[Surface::next(h) % 3] * left + weights[Surface::previous(h) % 3] * behind,
+           weights[h % 3] * right + weights[Surface::next(h) % 3] * left +
+               weights[Surface::previous(h) % 3] * behind,
            -1, false);
   set_node(nodes[1], right, 0, false);
   set_node(nodes[2], left, 0, true);
@@ -91,17 +93,21 @@ class Funnel {
  private:
   // A node in line with the chain stays, so that a vertex the path runs straight over is seen.
   void add_left(int added) {
-    while (low_ < apex_ && side(node(low_ + 1), node(low_), nodes_[added]) < 0.0) ++low_;
+    while (low_ < apex_ && side(node(low_ + 1), node(low_), nodes_[added]) < 0.0)
+      ++low_;
     if (low_ == apex_)
-      while (apex_ < high_ && side(node(apex_), node(apex_ + 1), nodes_[added]) <= 0.0) low_ = ++apex_;
+      while (apex_ < high_ && side(node(apex_), node(apex_ + 1), nodes_[added]) <= 0.0)
+        low_ = ++apex_;
     nodes_[added].parent = chain_[low_];
     chain_[--low_] = added;
   }
 
   void add_right(int added) {
-    while (high_ > apex_ && side(node(high_ - 1), node(high_), nodes_[added]) > 0.0) --high_;
+    while (high_ > apex_ && side(node(high_ - 1), node(high_), nodes_[added]) > 0.0)
+      --high_;
     if (high_ == apex_)
-      while (apex_ > low_ && side(node(apex_), node(apex_ - 1), nodes_[added]) >= 0.0) high_ = --apex_;
+      while (apex_ > low_ && side(node(apex_), node(apex_ - 1), nodes_[added]) >= 0.0)
+        high_ = --apex_;
     nodes_[added].parent = chain_[high_];
     chain_[++high_] = added;
   }
@@ -115,11 +121,13 @@ class Funnel {
 
 }  // namespace
 
-double pull_taut(const Surface& surface, const SurfacePoint& from, const SurfacePoint& to, Workspace& workspace) {
+double pull_taut(const Surface& surface, const SurfacePoint& from, const SurfacePoint& to,
+                 Workspace& workspace) {
   unfold_strip(surface, from, to, workspace);
   const int count = static_cast<int>(workspace.nodes.size());
   Funnel funnel(workspace, static_cast<size_t>(count) + 1);
-  for (int i = 1; i < count - 1; ++i) funnel.add(i);
+  for (int i = 1; i < count - 1; ++i)
+    funnel.add(i);
   funnel.finish(count - 1);
   workspace.taut.clear();
   double length = 0.0;

@@ -27,7 +27,8 @@ std::vector<int> polygon_strip(const Surface& surface, const std::vector<Surface
     // The strip was laid from the first of the two in the order of points: see which end it starts at.
     std::vector<int> part = workspace.strip;
     if (!part.empty() && part[0] / 3 != corners[i].triangle) turn_strip(surface, part);
-    for (int h : part) push_crossing(surface, strip, h);
+    for (int h : part)
+      push_crossing(surface, strip, h);
   }
   return strip;
 }
@@ -35,7 +36,8 @@ std::vector<int> polygon_strip(const Surface& surface, const std::vector<Surface
 /// Cancels crossings at the end of a cyclic strip that undo those at its start.
 void reduce_ends(const Surface& surface, std::vector<int>& strip) {
   size_t cut = 0;
-  while (strip.size() >= 2 * (cut + 1) && surface.twin[strip[strip.size() - 1 - cut]] == strip[cut]) ++cut;
+  while (strip.size() >= 2 * (cut + 1) && surface.twin[strip[strip.size() - 1 - cut]] == strip[cut])
+    ++cut;
   strip.resize(strip.size() - cut);
   strip.erase(strip.begin(), strip.begin() + static_cast<std::ptrdiff_t>(cut));
 }
@@ -59,11 +61,13 @@ SurfacePoint segment_middle(const Surface& surface, const Path& path, size_t i) 
 
 }  // namespace
 
-LoopResult tighten_loop(const Surface& surface, const std::vector<SurfacePoint>& corners, const LoopOptions& options) {
+LoopResult tighten_loop(const Surface& surface, const std::vector<SurfacePoint>& corners,
+                        const LoopOptions& options) {
   if (corners.size() < 3)
     throw Error("geodesic loop: " + std::to_string(corners.size()) + " corners; a loop needs at least 3");
   std::vector<SurfacePoint> polygon;
-  for (const SurfacePoint& corner : corners) polygon.push_back(inside(checked(surface, corner)));
+  for (const SurfacePoint& corner : corners)
+    polygon.push_back(inside(checked(surface, corner)));
   Workspace workspace;
   std::vector<int> strip = polygon_strip(surface, polygon, options.path, workspace);
   reduce_ends(surface, strip);

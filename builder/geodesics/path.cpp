@@ -15,7 +15,9 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-double angle_between(const Vec2& a, const Vec2& b) { return std::atan2(std::abs(cross(a, b)), a.dot(b)); }
+double angle_between(const Vec2& a, const Vec2& b) {
+  return std::atan2(std::abs(cross(a, b)), a.dot(b));
+}
 
 /// Corner 0..2 of its triangle that `point` sits on, or -1.
 int corner_of(const SurfacePoint& point) {
@@ -133,12 +135,13 @@ int reroute(const Surface& surface, const PathOptions& options, Workspace& works
   for (size_t i = 1; i + 1 < workspace.taut.size(); ++i) {
     const Bend bend = measure_bend(surface, workspace, i);
     if (!(bend.outside < kPi - options.angle_tolerance)) continue;
-    for (; copied < bend.first; ++copied) push_crossing(surface, workspace.rerouted, workspace.strip[copied]);
+    for (; copied < bend.first; ++copied)
+      push_crossing(surface, workspace.rerouted, workspace.strip[copied]);
     const int before = workspace.strip[bend.first] / 3, after = surface.twin[workspace.strip[bend.last]] / 3;
     double angle = 0.0;
     if (before != after)
-      turn_outside(surface, workspace.strip, bend, workspace.nodes[workspace.taut[i]].left, &workspace.rerouted,
-                   angle);
+      turn_outside(surface, workspace.strip, bend, workspace.nodes[workspace.taut[i]].left,
+                   &workspace.rerouted, angle);
     copied = bend.last + 1;
     ++count;
   }
@@ -161,14 +164,16 @@ int count_straight_lengths(const Workspace& workspace, double tolerance) {
   return runs;
 }
 
-void append(const Surface& surface, const SurfacePoint& point, int crossing, Workspace& workspace, Path& path) {
+void append(const Surface& surface, const SurfacePoint& point, int crossing, Workspace& workspace,
+            Path& path) {
   workspace.point_crossing.push_back(crossing);
   path.points.push_back(point);
   path.positions.push_back(position(surface.mesh, point));
 }
 
 /// Points of the taut path: edge crossings between its nodes, and the vertices it passes.
-void emit(const Surface& surface, const SurfacePoint& from, const SurfacePoint& to, Workspace& workspace, Path& path) {
+void emit(const Surface& surface, const SurfacePoint& from, const SurfacePoint& to, Workspace& workspace,
+          Path& path) {
   const std::vector<int>& strip = workspace.strip;
   append(surface, from, 0, workspace, path);
   int k = 0;
@@ -282,7 +287,8 @@ void connect_into(const Surface& surface, const SurfacePoint& from, const Surfac
   SurfacePoint a = checked(surface, from), b = checked(surface, to);
   if (surface.piece[a.triangle] != surface.piece[b.triangle])
     throw Error("geodesic: triangles " + std::to_string(a.triangle) + " and " + std::to_string(b.triangle) +
-                " lie on parts of the surface that no chain of triangles connects; join the parts or choose ends on one");
+                " lie on parts of the surface that no chain of triangles connects; join the parts or choose "
+                "ends on one");
   const bool turned = ordered(b, a);
   if (turned) std::swap(a, b);
   path.counters = PathCounters();
@@ -301,14 +307,15 @@ void connect_into(const Surface& surface, const SurfacePoint& from, const Surfac
   if (turned) reverse_path(surface, path);
 }
 
-Path connect(const Surface& surface, const SurfacePoint& from, const SurfacePoint& to, const PathOptions& options,
-             Workspace& workspace) {
+Path connect(const Surface& surface, const SurfacePoint& from, const SurfacePoint& to,
+             const PathOptions& options, Workspace& workspace) {
   Path path;
   connect_into(surface, from, to, options, workspace, path);
   return path;
 }
 
-Path connect(const Surface& surface, const SurfacePoint& from, const SurfacePoint& to, const PathOptions& options) {
+Path connect(const Surface& surface, const SurfacePoint& from, const SurfacePoint& to,
+             const PathOptions& options) {
   Workspace workspace;
   return connect(surface, from, to, options, workspace);
 }
@@ -341,12 +348,15 @@ SurfacePoint point_along(const Surface& surface, const Path& path, double distan
 }
 
 std::vector<SurfacePoint> resample(const Surface& surface, const Path& path, int count) {
-  if (count < 2) throw Error("geodesic: a path is resampled to at least 2 points, not " + std::to_string(count));
+  if (count < 2)
+    throw Error("geodesic: a path is resampled to at least 2 points, not " + std::to_string(count));
   double whole = 0.0;
-  for (size_t i = 0; i + 1 < path.positions.size(); ++i) whole += (path.positions[i + 1] - path.positions[i]).norm();
+  for (size_t i = 0; i + 1 < path.positions.size(); ++i)
+    whole += (path.positions[i + 1] - path.positions[i]).norm();
   std::vector<SurfacePoint> points;
   points.reserve(static_cast<size_t>(count));
-  for (int i = 0; i < count; ++i) points.push_back(point_along(surface, path, whole * i / (count - 1)));
+  for (int i = 0; i < count; ++i)
+    points.push_back(point_along(surface, path, whole * i / (count - 1)));
   return points;
 }
 

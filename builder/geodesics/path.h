@@ -9,14 +9,14 @@ namespace fascia::geodesics {
 
 /// What a path went through, for logs and tests (THESIS names the counts of section 5.3.1).
 struct PathCounters {
-  int traced_triangles = 0;   ///< triangles the first strip crosses
-  bool cut = false;           ///< the projected trace stalled and the strip was cut by a plane instead
-  bool searched = false;      ///< that ran out too and the strip was searched instead
-  int searched_vertices = 0;  ///< vertices the search visited
-  int passes = 0;             ///< times the strip was pulled taut
-  int rerouted_vertices = 0;  ///< vertices the strip was led around on the other side
-  int pinned_vertices = 0;    ///< vertices the final path goes through
-  int straight_lengths = 0;   ///< maximal runs without a turn in the final path
+  int traced_triangles = 0;        ///< triangles the first strip crosses
+  bool cut = false;                ///< the projected trace stalled and the strip was cut by a plane instead
+  bool searched = false;           ///< that ran out too and the strip was searched instead
+  int searched_vertices = 0;       ///< vertices the search visited
+  int passes = 0;                  ///< times the strip was pulled taut
+  int rerouted_vertices = 0;       ///< vertices the strip was led around on the other side
+  int pinned_vertices = 0;         ///< vertices the final path goes through
+  int straight_lengths = 0;        ///< maximal runs without a turn in the final path
   int first_straight_lengths = 0;  ///< the same after the first pass
   /// Largest |left − right| / (left + right) at an interior vertex that pins the path: zero is straight
   /// in the sense of Polthier and Schmies, what fixed ends leave at a hyperbolic vertex is not.
@@ -42,7 +42,6 @@ struct PathOptions {
   /// Search the strip at once instead of tracing by vector projection first.
   bool search_first = false;
 };
-
 
 /// Memory that paths reuse, so that only the first on a surface allocates: one a thread, given to every call.
 class Workspace {

@@ -73,7 +73,8 @@ Exit leave_triangle(const SurfacePoint& at, const Vec3& rates, int entered) {
 /// At a ridge or a valley the projected direction points back on both sides: slide along the edge to
 /// the end that is nearer in direction, and on around that vertex.
 Exit slide_along(const Surface& surface, int entered, const Vec3& direction) {
-  const Vec3 edge = surface.mesh.vertices[surface.target(entered)] - surface.mesh.vertices[surface.origin(entered)];
+  const Vec3 edge =
+      surface.mesh.vertices[surface.target(entered)] - surface.mesh.vertices[surface.origin(entered)];
   Exit exit;
   const bool forward = direction.dot(edge) > 0.0;
   exit.half_edge = forward ? Surface::next(entered) : Surface::previous(entered);
@@ -92,10 +93,12 @@ void push_crossing(const Surface& surface, std::vector<int>& strip, int half_edg
 
 void turn_strip(const Surface& surface, std::vector<int>& strip) {
   std::reverse(strip.begin(), strip.end());
-  for (int& h : strip) h = surface.twin[h];
+  for (int& h : strip)
+    h = surface.twin[h];
 }
 
-bool trace_strip(const Surface& surface, const SurfacePoint& from, const SurfacePoint& to, Workspace& workspace) {
+bool trace_strip(const Surface& surface, const SurfacePoint& from, const SurfacePoint& to,
+                 Workspace& workspace) {
   next_epoch(surface, workspace);
   workspace.strip.clear();
   const Vec3 goal = position(surface.mesh, to);
@@ -118,10 +121,13 @@ bool trace_strip(const Surface& surface, const SurfacePoint& from, const Surface
   return true;
 }
 
-bool cut_strip(const Surface& surface, const SurfacePoint& from, const SurfacePoint& to, Workspace& workspace) {
+bool cut_strip(const Surface& surface, const SurfacePoint& from, const SurfacePoint& to,
+               Workspace& workspace) {
   workspace.strip.clear();
   const Vec3 start = position(surface.mesh, from), goal = position(surface.mesh, to);
-  const Vec3 normal = (goal - start).cross(triangle_normal(surface.mesh, from.triangle) + triangle_normal(surface.mesh, to.triangle));
+  const Vec3 normal =
+      (goal - start)
+          .cross(triangle_normal(surface.mesh, from.triangle) + triangle_normal(surface.mesh, to.triangle));
   if (!(normal.squaredNorm() > 0.0)) return false;
   const auto above = [&](int vertex) { return normal.dot(surface.mesh.vertices[vertex] - start) >= 0.0; };
   // With the goal ahead and the surface's normal up, what lies above the plane is on the right.
@@ -132,9 +138,11 @@ bool cut_strip(const Surface& surface, const SurfacePoint& from, const SurfacePo
   }
   double left = kLongestCut * (goal - start).norm();
   Vec3 last = start;
-  for (size_t guard = 0; leaving >= 0 && surface.twin[leaving] >= 0 && guard < surface.mesh.triangles.size(); ++guard) {
+  for (size_t guard = 0; leaving >= 0 && surface.twin[leaving] >= 0 && guard < surface.mesh.triangles.size();
+       ++guard) {
     workspace.strip.push_back(leaving);
-    const Vec3 here = 0.5 * (surface.mesh.vertices[surface.origin(leaving)] + surface.mesh.vertices[surface.target(leaving)]);
+    const Vec3 here = 0.5 * (surface.mesh.vertices[surface.origin(leaving)] +
+                             surface.mesh.vertices[surface.target(leaving)]);
     left -= (here - last).norm();
     last = here;
     if (left < 0.0) return false;
@@ -215,7 +223,8 @@ class VertexSearch {
   /// The rim edge that ends in `vertex`, which no half-edge leaves along.
   void rim(int vertex, int first, double cost) {
     int h = first;
-    while (surface_.twin[Surface::previous(h)] >= 0) h = surface_.twin[Surface::previous(h)];
+    while (surface_.twin[Surface::previous(h)] >= 0)
+      h = surface_.twin[Surface::previous(h)];
     const int incoming = Surface::previous(h);
     const int other = surface_.origin(incoming);
     // `other` is entered by the half-edge before the rim edge, of the same triangle.
@@ -250,7 +259,8 @@ int turn(const Surface& surface, int vertex, int triangle, const Arrived& arrive
       left.push_back(Surface::previous(ahead));
       ahead = surface.twin[left.back()];
       if (ahead >= 0 && arrived(ahead / 3)) {
-        for (const int h : left) push_crossing(surface, workspace.strip, h);
+        for (const int h : left)
+          push_crossing(surface, workspace.strip, h);
         return ahead / 3;
       }
       if (ahead >= 0 && ahead / 3 == triangle) return -1;
@@ -260,7 +270,8 @@ int turn(const Surface& surface, int vertex, int triangle, const Arrived& arrive
       const int twin = surface.twin[behind];
       behind = twin >= 0 ? Surface::next(twin) : -1;
       if (behind >= 0 && arrived(behind / 3)) {
-        for (const int h : right) push_crossing(surface, workspace.strip, h);
+        for (const int h : right)
+          push_crossing(surface, workspace.strip, h);
         return behind / 3;
       }
     }
@@ -270,14 +281,16 @@ int turn(const Surface& surface, int vertex, int triangle, const Arrived& arrive
 
 }  // namespace
 
-int search_strip(const Surface& surface, const SurfacePoint& from, const SurfacePoint& to, Workspace& workspace) {
+int search_strip(const Surface& surface, const SurfacePoint& from, const SurfacePoint& to,
+                 Workspace& workspace) {
   next_epoch(surface, workspace);
   workspace.strip.clear();
   if (from.triangle == to.triangle) return 0;
   VertexSearch search(surface, from, to, workspace);
   auto& way = workspace.way;
   way.clear();
-  for (int vertex = search.run(); vertex >= 0; vertex = workspace.vertex_parent[vertex]) way.push_back(vertex);
+  for (int vertex = search.run(); vertex >= 0; vertex = workspace.vertex_parent[vertex])
+    way.push_back(vertex);
   std::reverse(way.begin(), way.end());
   int triangle = from.triangle;
   for (size_t i = 0; i < way.size() && triangle >= 0; ++i) {

@@ -23,7 +23,8 @@ void check_mesh(const TriangleMesh& mesh, const std::string& name) {
         throw Error(name + ": triangle " + std::to_string(t) + " names vertex " + std::to_string(corner) +
                     ", which does not exist; repair the mesh");
     if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0])
-      throw Error(name + ": triangle " + std::to_string(t) + " names a vertex twice; weld and repair the mesh");
+      throw Error(name + ": triangle " + std::to_string(t) +
+                  " names a vertex twice; weld and repair the mesh");
   }
 }
 
@@ -46,7 +47,8 @@ void measure_edges(Surface& surface) {
   surface.length.resize(count);
   double sum = 0.0;
   for (int h = 0; h < count; ++h) {
-    surface.length[h] = (surface.mesh.vertices[surface.target(h)] - surface.mesh.vertices[surface.origin(h)]).norm();
+    surface.length[h] =
+        (surface.mesh.vertices[surface.target(h)] - surface.mesh.vertices[surface.origin(h)]).norm();
     sum += surface.length[h];
   }
   const double mean = sum > 0.0 ? sum / count : 1.0;
@@ -56,7 +58,8 @@ void measure_edges(Surface& surface) {
         surface.length[Surface::next(h)] + surface.length[Surface::previous(h)] - surface.length[h];
     surface.mollification = std::max(surface.mollification, slack - excess);
   }
-  for (double& length : surface.length) length += surface.mollification;
+  for (double& length : surface.length)
+    length += surface.mollification;
 }
 
 void measure_triangles(Surface& surface) {
@@ -118,7 +121,8 @@ Surface make_surface(TriangleMesh mesh, const std::string& name) {
 SurfacePoint checked(const Surface& surface, const SurfacePoint& point) {
   if (point.triangle < 0 || point.triangle >= surface.mesh.triangle_count())
     throw Error("geodesic: point on triangle " + std::to_string(point.triangle) + ", but the surface has " +
-                std::to_string(surface.mesh.triangle_count()) + "; project the point onto this surface first");
+                std::to_string(surface.mesh.triangle_count()) +
+                "; project the point onto this surface first");
   if (!point.barycentric.allFinite() || point.barycentric.cwiseMax(0.0).sum() <= 0.0)
     throw Error("geodesic: point on triangle " + std::to_string(point.triangle) +
                 " has no valid barycentric weights; project the point onto this surface first");

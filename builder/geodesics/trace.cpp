@@ -26,7 +26,8 @@ struct Ray {
 /// The ray seen from the next half-edge of the same triangle.
 Ray turned(const Surface& surface, const Ray& ray) {
   const Vec2 along = surface.apex[ray.half_edge] - Vec2(1.0, 0.0);
-  return {Surface::next(ray.half_edge), divided(ray.place - Vec2(1.0, 0.0), along), divided(ray.direction, along)};
+  return {Surface::next(ray.half_edge), divided(ray.place - Vec2(1.0, 0.0), along),
+          divided(ray.direction, along)};
 }
 
 SurfacePoint surface_point(const Surface& surface, const Ray& ray) {
@@ -96,8 +97,8 @@ bool enter_first_triangle(const Surface& surface, const SurfacePoint& start, Ray
       }
       return leave_vertex(surface, h, angle, ray);
     }
-    const bool on_edge = start.barycentric[Surface::previous(h) % 3] == 0.0 && start.barycentric[h % 3] > 0.0 &&
-                         start.barycentric[Surface::next(h) % 3] > 0.0;
+    const bool on_edge = start.barycentric[Surface::previous(h) % 3] == 0.0 &&
+                         start.barycentric[h % 3] > 0.0 && start.barycentric[Surface::next(h) % 3] > 0.0;
     if (!on_edge) continue;
     ray.place[1] = 0.0;
     if (std::abs(ray.direction[1]) < 1e-12 * ray.direction.norm()) ray.direction[1] = 0.0;
@@ -116,7 +117,7 @@ void append(const Surface& surface, const SurfacePoint& point, Path& path) {
 }
 
 struct Hit {
-  Ray ray;           // at the crossing, in the frame of the half-edge crossed
+  Ray ray;  // at the crossing, in the frame of the half-edge crossed
   double distance = 0.0;
 };
 
@@ -136,16 +137,18 @@ Hit leave(const Surface& surface, const Ray& ray) {
     return hit;
   }
   hit.distance = std::max(cross(from - ray.place, along) / whole, 0.0);
-  hit.ray.place[0] = std::clamp(cross(ray.place - from, ray.direction) / cross(along, ray.direction), 0.0, 1.0);
+  hit.ray.place[0] =
+      std::clamp(cross(ray.place - from, ray.direction) / cross(along, ray.direction), 0.0, 1.0);
   return hit;
 }
 
 }  // namespace
 
-TraceResult trace(const Surface& surface, const SurfacePoint& start_point, const Vec3& direction, double length,
-                  const TraceOptions& options) {
+TraceResult trace(const Surface& surface, const SurfacePoint& start_point, const Vec3& direction,
+                  double length, const TraceOptions& options) {
   if (!(length >= 0.0) || !std::isfinite(length))
-    throw Error("geodesic: a trace of length " + std::to_string(length) + " m; give a finite length of 0 or more");
+    throw Error("geodesic: a trace of length " + std::to_string(length) +
+                " m; give a finite length of 0 or more");
   const SurfacePoint start = checked(surface, start_point);
   TraceResult result;
   Ray ray = first_ray(surface, start, direction);
@@ -157,7 +160,8 @@ TraceResult trace(const Surface& surface, const SurfacePoint& start_point, const
   }
   append(surface, surface_point(surface, ray), result.path);
   // The first triangle has three sides to leave by: look from the one the ray points away from.
-  for (int e = 0; e < 2 && ray.direction[1] < 0.0; ++e) ray = turned(surface, ray);
+  for (int e = 0; e < 2 && ray.direction[1] < 0.0; ++e)
+    ray = turned(surface, ray);
   double left = length;
   while (true) {
     const Hit hit = leave(surface, ray);
@@ -169,7 +173,7 @@ TraceResult trace(const Surface& surface, const SurfacePoint& start_point, const
     left -= hit.distance;
     const int crossed = hit.ray.half_edge, twin = surface.twin[crossed];
     const double share = hit.ray.place[0];
-    const bool at_origin = share < options.vertex_tolerance, at_target = share > 1.0 - options.vertex_tolerance;
+    const bool at_origin = share<options.vertex_tolerance, at_target = share> 1.0 - options.vertex_tolerance;
     if (at_origin || at_target || twin < 0) {
       append(surface, point_on_edge(crossed, at_origin ? 0.0 : at_target ? 1.0 : share), result.path);
       if (!at_origin && !at_target) {
@@ -183,7 +187,8 @@ TraceResult trace(const Surface& surface, const SurfacePoint& start_point, const
                                   : Vec2(-divided(hit.ray.direction, surface.apex[crossed] - Vec2(1.0, 0.0)));
       bool boundary = false;
       const double whole = total_angle(surface, corner, &boundary);
-      if (boundary || !leave_vertex(surface, corner, std::max(std::atan2(back[1], back[0]), 0.0) + 0.5 * whole, ray)) {
+      if (boundary ||
+          !leave_vertex(surface, corner, std::max(std::atan2(back[1], back[0]), 0.0) + 0.5 * whole, ray)) {
         result.reached_boundary = true;
         break;
       }

@@ -8,8 +8,8 @@ struct TraceResult {
   Path path;
   /// The trace ended at a boundary or a non-manifold edge before its full length.
   bool reached_boundary = false;
-  int crossings = 0;         ///< edges crossed
-  int vertices_passed = 0;   ///< vertices run straight through
+  int crossings = 0;        ///< edges crossed
+  int vertices_passed = 0;  ///< vertices run straight through
 };
 
 struct TraceOptions {

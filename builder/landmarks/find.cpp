@@ -11,8 +11,8 @@ namespace fascia::landmarks {
 namespace {
 
 /// Open samples about the head: dense over the face, sparse elsewhere.
-Samples head_samples(const GenericFace& face, const spatial::SurfaceQuery& skin, const Placement& placement, int face_count,
-                     int head_count) {
+Samples head_samples(const GenericFace& face, const spatial::SurfaceQuery& skin, const Placement& placement,
+                     int face_count, int head_count) {
   const Ball front{placement(Vec3(0, -0.005, 0.085)), 0.085 * placement.scale};
   const Ball head{placement(face.vault.centre), 1.75 * face.vault.radius * placement.scale};
   Samples all = open_samples(sample_evenly(skin.mesh(), face_count, front), skin);
@@ -50,18 +50,21 @@ EyeRegion eye_region(const Vec3& outer, const Vec3& inner, const Ball& ball, con
   return {outer, inner, placement.rotation * Vec3::UnitZ(), placement.rotation * Vec3::UnitY(), ball};
 }
 
-/// Corners and margins of the lids of one side, put where this head's lids open: the generic head's own opening, looked at
-/// the same way, tells how the landmarks lie beside what is seen.
-std::vector<std::pair<std::string, Vec3>> lid_landmarks(const GenericFace& face, const anatomy::GenericAnatomy& anatomy,
-                                                        const spatial::SurfaceQuery& skin, const Registration& fit,
-                                                        const std::string& side, const std::optional<Ball>& known) {
+/// Corners and margins of the lids of one side, put where this head's lids open: the generic head's own
+/// opening, looked at the same way, tells how the landmarks lie beside what is seen.
+std::vector<std::pair<std::string, Vec3>> lid_landmarks(const GenericFace& face,
+                                                        const anatomy::GenericAnatomy& anatomy,
+                                                        const spatial::SurfaceQuery& skin,
+                                                        const Registration& fit, const std::string& side,
+                                                        const std::optional<Ball>& known) {
   const auto generic = [&](const char* name) { return *anatomy.landmark(name + side)->skin; };
   const Vec3 outer = generic("exocanthion_"), inner = generic("endocanthion_");
   const Ball& ball = side == "left" ? face.eye_left : face.eye_right;
   const double scale = fit.placement.scale;
   const Ball carried = known ? *known : Ball{fit(ball.centre), ball.radius * scale};
   const auto here = lid_opening(skin, eye_region(fit(outer), fit(inner), carried, fit.placement));
-  const auto there = lid_opening(spatial::SurfaceQuery(face.skin), eye_region(outer, inner, ball, Placement{}));
+  const auto there =
+      lid_opening(spatial::SurfaceQuery(face.skin), eye_region(outer, inner, ball, Placement{}));
   if (!here || !there) return {};
   const auto moved = [&](const Vec3& at, const Vec3& seen_here, const Vec3& seen_there) {
     return Vec3(seen_here + scale * (fit.placement.rotation * (at - seen_there)));
@@ -81,11 +84,13 @@ std::vector<std::pair<std::string, Vec3>> lid_landmarks(const GenericFace& face,
   return found;
 }
 
-std::vector<Anchor> anchors_of(const std::map<std::string, Vec3>& points, const anatomy::GenericAnatomy& anatomy, double weight) {
+std::vector<Anchor> anchors_of(const std::map<std::string, Vec3>& points,
+                               const anatomy::GenericAnatomy& anatomy, double weight) {
   std::vector<Anchor> anchors;
   for (const auto& [name, p] : points) {
     const Vec3& generic = *anatomy.landmark(name)->skin;
-    const bool repeats = std::any_of(anchors.begin(), anchors.end(), [&](const Anchor& a) { return (a.generic - generic).norm() < 1e-3; });
+    const bool repeats = std::any_of(anchors.begin(), anchors.end(),
+                                     [&](const Anchor& a) { return (a.generic - generic).norm() < 1e-3; });
     if (!repeats) anchors.push_back({generic, p, weight});
   }
   return anchors;
@@ -93,7 +98,8 @@ std::vector<Anchor> anchors_of(const std::map<std::string, Vec3>& points, const 
 
 }  // namespace
 
-std::map<std::string, Vec3> rough_landmarks(const GenericFace& face, const anatomy::GenericAnatomy& anatomy, const FoundHead& found) {
+std::map<std::string, Vec3> rough_landmarks(const GenericFace& face, const anatomy::GenericAnatomy& anatomy,
+                                            const FoundHead& found) {
   std::map<std::string, Vec3> rough;
   for (const anatomy::Landmark& landmark : anatomy.landmarks)
     if (landmark.skin && landmark.required && overhang_at(face, found.fit, *landmark.skin) < beyond_edge)
@@ -101,14 +107,17 @@ std::map<std::string, Vec3> rough_landmarks(const GenericFace& face, const anato
   return rough;
 }
 
-FoundFace find(const GenericFace& face, const anatomy::GenericAnatomy& anatomy, const spatial::SurfaceQuery& skin,
-               const Placement& placement, const std::map<std::string, Vec3>& given, const KnownEyes& eyes) {
+FoundFace find(const GenericFace& face, const anatomy::GenericAnatomy& anatomy,
+               const spatial::SurfaceQuery& skin, const Placement& placement,
+               const std::map<std::string, Vec3>& given, const KnownEyes& eyes) {
   FoundFace found;
   std::map<std::string, Vec3> known;
   for (const auto& [name, p] : given) {
     const anatomy::Landmark* landmark = anatomy.landmark(name);
-    if (landmark && landmark->skin) known[name] = p;
-    else found.unknown.push_back(name);
+    if (landmark && landmark->skin)
+      known[name] = p;
+    else
+      found.unknown.push_back(name);
   }
   std::vector<Anchor> anchors = anchors_of(known, anatomy, 100.0);
   const Samples samples = head_samples(face, skin, placement, 12000, 5000);
@@ -120,7 +129,8 @@ FoundFace find(const GenericFace& face, const anatomy::GenericAnatomy& anatomy, 
   for (const auto& [side, ball] : {std::pair("left", eyes.left), std::pair("right", eyes.right)})
     for (const auto& [name, p] : lid_landmarks(face, anatomy, skin, found.fit, side, ball))
       if (!known.count(name)) seen[name] = p;
-  for (const Anchor& anchor : anchors_of(seen, anatomy, 20.0)) anchors.push_back(anchor);
+  for (const Anchor& anchor : anchors_of(seen, anatomy, 20.0))
+    anchors.push_back(anchor);
   RegistrationOptions second;
   second.stages = {{0.03, 2, 1}, {0.01, 1, 1}, {0.004, 1, 1}};
   second.reach = 0.01;
@@ -133,13 +143,16 @@ FoundFace find(const GenericFace& face, const anatomy::GenericAnatomy& anatomy, 
     }
     const auto eye = seen.find(landmark.name);
     const Vec3 carried = eye != seen.end() ? eye->second : found.fit(*landmark.skin);
-    const auto place = facing_point(skin, carried, carried_normal(found.fit, *landmark.skin, landmark.normal));
+    const auto place =
+        facing_point(skin, carried, carried_normal(found.fit, *landmark.skin, landmark.normal));
     if (!place) continue;
     const double distance = place->distance / placement.scale;
     const double off = std::exp(-distance / 0.015);
-    const double confidence = std::max(eye != seen.end() ? confidence_of_openings : 0.0, confidence_at(face, found.fit, *landmark.skin));
+    const double confidence = std::max(eye != seen.end() ? confidence_of_openings : 0.0,
+                                       confidence_at(face, found.fit, *landmark.skin));
     // A face alone has no ears: such a landmark stays where the bent head has it, beside the mesh.
-    found.landmarks[landmark.name] = {distance < beyond_edge ? place->position : carried, off * confidence, false};
+    found.landmarks[landmark.name] = {distance < beyond_edge ? place->position : carried, off * confidence,
+                                      false};
   }
   return found;
 }

@@ -22,24 +22,29 @@ Vec3 place(const anatomy::GenericAnatomy& anatomy, const char* name) {
 /// Where faces differ and features are small: corners and margins of eyes and mouth, the nose.
 std::vector<Vec3> feature_points(const anatomy::GenericAnatomy& anatomy) {
   std::vector<Vec3> features;
-  for (const char* name : {"pronasale", "subnasale", "labiale_superius", "labiale_inferius", "stomion", "columella"})
+  for (const char* name :
+       {"pronasale", "subnasale", "labiale_superius", "labiale_inferius", "stomion", "columella"})
     features.push_back(place(anatomy, name));
-  for (const char* name : {"exocanthion", "endocanthion", "palpebrale_superius", "palpebrale_inferius", "cheilion", "alare",
-                           "labiale_superius_laterale", "labiale_inferius_laterale"})
-    for (const char* side : {"_left", "_right"}) features.push_back(place(anatomy, (std::string(name) + side).c_str()));
+  for (const char* name : {"exocanthion", "endocanthion", "palpebrale_superius", "palpebrale_inferius",
+                           "cheilion", "alare", "labiale_superius_laterale", "labiale_inferius_laterale"})
+    for (const char* side : {"_left", "_right"})
+      features.push_back(place(anatomy, (std::string(name) + side).c_str()));
   return features;
 }
 
 double spacing_at(const Vec3& p, const std::vector<Vec3>& features) {
   double nearest = 1e300;
-  for (const Vec3& f : features) nearest = std::min(nearest, (p - f).norm());
+  for (const Vec3& f : features)
+    nearest = std::min(nearest, (p - f).norm());
   return std::clamp(0.0035 + 0.2 * nearest, 0.0035, 0.020);
 }
 
-Vec3 mirrored(const Vec3& v) { return {-v[0], v[1], v[2]}; }
+Vec3 mirrored(const Vec3& v) {
+  return {-v[0], v[1], v[2]};
+}
 
-/// Outer skin of the left half and the midline: from these the surface is free to be left along the normal and
-/// away from the head's middle. The first `landmark_count` are the landmarks.
+/// Outer skin of the left half and the midline: from these the surface is free to be left along the normal
+/// and away from the head's middle. The first `landmark_count` are the landmarks.
 Samples outer_left(const anatomy::GenericAnatomy& anatomy, const TriangleMesh& skin, size_t& landmark_count) {
   const spatial::SurfaceQuery surface(skin);
   const std::vector<Vec3> normals = vertex_normals(skin);
@@ -49,7 +54,8 @@ Samples outer_left(const anatomy::GenericAnatomy& anatomy, const TriangleMesh& s
     if (p[0] < -1e-6) return;
     const Vec3 from = p + 2e-4 * n;
     const Vec3 away = (p - middle).normalized();
-    if (is_trusted || (!surface.blocked(from, n) && !surface.blocked(from, away) && n.dot(away) > -0.2)) outer.add(p, n);
+    if (is_trusted || (!surface.blocked(from, n) && !surface.blocked(from, away) && n.dot(away) > -0.2))
+      outer.add(p, n);
   };
   for (const anatomy::Landmark& landmark : anatomy.landmarks)
     if (landmark.skin && landmark.name.rfind("pupilla", 0) != 0) add(*landmark.skin, landmark.normal, true);
@@ -73,7 +79,8 @@ std::vector<size_t> first_triangles() {
     if (line.rfind("o ", 0) == 0) is_skin = line.rfind("o skin", 0) == 0;
     if (!is_skin || line.rfind("f ", 0) != 0) continue;
     std::istringstream corners(line.substr(2));
-    const auto count = std::distance(std::istream_iterator<std::string>(corners), std::istream_iterator<std::string>());
+    const auto count =
+        std::distance(std::istream_iterator<std::string>(corners), std::istream_iterator<std::string>());
     first.push_back(first.back() + static_cast<size_t>(count) - 2);
   }
   return first;
@@ -82,14 +89,18 @@ std::vector<size_t> first_triangles() {
 /// Reads which polygons of the skin make up which region.
 void read_regions(GenericFace& face) {
   const std::string_view text = anatomy::embedded_file("head_regions.json");
-  const nlohmann::json faces = nlohmann::json::parse(text.begin(), text.end()).at("objects").at("skin").at("faces");
+  const nlohmann::json faces =
+      nlohmann::json::parse(text.begin(), text.end()).at("objects").at("skin").at("faces");
   const std::vector<size_t> first = first_triangles();
   face.region_of_triangle.assign(face.skin.triangles.size(), -1);
   for (const auto& [name, range] : faces.items()) {
     const size_t begin = range.at("first").get<size_t>(), end = begin + range.at("count").get<size_t>();
     if (end >= first.size() || first.back() != face.skin.triangles.size())
-      throw Error("head_regions.json does not belong to the skin of head.obj: make both with tools/anatomy/make_head");
-    for (size_t t = first[begin]; t < first[end]; ++t) face.region_of_triangle[t] = static_cast<int>(face.region_names.size());
+      throw Error(
+          "head_regions.json does not belong to the skin of head.obj: make both with "
+          "tools/anatomy/make_head");
+    for (size_t t = first[begin]; t < first[end]; ++t)
+      face.region_of_triangle[t] = static_cast<int>(face.region_names.size());
     face.region_names.push_back(name);
   }
 }
@@ -115,11 +126,13 @@ GenericFace generic_face(const anatomy::GenericAnatomy& anatomy) {
     const bool is_landmark = i < landmark_count;
     const double spacing = is_landmark ? std::min(0.002, spacing_at(p, features)) : spacing_at(p, features);
     if (p[0] > 1e-6 && p[0] < 0.4 * spacing) continue;
-    const bool is_crowded = std::any_of(chosen.points.begin(), chosen.points.end(),
-                                        [&](const Vec3& q) { return (q - p).squaredNorm() < spacing * spacing; });
+    const bool is_crowded = std::any_of(chosen.points.begin(), chosen.points.end(), [&](const Vec3& q) {
+      return (q - p).squaredNorm() < spacing * spacing;
+    });
     if (!is_crowded) chosen.add(p, outer.normals[i].normalized());
   }
-  const Vec3 menton = place(anatomy, "menton"), tragion = place(anatomy, "tragion_left"), trichion = place(anatomy, "trichion");
+  const Vec3 menton = place(anatomy, "menton"), tragion = place(anatomy, "tragion_left"),
+             trichion = place(anatomy, "trichion");
   for (size_t i = 0; i < chosen.size(); ++i) {
     const Vec3 p = chosen.points[i], n = chosen.normals[i];
     const bool is_midline = std::abs(p[0]) < 1e-6;

@@ -8,19 +8,20 @@
 
 namespace fascia::landmarks {
 
-/// The generic head as what is compared with a mesh: points of its outer skin, dense about eyes, nose and mouth.
+/// The generic head as what is compared with a mesh: points of its outer skin, dense about eyes, nose and
+/// mouth.
 struct GenericFace {
-  Samples points;                ///< metres, rig frame; mirror-symmetric about x = 0
-  std::vector<int> mirror;       ///< the other side's point; a midline point's own index
-  std::vector<double> weights;   ///< what a point says about the head's place: 1 face .. 0 neck
-  std::vector<bool> is_face;     ///< in front of the ears, between hairline and chin
-  std::vector<bool> is_feature;  ///< about eyes, nose and mouth
-  TriangleMesh skin;             ///< the whole skin
+  Samples points;                         ///< metres, rig frame; mirror-symmetric about x = 0
+  std::vector<int> mirror;                ///< the other side's point; a midline point's own index
+  std::vector<double> weights;            ///< what a point says about the head's place: 1 face .. 0 neck
+  std::vector<bool> is_face;              ///< in front of the ears, between hairline and chin
+  std::vector<bool> is_feature;           ///< about eyes, nose and mouth
+  TriangleMesh skin;                      ///< the whole skin
   std::vector<std::string> region_names;  ///< lip_upper, mouth_lining, nostril_left, ...
   std::vector<int> region_of_triangle;    ///< of `skin`, index into `region_names`
-  Ball eye_left, eye_right;      ///< eyeballs
-  Vec3 nose_tip;                 ///< pronasale
-  Ball vault;                    ///< sphere through the outer skin above the neck
+  Ball eye_left, eye_right;               ///< eyeballs
+  Vec3 nose_tip;                          ///< pronasale
+  Ball vault;                             ///< sphere through the outer skin above the neck
 };
 
 /// Takes the points from the skin of `anatomy`'s head, its skin landmarks among them.

@@ -11,7 +11,8 @@ namespace {
 /// A place that stands out of its surroundings, and which way.
 struct Protrusion {
   Vec3 tip, direction;
-  double height = 0.0;  ///< above the middle of what is around, as a share of the radius looked at; 0 for hollows and rims
+  double height = 0.0;  ///< above the middle of what is around, as a share of the radius looked at; 0 for
+                        ///< hollows and rims
 };
 
 Protrusion protrusion_at(const Neighbours& samples, const Vec3& tip, double radius) {
@@ -39,25 +40,30 @@ std::vector<Protrusion> protrusions(const Neighbours& samples, double radius, si
     const Protrusion p = protrusion_at(samples, samples.samples().points[i], radius);
     if (p.height > 0.0) all.push_back(p);
   }
-  std::stable_sort(all.begin(), all.end(), [](const Protrusion& a, const Protrusion& b) { return a.height > b.height; });
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Protrusion& a, const Protrusion& b) { return a.height > b.height; });
   std::vector<Protrusion> chosen;
   for (const Protrusion& p : all) {
     if (chosen.size() == count) break;
-    if (std::none_of(chosen.begin(), chosen.end(), [&](const Protrusion& c) { return (c.tip - p.tip).norm() < 0.7 * radius; })) chosen.push_back(p);
+    if (std::none_of(chosen.begin(), chosen.end(),
+                     [&](const Protrusion& c) { return (c.tip - p.tip).norm() < 0.7 * radius; }))
+      chosen.push_back(p);
   }
   return chosen;
 }
 
-/// Mean distance of the face's points from the samples that face as they do, in metres of the generic head, none counting
-/// more than 12 mm.
-double distance_from(const GenericFace& face, const std::vector<size_t>& points, const Neighbours& samples, const Placement& placement) {
+/// Mean distance of the face's points from the samples that face as they do, in metres of the generic head,
+/// none counting more than 12 mm.
+double distance_from(const GenericFace& face, const std::vector<size_t>& points, const Neighbours& samples,
+                     const Placement& placement) {
   const double most = 0.012;
   std::vector<size_t> near;
   std::vector<double> squared;
   double sum = 0.0;
   for (size_t i : points) {
     samples.nearest(placement(face.points.points[i]), 1, near, squared);
-    const bool faces_so = samples.samples().normals[near.front()].dot(placement.rotation * face.points.normals[i]) > 0.3;
+    const bool faces_so =
+        samples.samples().normals[near.front()].dot(placement.rotation * face.points.normals[i]) > 0.3;
     sum += faces_so ? std::min(most, std::sqrt(squared.front()) / placement.scale) : most;
   }
   return sum / static_cast<double>(points.size());
@@ -71,12 +77,14 @@ std::vector<Guess> guess_by_nose(const GenericFace& face, const Neighbours& samp
   for (size_t i = 0; i < face.points.size(); ++i)
     if (face.is_face[i]) face_points.push_back(i);
   std::vector<size_t> few;
-  for (size_t i = 0; i < face_points.size(); i += 5) few.push_back(face_points[i]);
+  for (size_t i = 0; i < face_points.size(); i += 5)
+    few.push_back(face_points[i]);
   const Neighbours generic(face.points);
   const double nose_radius = 0.025;
   const Protrusion nose = protrusion_at(generic, face.nose_tip, nose_radius);
   std::vector<Guess> all;
-  // A face alone measures some 0.22 m from corner to corner, a head without its vault or with its neck up to twice that.
+  // A face alone measures some 0.22 m from corner to corner, a head without its vault or with its neck up to
+  // twice that.
   for (double size : {0.17, 0.20, 0.24, 0.28, 0.33, 0.39, 0.46}) {
     const double scale = extent / size;
     for (const Protrusion& tip : protrusions(samples, nose_radius * scale, 6)) {
@@ -87,14 +95,16 @@ std::vector<Guess> guess_by_nose(const GenericFace& face, const Neighbours& samp
         for (double nod : {0.0, -0.3, 0.3}) {
           Guess guess;
           guess.placement.scale = scale;
-          guess.placement.rotation = Eigen::AngleAxisd(2.0 * EIGEN_PI * turn / turns, tip.direction).toRotationMatrix() * onto *
-                                     Eigen::AngleAxisd(nod, Vec3::UnitX()).toRotationMatrix();
+          guess.placement.rotation =
+              Eigen::AngleAxisd(2.0 * EIGEN_PI * turn / turns, tip.direction).toRotationMatrix() * onto *
+              Eigen::AngleAxisd(nod, Vec3::UnitX()).toRotationMatrix();
           guess.placement.shift = tip.tip - scale * (guess.placement.rotation * face.nose_tip);
           guess.cost = distance_from(face, few, samples, guess.placement);
           here.push_back(guess);
         }
       const size_t kept = 3;
-      std::partial_sort(here.begin(), here.begin() + kept, here.end(), [](const Guess& a, const Guess& b) { return a.cost < b.cost; });
+      std::partial_sort(here.begin(), here.begin() + kept, here.end(),
+                        [](const Guess& a, const Guess& b) { return a.cost < b.cost; });
       all.insert(all.end(), here.begin(), here.begin() + kept);
     }
   }

@@ -35,17 +35,20 @@ Sight sight_on(const EyeRegion& eye) {
 /// Cells where the lids do not cover the ball.
 std::vector<bool> open_cells(const spatial::SurfaceQuery& skin, const EyeRegion& eye, const Sight& sight) {
   const Vec3 centre = eye.ball.centre - sight.origin;
-  const double cu = centre.dot(sight.x), cv = centre.dot(sight.y), cz = centre.dot(sight.z), r = eye.ball.radius;
+  const double cu = centre.dot(sight.x), cv = centre.dot(sight.y), cz = centre.dot(sight.z),
+               r = eye.ball.radius;
   // The ball alone does not reach the corners; the tissue there goes on about as it does.
   const double stretch = std::max(r, 0.66 * sight.width);
   const double reach = 0.8 * sight.width, behind = 0.035 * sight.width;
   std::vector<bool> open(static_cast<size_t>(columns * rows), false);
   for (int row = 0; row < rows; ++row)
     for (int column = 0; column < columns; ++column) {
-      const double u = ((column - half_columns) * sight.cell - cu) / stretch, v = ((row - half_rows) * sight.cell - cv) / r;
+      const double u = ((column - half_columns) * sight.cell - cu) / stretch,
+                   v = ((row - half_rows) * sight.cell - cv) / r;
       if (u * u + v * v >= 0.98) continue;
       const double surface = cz + r * std::sqrt(1.0 - u * u - v * v);
-      open[static_cast<size_t>(row * columns + column)] = !skin.blocked(sight.at(column, row, reach), -sight.z, reach - surface + behind);
+      open[static_cast<size_t>(row * columns + column)] =
+          !skin.blocked(sight.at(column, row, reach), -sight.z, reach - surface + behind);
     }
   return open;
 }
@@ -56,7 +59,8 @@ std::vector<int> opening_cells(const std::vector<bool>& open) {
   double nearest = 1e300;
   for (int i = 0; i < columns * rows; ++i) {
     const double du = i % columns - half_columns, dv = i / columns - half_rows;
-    if (open[static_cast<size_t>(i)] && std::abs(du) < 8 && std::abs(dv) < 10 && du * du + dv * dv < nearest) {
+    if (open[static_cast<size_t>(i)] && std::abs(du) < 8 && std::abs(dv) < 10 &&
+        du * du + dv * dv < nearest) {
       nearest = du * du + dv * dv;
       seed = i;
     }
@@ -79,9 +83,11 @@ std::vector<int> opening_cells(const std::vector<bool>& open) {
 }
 
 /// The skin one cell beyond the extreme open ones in direction (du, dv).
-Vec3 rim_point(const spatial::SurfaceQuery& skin, const Sight& sight, const std::vector<int>& cells, int du, int dv) {
+Vec3 rim_point(const spatial::SurfaceQuery& skin, const Sight& sight, const std::vector<int>& cells, int du,
+               int dv) {
   int best = -10000;
-  for (int i : cells) best = std::max(best, (i % columns) * du + (i / columns) * dv);
+  for (int i : cells)
+    best = std::max(best, (i % columns) * du + (i / columns) * dv);
   double column = 0.0, row = 0.0, count = 0.0;
   for (int i : cells)
     if ((i % columns) * du + (i / columns) * dv == best) {
@@ -105,9 +111,12 @@ std::optional<LidOpening> lid_opening(const spatial::SurfaceQuery& skin, const E
   if (cells.size() < 40) return std::nullopt;
   const LidOpening opening = {rim_point(skin, sight, cells, 1, 0), rim_point(skin, sight, cells, -1, 0),
                               rim_point(skin, sight, cells, 0, 1), rim_point(skin, sight, cells, 0, -1)};
-  const double width = (opening.outer - opening.inner).dot(sight.x), height = (opening.upper - opening.lower).dot(sight.y);
-  const bool is_eye = width > 0.6 * sight.width && width < 1.4 * sight.width && height > 0.06 * sight.width && height < 0.75 * sight.width;
-  const bool is_about = std::abs((0.5 * (opening.outer + opening.inner) - sight.origin).dot(sight.x)) < 0.25 * sight.width;
+  const double width = (opening.outer - opening.inner).dot(sight.x),
+               height = (opening.upper - opening.lower).dot(sight.y);
+  const bool is_eye = width > 0.6 * sight.width && width < 1.4 * sight.width && height > 0.06 * sight.width &&
+                      height < 0.75 * sight.width;
+  const bool is_about =
+      std::abs((0.5 * (opening.outer + opening.inner) - sight.origin).dot(sight.x)) < 0.25 * sight.width;
   return is_eye && is_about ? std::optional(opening) : std::nullopt;
 }
 

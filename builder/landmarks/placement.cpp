@@ -17,7 +17,8 @@ struct Match {
 };
 
 /// Closest samples that face the same way; distances in metres of the generic head.
-std::vector<Match> matches(const GenericFace& face, const Neighbours& target, const Placement& placement, size_t stride) {
+std::vector<Match> matches(const GenericFace& face, const Neighbours& target, const Placement& placement,
+                           size_t stride) {
   std::vector<Match> found;
   std::vector<size_t> near;
   std::vector<double> squared;
@@ -39,16 +40,18 @@ std::vector<Match> matches(const GenericFace& face, const Neighbours& target, co
 /// The distance below which `share` of the matches lie.
 double quantile(const std::vector<Match>& all, double share) {
   std::vector<double> distances;
-  for (const Match& m : all) distances.push_back(m.distance);
-  const auto at = distances.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(distances.size() - 1));
+  for (const Match& m : all)
+    distances.push_back(m.distance);
+  const auto at =
+      distances.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(distances.size() - 1));
   std::nth_element(distances.begin(), at, distances.end());
   return *at;
 }
 
 }  // namespace
 
-Placement refine_placement(const GenericFace& face, const Neighbours& target, const Placement& start, int rounds, int stride,
-                           double* residual) {
+Placement refine_placement(const GenericFace& face, const Neighbours& target, const Placement& start,
+                           int rounds, int stride, double* residual) {
   Placement placement = start;
   if (residual) *residual = 1.0;
   for (int round = 0; round < rounds; ++round) {
@@ -56,7 +59,8 @@ Placement refine_placement(const GenericFace& face, const Neighbours& target, co
     if (all.size() < 20) return start;
     const double cut = std::max(0.004, 2.5 * quantile(all, 0.6));
     Vec3 pivot = Vec3::Zero();
-    for (const Match& m : all) pivot += m.from / static_cast<double>(all.size());
+    for (const Match& m : all)
+      pivot += m.from / static_cast<double>(all.size());
     Mat7 left = Mat7::Zero();
     Eigen::Matrix<double, 7, 1> right = Eigen::Matrix<double, 7, 1>::Zero();
     double sum = 0.0, total = 0.0;
@@ -69,7 +73,8 @@ Placement refine_placement(const GenericFace& face, const Neighbours& target, co
       // Unknowns: turn, shift and growth, all in units of the head's size about the pivot.
       const Vec3 arm = (m.from - pivot) / placement.scale, gap = (m.to - m.from) / placement.scale;
       for (int axis = 0; axis < 4; ++axis) {
-        // The plane through the match counts fully; the point itself a little, which keeps bare spheres still.
+        // The plane through the match counts fully; the point itself a little, which keeps bare spheres
+        // still.
         const Vec3 n = axis == 3 ? m.normal : Vec3(Vec3::Unit(axis));
         const double share = axis == 3 ? weight : 0.05 * weight;
         Row7 row;
@@ -84,9 +89,11 @@ Placement refine_placement(const GenericFace& face, const Neighbours& target, co
     const Eigen::Matrix<double, 7, 1> step = left.ldlt().solve(right);
     const Vec3 turn = step.head<3>();
     const double angle = std::min(turn.norm(), 0.5), growth = std::clamp(step[6], -0.15, 0.15);
-    const Mat3 rotation = angle > 1e-12 ? Eigen::AngleAxisd(angle, turn.normalized()).toRotationMatrix() : Mat3::Identity();
+    const Mat3 rotation =
+        angle > 1e-12 ? Eigen::AngleAxisd(angle, turn.normalized()).toRotationMatrix() : Mat3::Identity();
     // x -> pivot + (1 + growth) rotation (x - pivot) + scale * shift
-    const Vec3 moved = pivot + placement.scale * Vec3(step.segment<3>(3)) + (1.0 + growth) * (rotation * (placement.shift - pivot));
+    const Vec3 moved = pivot + placement.scale * Vec3(step.segment<3>(3)) +
+                       (1.0 + growth) * (rotation * (placement.shift - pivot));
     placement.shift = moved;
     placement.rotation = rotation * placement.rotation;
     placement.scale *= 1.0 + growth;

@@ -15,22 +15,23 @@ struct Placement {
   Vec3 inverse(const Vec3& y) const { return rotation.transpose() * (y - shift) / scale; }
 };
 
-/// Places of the generic head that the radial extent of `surface` about the centre of `lump` suggests, best first,
-/// at most `count`, no two alike. `cost` receives what is left between the two extents, 0 for none.
+/// Places of the generic head that the radial extent of `surface` about the centre of `lump` suggests, best
+/// first, at most `count`, no two alike. `cost` receives what is left between the two extents, 0 for none.
 struct Guess {
   Placement placement;
   double cost = 0.0;
 };
-std::vector<Guess> guess_placements(const GenericFace& face, const spatial::SurfaceQuery& surface, const Ball& lump, int count);
+std::vector<Guess> guess_placements(const GenericFace& face, const spatial::SurfaceQuery& surface,
+                                    const Ball& lump, int count);
 
-/// Places of the generic head with its nose on what stands out of `samples`, best first, at most `count`: for meshes that are
-/// a face alone or a part of a head, on which no sphere tells where the head is.
+/// Places of the generic head with its nose on what stands out of `samples`, best first, at most `count`: for
+/// meshes that are a face alone or a part of a head, on which no sphere tells where the head is.
 std::vector<Guess> guess_by_nose(const GenericFace& face, const Neighbours& samples, int count);
 
-/// Brings `start` closer: robust iterative closest points with scale, points to planes, on every `stride`-th point of
-/// the face. Besl and McKay 1992; Chen and Medioni 1992. `residual` receives the trimmed mean distance, metres of
-/// the generic head.
-Placement refine_placement(const GenericFace& face, const Neighbours& target, const Placement& start, int rounds, int stride,
-                           double* residual = nullptr);
+/// Brings `start` closer: robust iterative closest points with scale, points to planes, on every `stride`-th
+/// point of the face. Besl and McKay 1992; Chen and Medioni 1992. `residual` receives the trimmed mean
+/// distance, metres of the generic head.
+Placement refine_placement(const GenericFace& face, const Neighbours& target, const Placement& start,
+                           int rounds, int stride, double* residual = nullptr);
 
 }  // namespace fascia::landmarks

@@ -63,12 +63,15 @@ struct Front {
   std::vector<Vec3> base, at, normals;  ///< anchors first; these have no normals
 };
 
-Front front_of(const GenericFace& face, const std::vector<Anchor>& anchors, int stride, const splines::Warp& warp) {
+Front front_of(const GenericFace& face, const std::vector<Anchor>& anchors, int stride,
+               const splines::Warp& warp) {
   Front front;
-  for (const Anchor& anchor : anchors) front.base.push_back(anchor.generic);
+  for (const Anchor& anchor : anchors)
+    front.base.push_back(anchor.generic);
   for (size_t i = 0; i < face.points.size(); i += static_cast<size_t>(stride)) {
     const Vec3& p = face.points.points[i];
-    const bool is_anchored = std::any_of(anchors.begin(), anchors.end(), [&](const Anchor& a) { return (a.generic - p).norm() < 5e-4; });
+    const bool is_anchored = std::any_of(anchors.begin(), anchors.end(),
+                                         [&](const Anchor& a) { return (a.generic - p).norm() < 5e-4; });
     if (is_anchored) continue;
     front.used.push_back(static_cast<int>(i));
     front.base.push_back(p);
@@ -86,7 +89,8 @@ Front front_of(const GenericFace& face, const std::vector<Anchor>& anchors, int 
   for (size_t k = 0; k < front.used.size(); ++k) {
     const Vec3& here = front.at[anchors.size() + k];
     const Vec3 n = (beside[2 * k] - here).cross(beside[2 * k + 1] - here);
-    front.normals.push_back(n.norm() > 0.0 ? Vec3(n.normalized()) : face.points.normals[static_cast<size_t>(front.used[k])]);
+    front.normals.push_back(n.norm() > 0.0 ? Vec3(n.normalized())
+                                           : face.points.normals[static_cast<size_t>(front.used[k])]);
   }
   return front;
 }
@@ -127,7 +131,8 @@ Registration register_face(const GenericFace& face, const Samples& target_sample
         const double off = foot.normal.dot(foot.point - front.at[i]);
         const Vec3 aside = foot.point - front.at[i] - off * foot.normal;
         goal[i] = foot.weight > 0.0 ? Vec3(front.at[i] + off * foot.normal + 0.15 * aside) : front.at[i];
-        plate.weights[i] = std::max(1e-3, foot.weight * (0.1 + face.weights[static_cast<size_t>(front.used[i - pinned])]));
+        plate.weights[i] =
+            std::max(1e-3, foot.weight * (0.1 + face.weights[static_cast<size_t>(front.used[i - pinned])]));
       }
       fit.warp = splines::fit_warp(front.base, goal, plate);
       front.at = fit.warp(std::span<const Vec3>(front.base));
@@ -137,7 +142,8 @@ Registration register_face(const GenericFace& face, const Samples& target_sample
   fit.used = front.used;
   for (size_t i = pinned; i < front.base.size(); ++i) {
     const Foot foot = foot_of(target, front.at[i], front.normals[i - pinned], 0.02);
-    fit.residuals.push_back(foot.weight > 0.0 ? std::abs(foot.normal.dot(foot.point - front.at[i])) + 0.3 * (foot.point - front.at[i]).norm()
+    fit.residuals.push_back(foot.weight > 0.0 ? std::abs(foot.normal.dot(foot.point - front.at[i])) +
+                                                    0.3 * (foot.point - front.at[i]).norm()
                                               : std::numeric_limits<double>::infinity());
     fit.agreements.push_back(foot.weight > 0.0 ? foot.normal.dot(front.normals[i - pinned]) : -1.0);
     fit.overhangs.push_back(overhang(target, front.at[i], front.normals[i - pinned]));
@@ -149,7 +155,8 @@ double overhang_at(const GenericFace& face, const Registration& fit, const Vec3&
   std::array<std::pair<double, double>, 3> nearest;  // squared distance, overhang
   nearest.fill({std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()});
   for (size_t i = 0; i < fit.used.size(); ++i) {
-    const std::pair one((face.points.points[static_cast<size_t>(fit.used[i])] - generic).squaredNorm(), fit.overhangs[i]);
+    const std::pair one((face.points.points[static_cast<size_t>(fit.used[i])] - generic).squaredNorm(),
+                        fit.overhangs[i]);
     if (one < nearest.back()) nearest.back() = one;
     std::sort(nearest.begin(), nearest.end());
   }

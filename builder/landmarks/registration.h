@@ -22,7 +22,8 @@ struct RegistrationStage {
 
 struct RegistrationOptions {
   std::vector<RegistrationStage> stages;
-  double reach = 0.03, last_reach = 0.006;  ///< correspondences farther than this count for nothing: first, last stage
+  double reach = 0.03,
+         last_reach = 0.006;  ///< correspondences farther than this count for nothing: first, last stage
 };
 
 /// A few stiff stages on few points: to tell a face by, and where its parts are to a few millimetres.
@@ -33,17 +34,21 @@ struct Registration {
   Placement placement;
   splines::Warp warp;              ///< generic head's frame onto itself; `placement` leads on to the mesh
   std::vector<int> used;           ///< indices into GenericFace::points
-  std::vector<double> residuals;   ///< of those, to the plane of the surface there, metres of the generic head; infinite: none found
+  std::vector<double> residuals;   ///< of those, to the plane of the surface there, metres of the generic
+                                   ///< head; infinite: none found
   std::vector<double> agreements;  ///< cosine between the normals there
-  std::vector<double> overhangs;   ///< how far along the generic surface the nearest place of the mesh is: large beyond the mesh's edge
+  std::vector<double> overhangs;   ///< how far along the generic surface the nearest place of the mesh is:
+                                   ///< large beyond the mesh's edge
   Vec3 operator()(const Vec3& generic) const { return placement(warp(generic)); }
 };
 
-/// Bends the generic head by thin-plate splines onto `target` (its frame: the mesh's): correspondences run from a
-/// generic point to the nearest target samples that face the same way, averaged over their tangent plane, so that
-/// points are free to slide; the plate softens from stage to stage. `start` is a warp to go on from.
+/// Bends the generic head by thin-plate splines onto `target` (its frame: the mesh's): correspondences run
+/// from a generic point to the nearest target samples that face the same way, averaged over their tangent
+/// plane, so that points are free to slide; the plate softens from stage to stage. `start` is a warp to go on
+/// from.
 Registration register_face(const GenericFace& face, const Samples& target, const Placement& placement,
-                           const std::vector<Anchor>& anchors = {}, const RegistrationOptions& options = coarse_fit(),
+                           const std::vector<Anchor>& anchors = {},
+                           const RegistrationOptions& options = coarse_fit(),
                            const splines::Warp& start = {});
 
 /// Metres along the surface from which on a point is beyond the mesh's edge: samples are some 4 mm apart.

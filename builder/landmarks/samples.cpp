@@ -22,12 +22,15 @@ using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<do
 /// The i-th point of the additive recurrence with the plastic number: evenly spread in the unit square.
 Vec2 spread(size_t i) {
   const double plastic = 1.32471795724474602596;
-  const double x = 0.5 + static_cast<double>(i) / plastic, y = 0.5 + static_cast<double>(i) / (plastic * plastic);
+  const double x = 0.5 + static_cast<double>(i) / plastic,
+               y = 0.5 + static_cast<double>(i) / (plastic * plastic);
   return {x - std::floor(x), y - std::floor(y)};
 }
 
 /// How far a sample is lifted off its triangle before a ray is cast: a share of the sampled extent.
-double lift_of(const Samples& samples) { return 1e-4 * bounds(samples.points).size().norm(); }
+double lift_of(const Samples& samples) {
+  return 1e-4 * bounds(samples.points).size().norm();
+}
 
 }  // namespace
 
@@ -36,7 +39,8 @@ Samples sample_evenly(const TriangleMesh& mesh, int count, const Ball& within) {
   double total = 0.0;
   for (size_t t = 0; t < area.size(); ++t) {
     const Vec3& corner = mesh.vertices[static_cast<size_t>(mesh.triangles[t][0])];
-    if (within.radius > 0.0 && (corner - within.centre).squaredNorm() > within.radius * within.radius) continue;
+    if (within.radius > 0.0 && (corner - within.centre).squaredNorm() > within.radius * within.radius)
+      continue;
     const double a = triangle_area(mesh, static_cast<int>(t));
     if (std::isfinite(a)) area[t] = a;
     total += area[t];
@@ -93,9 +97,12 @@ Neighbours::Neighbours(Samples samples) {
   state_ = std::move(state);
 }
 
-const Samples& Neighbours::samples() const { return state_->samples; }
+const Samples& Neighbours::samples() const {
+  return state_->samples;
+}
 
-void Neighbours::nearest(const Vec3& point, int count, std::vector<size_t>& indices, std::vector<double>& squared_distances) const {
+void Neighbours::nearest(const Vec3& point, int count, std::vector<size_t>& indices,
+                         std::vector<double>& squared_distances) const {
   indices.resize(static_cast<size_t>(count));
   squared_distances.resize(static_cast<size_t>(count));
   nanoflann::KNNResultSet<double> found(static_cast<size_t>(count));
@@ -110,7 +117,8 @@ void Neighbours::within(const Vec3& point, double radius, std::vector<size_t>& i
   found.clear();
   state_->tree->radiusSearch(point.data(), radius * radius, found, nanoflann::SearchParams());
   indices.clear();
-  for (const auto& [index, squared] : found) indices.push_back(index);
+  for (const auto& [index, squared] : found)
+    indices.push_back(index);
 }
 
 }  // namespace fascia::landmarks

@@ -24,16 +24,17 @@ struct Ball {
   double radius = 0.0;
 };
 
-/// About `count` points spread evenly by area over the triangles whose first corner is in `within`, always the same
-/// ones for the same mesh. Triangles without area and coordinates that are not finite are passed over.
+/// About `count` points spread evenly by area over the triangles whose first corner is in `within`, always
+/// the same ones for the same mesh. Triangles without area and coordinates that are not finite are passed
+/// over.
 Samples sample_evenly(const TriangleMesh& mesh, int count, const Ball& within = {});
 
 /// Those of `samples` from which the ray along the normal leaves `surface`: the lining of mouth, nose and
 /// sockets, and what lies inside the head, drop out.
 Samples open_samples(const Samples& samples, const spatial::SurfaceQuery& surface);
 
-/// True when the normals of `surface` point inward by and large: from most of `samples` the ray against the normal
-/// leaves the surface and the ray along it does not.
+/// True when the normals of `surface` point inward by and large: from most of `samples` the ray against the
+/// normal leaves the surface and the ray along it does not.
 bool is_inside_out(const Samples& samples, const spatial::SurfaceQuery& surface);
 
 /// Nearest samples by distance (kd-tree); `samples` are copied in.
@@ -43,7 +44,8 @@ class Neighbours {
   const Samples& samples() const;
 
   /// Indices of the `count` nearest samples, nearest first; `squared_distances` alike.
-  void nearest(const Vec3& point, int count, std::vector<size_t>& indices, std::vector<double>& squared_distances) const;
+  void nearest(const Vec3& point, int count, std::vector<size_t>& indices,
+               std::vector<double>& squared_distances) const;
 
   /// Indices of the samples within `radius` of `point`, in no order of note.
   void within(const Vec3& point, double radius, std::vector<size_t>& indices) const;

@@ -14,8 +14,9 @@ struct SkinLandmark {
   bool is_given = true;
 };
 
-/// The skin point that stands for a carried one: the nearest that faces as `normal` does, so that nothing lands on
-/// the lining of mouth or lids; the nearest of all when none does.
-std::optional<spatial::ClosestPoint> facing_point(const spatial::SurfaceQuery& skin, const Vec3& carried, const Vec3& normal);
+/// The skin point that stands for a carried one: the nearest that faces as `normal` does, so that nothing
+/// lands on the lining of mouth or lids; the nearest of all when none does.
+std::optional<spatial::ClosestPoint> facing_point(const spatial::SurfaceQuery& skin, const Vec3& carried,
+                                                  const Vec3& normal);
 
 }  // namespace fascia::landmarks

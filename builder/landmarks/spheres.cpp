@@ -67,7 +67,8 @@ bool through_pair(const Samples& samples, size_t i, size_t j, Ball& ball) {
 
 Samples thinned(const Samples& samples, size_t stride) {
   Samples thin;
-  for (size_t i = 0; i < samples.size(); i += stride) thin.add(samples.points[i], samples.normals[i]);
+  for (size_t i = 0; i < samples.size(); i += stride)
+    thin.add(samples.points[i], samples.normals[i]);
   return thin;
 }
 
@@ -77,7 +78,8 @@ Ball fit_ball(const std::vector<Vec3>& points) {
   Ball ball;
   if (points.size() < 4) return ball;
   Vec3 mean = Vec3::Zero();
-  for (const Vec3& p : points) mean += p / static_cast<double>(points.size());
+  for (const Vec3& p : points)
+    mean += p / static_cast<double>(points.size());
   Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
   Eigen::Vector4d right = Eigen::Vector4d::Zero();
   for (const Vec3& p : points) {
@@ -123,16 +125,20 @@ std::vector<Ball> round_lumps(const Samples& samples, int count) {
       }
     }
   }
-  std::stable_sort(lumps.begin(), lumps.end(), [](const Lump& a, const Lump& b) { return a.share > b.share; });
+  std::stable_sort(lumps.begin(), lumps.end(),
+                   [](const Lump& a, const Lump& b) { return a.share > b.share; });
   if (lumps.size() > 40) lumps.resize(40);
   for (Lump& lump : lumps) {
-    for (int round = 0; round < 3; ++round) lump.ball = refitted(lump.ball, samples);
+    for (int round = 0; round < 3; ++round)
+      lump.ball = refitted(lump.ball, samples);
     lump.share = covered_share(lump.ball, samples, 1);
   }
-  std::stable_sort(lumps.begin(), lumps.end(), [](const Lump& a, const Lump& b) { return a.share > b.share; });
+  std::stable_sort(lumps.begin(), lumps.end(),
+                   [](const Lump& a, const Lump& b) { return a.share > b.share; });
   for (const Lump& lump : lumps) {
     const bool is_known = std::any_of(result.begin(), result.end(), [&](const Ball& ball) {
-      return (ball.centre - lump.ball.centre).norm() < 0.35 * ball.radius && std::abs(std::log(ball.radius / lump.ball.radius)) < 0.35;
+      return (ball.centre - lump.ball.centre).norm() < 0.35 * ball.radius &&
+             std::abs(std::log(ball.radius / lump.ball.radius)) < 0.35;
     });
     if (!is_known && static_cast<int>(result.size()) < count - 1) result.push_back(lump.ball);
   }

@@ -6,7 +6,8 @@
 
 namespace fascia::landmarks {
 
-/// Least-squares sphere through `points` (Pratt's linear form, centred); radius 0 when there are fewer than four.
+/// Least-squares sphere through `points` (Pratt's linear form, centred); radius 0 when there are fewer than
+/// four.
 Ball fit_ball(const std::vector<Vec3>& points);
 
 /// Round lumps of a surface that may be a head, best first: spheres that the samples follow, normals outward,

@@ -42,7 +42,8 @@ Vec3 slice(const std::vector<Vec3>& polygon, const Vec3& direction, double share
     ++found;
   }
   if (found > 0) return sum / found;
-  for (const Vec3& p : polygon) sum += p / double(polygon.size());
+  for (const Vec3& p : polygon)
+    sum += p / double(polygon.size());
   return sum;
 }
 
@@ -79,18 +80,21 @@ void leave_bones(const std::vector<const spatial::SurfaceQuery*>& bones, Vec3& p
   constexpr double kReach = 0.006, kGap = 0.0005;
   for (const spatial::SurfaceQuery* bone : bones) {
     const spatial::ClosestPoint closest = bone->closest(point, kReach);
-    if (closest.found() && closest.signed_distance < 0.0) point = closest.position + kGap * closest.pseudonormal;
+    if (closest.found() && closest.signed_distance < 0.0)
+      point = closest.position + kGap * closest.pseudonormal;
   }
 }
 
-/// The directions along which the fibres stand in a row at either end. A region that is narrow against the other, or turned
-/// far from it, follows the other's: so the sheet is not twisted.
+/// The directions along which the fibres stand in a row at either end. A region that is narrow against the
+/// other, or turned far from it, follows the other's: so the sheet is not twisted.
 std::pair<Vec3, Vec3> directions_across(const Course& course, const Vec3& from, const Vec3& to) {
   const Vec3 axis = (to - from).normalized();
-  Vec3 begin = widest_across(course.origin.polygon, from, axis), end = widest_across(course.insertion.polygon, to, axis);
+  Vec3 begin = widest_across(course.origin.polygon, from, axis),
+       end = widest_across(course.insertion.polygon, to, axis);
   if (end.dot(begin) < 0.0) end = -end;
   if (end.dot(begin) >= 0.5) return {begin, end};
-  const bool insertion_is_wider = extent(course.insertion.polygon, end) > 1.5 * extent(course.origin.polygon, begin);
+  const bool insertion_is_wider =
+      extent(course.insertion.polygon, end) > 1.5 * extent(course.origin.polygon, begin);
   return insertion_is_wider ? std::make_pair(end, end) : std::make_pair(begin, begin);
 }
 
@@ -98,20 +102,24 @@ std::pair<Vec3, Vec3> directions_across(const Course& course, const Vec3& from, 
 
 Vec3 Place::centre() const {
   Vec3 sum = Vec3::Zero();
-  for (const Vec3& p : polygon) sum += p / double(polygon.size());
+  for (const Vec3& p : polygon)
+    sum += p / double(polygon.size());
   return sum;
 }
 
 std::vector<Fibre> lay_through_space(const Carrier& smas, const Course& course,
-                                     const std::vector<const spatial::SurfaceQuery*>& bones, const Options& options) {
+                                     const std::vector<const spatial::SurfaceQuery*>& bones,
+                                     const Options& options) {
   const Vec3 from = course.origin.centre(), to = course.insertion.centre();
   const auto [across, across_end] = directions_across(course, from, to);
-  const double width = 0.5 * (extent(course.origin.polygon, across) + extent(course.insertion.polygon, across_end));
+  const double width =
+      0.5 * (extent(course.origin.polygon, across) + extent(course.insertion.polygon, across_end));
   const int count = fibre_count(width, course.muscle, options);
   std::vector<Fibre> fibres;
   for (int i = 0; i < count; ++i) {
     const double s = (i + 0.5) / count;
-    Vec3 begin = slice(course.origin.polygon, across, s), end = slice(course.insertion.polygon, across_end, s);
+    Vec3 begin = slice(course.origin.polygon, across, s),
+         end = slice(course.insertion.polygon, across_end, s);
     if (course.origin.bone) begin = course.origin.bone->closest(begin).position;
     if (course.insertion.bone) end = course.insertion.bone->closest(end).position;
     std::vector<Vec3> corners = {begin};

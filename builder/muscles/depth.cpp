@@ -8,7 +8,10 @@ namespace fascia::muscles {
 
 Depths::Depths(const Carrier& smas, const spatial::SurfaceQuery& skin,
                std::vector<const spatial::SurfaceQuery*> floors, double deepest)
-    : smas_(smas), skin_(skin), floors_(std::move(floors)), deepest_(deepest),
+    : smas_(smas),
+      skin_(skin),
+      floors_(std::move(floors)),
+      deepest_(deepest),
       measured_(smas.surface.mesh.vertices.size()) {}
 
 Depths::Layers Depths::layers(const SurfacePoint& place) const {
@@ -45,7 +48,8 @@ FibrePoint Depths::at(const SurfacePoint& place, double fraction) const {
 FibrePoint Depths::near(const Vec3& position, double fraction) const {
   const spatial::ClosestPoint closest = smas_.query.closest(position);
   const Vec3 normal = smas_.query.smooth_normal(closest.surface), gap = position - closest.position;
-  return (gap - normal * normal.dot(gap)).norm() < 5e-4 ? at(closest.surface, fraction) : unbound(smas_, position);
+  return (gap - normal * normal.dot(gap)).norm() < 5e-4 ? at(closest.surface, fraction)
+                                                        : unbound(smas_, position);
 }
 
 double Depths::thickness(const SurfacePoint& place) const {
@@ -63,7 +67,8 @@ double sampled(const std::vector<double>& samples, double share) {
 
 double polyline_length(const std::vector<Vec3>& points) {
   double sum = 0.0;
-  for (size_t i = 0; i + 1 < points.size(); ++i) sum += (points[i + 1] - points[i]).norm();
+  for (size_t i = 0; i + 1 < points.size(); ++i)
+    sum += (points[i + 1] - points[i]).norm();
   return sum;
 }
 
@@ -82,8 +87,9 @@ std::vector<Vec3> resampled(const std::vector<Vec3>& points, int count) {
       ++segment;
     }
     const double share = length > 0.0 ? std::clamp((wanted - passed) / length, 0.0, 1.0) : 0.0;
-    even.push_back(segment + 1 < points.size() ? Vec3(points[segment] + share * (points[segment + 1] - points[segment]))
-                                               : points.back());
+    even.push_back(segment + 1 < points.size()
+                       ? Vec3(points[segment] + share * (points[segment + 1] - points[segment]))
+                       : points.back());
   }
   return even;
 }
@@ -95,7 +101,8 @@ int point_count(double length, const Options& options) {
 
 int fibre_count(double width, const anatomy::Muscle& muscle, const Options& options) {
   const auto edit = options.edits.find(muscle.name);
-  const double spacing = edit == options.edits.end() ? options.spacing : edit->second.spacing.value_or(options.spacing);
+  const double spacing =
+      edit == options.edits.end() ? options.spacing : edit->second.spacing.value_or(options.spacing);
   const double denser = std::max(1.0, Options().spacing / spacing);
   const int most = static_cast<int>(std::lround(options.most_fibres * denser));
   const int count = static_cast<int>(std::lround(width / spacing)) + 1;

@@ -11,14 +11,14 @@ class Depths {
  public:
   /// `floors` are the surfaces soft tissue ends on: bones and teeth. Tissue under the SMAS is taken as at
   /// most `deepest` metres thick, as where cheeks and lips are not over bone.
-  Depths(const Carrier& smas, const spatial::SurfaceQuery& skin, std::vector<const spatial::SurfaceQuery*> floors,
-         double deepest = 0.014);
+  Depths(const Carrier& smas, const spatial::SurfaceQuery& skin,
+         std::vector<const spatial::SurfaceQuery*> floors, double deepest = 0.014);
 
   /// The point over or under `place` at `fraction` of the way from skin (0) to bone (1).
   FibrePoint at(const SurfacePoint& place, double fraction) const;
 
-  /// The point at `fraction` over or under the place of the SMAS nearest to `position`; `position` itself, not bound, where
-  /// the SMAS ends half a millimetre or more beside it.
+  /// The point at `fraction` over or under the place of the SMAS nearest to `position`; `position` itself,
+  /// not bound, where the SMAS ends half a millimetre or more beside it.
   FibrePoint near(const Vec3& position, double fraction) const;
 
   /// Thickness of all soft tissue at `place`, metres.

@@ -11,10 +11,13 @@ namespace fascia::muscles {
 
 namespace {
 
-double cross(const Vec2& a, const Vec2& b) { return a[0] * b[1] - a[1] * b[0]; }
+double cross(const Vec2& a, const Vec2& b) {
+  return a[0] * b[1] - a[1] * b[0];
+}
 
 /// Geodesic polar coordinates of `points` about `middle`, laid out in the plane of its triangle.
-std::vector<Vec2> polar_layout(Carrier& carrier, const SurfacePoint& middle, const std::vector<SurfacePoint>& points) {
+std::vector<Vec2> polar_layout(Carrier& carrier, const SurfacePoint& middle,
+                               const std::vector<SurfacePoint>& points) {
   const Vec3 normal = triangle_normal(carrier.surface.mesh, middle.triangle);
   const Vec3 x = normal.unitOrthogonal(), y = normal.cross(x);
   std::vector<Vec2> flat;
@@ -28,7 +31,9 @@ std::vector<Vec2> polar_layout(Carrier& carrier, const SurfacePoint& middle, con
 }
 
 /// Angle from `a` counter-clockwise to `b` about `normal`, in (−π, π].
-double turn(const Vec3& a, const Vec3& b, const Vec3& normal) { return std::atan2(a.cross(b).dot(normal), a.dot(b)); }
+double turn(const Vec3& a, const Vec3& b, const Vec3& normal) {
+  return std::atan2(a.cross(b).dot(normal), a.dot(b));
+}
 
 /// Fills the sides of a hull whose corners are set.
 void measure_sides(Carrier& carrier, Hull& hull) {
@@ -37,7 +42,8 @@ void measure_sides(Carrier& carrier, Hull& hull) {
   hull.onward.assign(count, Vec3::Zero());
   hull.backward.assign(count, Vec3::Zero());
   hull.sides.assign(count, 0.0);
-  for (int i = 0; i < count; ++i) hull.positions[i] = carrier.at(hull.corners[i]);
+  for (int i = 0; i < count; ++i)
+    hull.positions[i] = carrier.at(hull.corners[i]);
   for (int i = 0; i < count && count > 1; ++i) {
     const int j = (i + 1) % count;
     const geodesics::Path& side = carrier.connect(hull.corners[i], hull.corners[j]);
@@ -96,9 +102,11 @@ std::vector<int> planar_hull(const std::vector<Vec2>& points) {
       hull.pop_back();
     hull.push_back(i);
   };
-  for (int i : order) sweep(i, 0);
+  for (int i : order)
+    sweep(i, 0);
   const size_t base = hull.size() - 1;
-  for (size_t k = order.size() - 1; k-- > 0;) sweep(order[k], base);
+  for (size_t k = order.size() - 1; k-- > 0;)
+    sweep(order[k], base);
   hull.pop_back();
   return hull;
 }
@@ -124,7 +132,8 @@ Vec3 direction_at_end(const geodesics::Path& path) {
   return Vec3::Zero();
 }
 
-Hull geodesic_hull(Carrier& carrier, const std::vector<SurfacePoint>& points, const std::string& what, double merge) {
+Hull geodesic_hull(Carrier& carrier, const std::vector<SurfacePoint>& points, const std::string& what,
+                   double merge) {
   Hull hull;
   const std::vector<SurfacePoint> kept = distinct(carrier, points, merge);
   if (kept.empty()) throw Error(what + ": the region has no points");
@@ -135,10 +144,12 @@ Hull geodesic_hull(Carrier& carrier, const std::vector<SurfacePoint>& points, co
     return hull;
   }
   Vec3 centre = Vec3::Zero();
-  for (const SurfacePoint& point : kept) centre += carrier.at(point) / double(kept.size());
+  for (const SurfacePoint& point : kept)
+    centre += carrier.at(point) / double(kept.size());
   const std::vector<Vec2> flat = polar_layout(carrier, carrier.closest(centre), kept);
   std::vector<int> chosen = planar_hull(flat);
-  for (int i : chosen) hull.corners.push_back(kept[i]);
+  for (int i : chosen)
+    hull.corners.push_back(kept[i]);
   measure_sides(carrier, hull);
   if (hull.size() < 3) return hull;
   // Points just inside a chord of the layout may lie outside the geodesic where the surface is a saddle.
@@ -147,7 +158,8 @@ Hull geodesic_hull(Carrier& carrier, const std::vector<SurfacePoint>& points, co
     for (int k = 0; k < hull.size(); ++k) {
       const Vec3 offset = carrier.at(kept[i]) - hull.positions[k];
       const double along = offset.dot(hull.onward[k]);
-      if (along <= 0.0 || along >= hull.sides[k] || (offset - along * hull.onward[k]).norm() > 0.1 * hull.sides[k])
+      if (along <= 0.0 || along >= hull.sides[k] ||
+          (offset - along * hull.onward[k]).norm() > 0.1 * hull.sides[k])
         continue;
       const Vec3 direction = direction_at_start(carrier.connect(hull.corners[k], kept[i]));
       if (turn(hull.onward[k], direction, carrier.normal(hull.corners[k])) > -1e-6) continue;
@@ -158,12 +170,15 @@ Hull geodesic_hull(Carrier& carrier, const std::vector<SurfacePoint>& points, co
   }
   while (remove_reflex(carrier, hull)) {
   }
-  for (int i = 0; i < hull.size(); ++i) hull.turning += M_PI - inner_angle(carrier, hull, i);
+  for (int i = 0; i < hull.size(); ++i)
+    hull.turning += M_PI - inner_angle(carrier, hull, i);
   // A sliver, such as a region pressed flat on the surface's rim, has no reliable angles: the size tells.
   double reach = 0.0;
-  for (const Vec2& p : flat) reach = std::max(reach, p.norm());
+  for (const Vec2& p : flat)
+    reach = std::max(reach, p.norm());
   if (hull.turning < 0.3 && reach > 0.25 * bounds(carrier.surface.mesh.vertices).size().norm())
-    throw Error(what + ": the region covers half of the surface or more, so it has no convex hull; make it smaller");
+    throw Error(what +
+                ": the region covers half of the surface or more, so it has no convex hull; make it smaller");
   return hull;
 }
 

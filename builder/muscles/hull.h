@@ -27,8 +27,8 @@ struct Carrier {
 Vec3 direction_at_start(const geodesics::Path& path);
 Vec3 direction_at_end(const geodesics::Path& path);
 
-/// Indices of the corners of the convex hull of `points` in the plane, counter-clockwise (Andrew's monotone chain); points
-/// in line with two corners are left out.
+/// Indices of the corners of the convex hull of `points` in the plane, counter-clockwise (Andrew's monotone
+/// chain); points in line with two corners are left out.
 std::vector<int> planar_hull(const std::vector<Vec2>& points);
 
 /// A geodesically convex polygon: corners counter-clockwise seen from outside.

@@ -57,7 +57,9 @@ bool segments_cross(const SeenFibre& a, size_t k, const SeenFibre& b, size_t l) 
   };
   // A thousandth of a square millimetre: ends that meet and fibres laid on each other do not cross.
   constexpr double least = 1e-9;
-  const auto opposite = [](double x, double y) { return (x > least && y < -least) || (x < -least && y > least); };
+  const auto opposite = [](double x, double y) {
+    return (x > least && y < -least) || (x < -least && y > least);
+  };
   return opposite(side(p, q, r), side(p, q, s)) && opposite(side(r, s, p), side(r, s, q));
 }
 
@@ -88,10 +90,12 @@ int crossings_of(const SeenFibre& a, const SeenFibre& b) {
 
 }  // namespace
 
-std::vector<std::vector<Vec3>> seen_along(const std::vector<Fibre>& fibres, const spatial::SurfaceQuery& smas) {
+std::vector<std::vector<Vec3>> seen_along(const std::vector<Fibre>& fibres,
+                                          const spatial::SurfaceQuery& smas) {
   bool on_smas = false;
   for (const Fibre& fibre : fibres)
-    for (const FibrePoint& point : fibre.points) on_smas = on_smas || point.bound;
+    for (const FibrePoint& point : fibre.points)
+      on_smas = on_smas || point.bound;
   const Vec3 normal = on_smas || fibres.size() < 2 ? Vec3(0, 0, 1) : sheet_normal(fibres);
   std::vector<std::vector<Vec3>> all;
   for (const Fibre& fibre : fibres) {
@@ -105,10 +109,12 @@ std::vector<std::vector<Vec3>> seen_along(const std::vector<Fibre>& fibres, cons
 int crossings(const std::vector<Fibre>& fibres, const spatial::SurfaceQuery& smas) {
   std::vector<SeenFibre> seen;
   const auto normals = seen_along(fibres, smas);
-  for (size_t i = 0; i < fibres.size(); ++i) seen.push_back({fibres[i].points, normals[i]});
+  for (size_t i = 0; i < fibres.size(); ++i)
+    seen.push_back({fibres[i].points, normals[i]});
   int count = 0;
   for (size_t i = 0; i < seen.size(); ++i)
-    for (size_t j = i + 1; j < std::min(seen.size(), i + 1 + kNeighbours); ++j) count += crossings_of(seen[i], seen[j]);
+    for (size_t j = i + 1; j < std::min(seen.size(), i + 1 + kNeighbours); ++j)
+      count += crossings_of(seen[i], seen[j]);
   return count;
 }
 
@@ -128,7 +134,8 @@ void measure(Muscle& muscle) {
     const Fibre &a = muscle.fibres[i], &b = muscle.fibres[i + 1];
     muscle.area += mean_distance(a, b) * 0.5 * (a.rest_length + b.rest_length);
   }
-  if (muscle.fibres.size() > 1) muscle.area *= double(muscle.fibres.size()) / double(muscle.fibres.size() - 1);
+  if (muscle.fibres.size() > 1)
+    muscle.area *= double(muscle.fibres.size()) / double(muscle.fibres.size() - 1);
   muscle.volume = muscle.cross_section * muscle.mean_length;
   muscle.thickness = muscle.area > 0.0 ? muscle.volume / muscle.area : 0.0;
 }

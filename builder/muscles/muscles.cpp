@@ -31,17 +31,21 @@ void check(const Inputs& inputs, const Options& options) {
     throw Error("muscles: spacings must be above 0 metres");
   if (options.fewest_fibres < 1 || options.most_fibres < options.fewest_fibres || options.fewest_points < 2 ||
       options.most_points < options.fewest_points)
-    throw Error("muscles: counts of fibres and points must rise from fewest (1 fibre, 2 points or more) to most");
+    throw Error(
+        "muscles: counts of fibres and points must rise from fewest (1 fibre, 2 points or more) to most");
   std::set<std::string> names;
   for (const anatomy::Muscle& muscle : inputs.muscles) {
-    if (!names.insert(muscle.name).second) throw Error("muscles: two are named " + muscle.name + "; rename one");
+    if (!names.insert(muscle.name).second)
+      throw Error("muscles: two are named " + muscle.name + "; rename one");
     if (!muscle.band && (muscle.origin.polygon.empty() || muscle.insertion.polygon.empty()))
       throw Error(muscle.name + ": neither regions nor a band around an orifice; give it one");
   }
   for (const auto& [name, edit] : options.edits) {
     if (!names.count(name)) throw Error("edit of " + name + ": there is no muscle of that name");
-    if (!(edit.strength >= 0.0 && edit.strength <= 100.0)) throw Error(name + ": the strength is a factor from 0 to 100");
-    if (!(edit.width > 0.0 && edit.width <= 10.0)) throw Error(name + ": the width is a factor above 0 and up to 10");
+    if (!(edit.strength >= 0.0 && edit.strength <= 100.0))
+      throw Error(name + ": the strength is a factor from 0 to 100");
+    if (!(edit.width > 0.0 && edit.width <= 10.0))
+      throw Error(name + ": the width is a factor above 0 and up to 10");
     if (edit.spacing && !(*edit.spacing > 0.0)) throw Error(name + ": the spacing of fibres must be above 0");
     if (edit.bundles && *edit.bundles < 1) throw Error(name + ": a muscle has one bundle or more");
     if (edit.peak_shortening && !(*edit.peak_shortening > 0.0 && *edit.peak_shortening <= 0.5))
@@ -63,7 +67,8 @@ std::vector<Vec3> carried(const Inputs& inputs, const std::vector<Vec3>& generic
 void widen(std::vector<Vec3>& region, const Vec3& from, const Vec3& to, double width) {
   if (width == 1.0 || region.empty()) return;
   Vec3 middle = Vec3::Zero();
-  for (const Vec3& p : region) middle += p / double(region.size());
+  for (const Vec3& p : region)
+    middle += p / double(region.size());
   const Vec3 axis = (to - from).normalized();
   for (Vec3& p : region) {
     const Vec3 off = p - middle;
@@ -71,8 +76,8 @@ void widen(std::vector<Vec3>& region, const Vec3& from, const Vec3& to, double w
   }
 }
 
-Place make_place(const Inputs& inputs, const Edit& edit, const spatial::SurfaceQuery& smas, const anatomy::Muscle& muscle,
-                 bool origin) {
+Place make_place(const Inputs& inputs, const Edit& edit, const spatial::SurfaceQuery& smas,
+                 const anatomy::Muscle& muscle, bool origin) {
   const anatomy::Region& region = origin ? muscle.origin : muscle.insertion;
   Place place;
   place.on = region.on;
@@ -80,18 +85,24 @@ Place make_place(const Inputs& inputs, const Edit& edit, const spatial::SurfaceQ
   if (region.on == Attachment::mandible) place.bone = inputs.mandible;
   const std::optional<Sketch>& sketch = origin ? edit.origin : edit.insertion;
   place.is_sketched = sketch.has_value();
-  place.polygon = sketch ? sketched_region(*sketch, place, inputs, smas, muscle.name + (origin ? ": origin" : ": insertion"))
+  place.polygon = sketch ? sketched_region(*sketch, place, inputs, smas,
+                                           muscle.name + (origin ? ": origin" : ": insertion"))
                          : carried(inputs, region.polygon);
   for (const Vec3& p : place.polygon)
-    if (!p.allFinite()) throw Error(muscle.name + ": a region has a point that is not finite; check landmarks and warp");
+    if (!p.allFinite())
+      throw Error(muscle.name + ": a region has a point that is not finite; check landmarks and warp");
   return place;
 }
 
 Course make_course(const Inputs& inputs, const Options& options, const spatial::SurfaceQuery& smas,
                    const anatomy::Muscle& muscle) {
   const Edit& edit = edit_of(muscle.name, options);
-  Course course{muscle, make_place(inputs, edit, smas, muscle, true), make_place(inputs, edit, smas, muscle, false), {}};
-  for (Vec3& p : course.insertion.polygon) p += edit.insertion_offset;
+  Course course{muscle,
+                make_place(inputs, edit, smas, muscle, true),
+                make_place(inputs, edit, smas, muscle, false),
+                {}};
+  for (Vec3& p : course.insertion.polygon)
+    p += edit.insertion_offset;
   const Vec3 from = course.origin.centre(), to = course.insertion.centre();
   widen(course.origin.polygon, from, to, edit.width);
   widen(course.insertion.polygon, from, to, edit.width);
@@ -103,10 +114,12 @@ Course make_course(const Inputs& inputs, const Options& options, const spatial::
 anatomy::Muscle edited(anatomy::Muscle muscle, const Options& options) {
   const Edit& edit = edit_of(muscle.name, options);
   if (muscle.band && (edit.origin || edit.insertion || edit.waypoints))
-    throw Error(muscle.name + ": it runs around an orifice and has no regions; change its width or its strength");
+    throw Error(muscle.name +
+                ": it runs around an orifice and has no regions; change its width or its strength");
   muscle.bundles = edit.bundles.value_or(muscle.bundles);
   muscle.peak_shortening = edit.peak_shortening.value_or(muscle.peak_shortening);
-  if (muscle.band) muscle.band->outer = muscle.band->inner + edit.width * (muscle.band->outer - muscle.band->inner);
+  if (muscle.band)
+    muscle.band->outer = muscle.band->inner + edit.width * (muscle.band->outer - muscle.band->inner);
   return muscle;
 }
 
@@ -114,7 +127,8 @@ anatomy::Muscle edited(anatomy::Muscle muscle, const Options& options) {
 bool runs_through_space(const Carrier& smas, const Course& course) {
   if (course.muscle.group == "masticatory" || course.muscle.group == "lid") return true;
   for (const Place* place : {&course.origin, &course.insertion})
-    if (place->on == Attachment::hyoid || smas.query.closest(place->centre()).distance > kFarFromSmas) return true;
+    if (place->on == Attachment::hyoid || smas.query.closest(place->centre()).distance > kFarFromSmas)
+      return true;
   return false;
 }
 
@@ -122,8 +136,7 @@ bool runs_through_space(const Carrier& smas, const Course& course) {
 std::map<std::string, double> orifice_reach(const std::vector<anatomy::Muscle>& muscles) {
   std::map<std::string, double> reach;
   for (const anatomy::Muscle& muscle : muscles)
-    if (muscle.band)
-      reach[muscle.band->orifice] = std::max(reach[muscle.band->orifice], muscle.band->outer);
+    if (muscle.band) reach[muscle.band->orifice] = std::max(reach[muscle.band->orifice], muscle.band->outer);
   return reach;
 }
 
@@ -160,14 +173,17 @@ double attachment_distance(const Inputs& inputs, const Muscle& muscle, bool orig
   double farthest = 0.0;
   for (const Fibre& fibre : muscle.fibres) {
     const FibrePoint& end = origin ? fibre.points.front() : fibre.points.back();
-    if (surface) farthest = std::max(farthest, surface->closest(end.position).distance);
-    else if (on_smas) farthest = std::max(farthest, std::abs(end.offset));
+    if (surface)
+      farthest = std::max(farthest, surface->closest(end.position).distance);
+    else if (on_smas)
+      farthest = std::max(farthest, std::abs(end.offset));
   }
   return farthest;
 }
 
 /// Farthest end of a fibre in the node from its centre, along the SMAS.
-double measured_radius(const Modiolus& node, const std::vector<Muscle>& muscles, const spatial::SurfaceQuery& smas) {
+double measured_radius(const Modiolus& node, const std::vector<Muscle>& muscles,
+                       const spatial::SurfaceQuery& smas) {
   const Vec3 normal = smas.smooth_normal(smas.closest(node.centre).surface);
   double farthest = 0.0;
   for (const Muscle& muscle : muscles) {
@@ -230,8 +246,9 @@ Result build(const Inputs& inputs, const Options& options) {
     Muscle muscle = described(from, options);
     if (from.band) {
       const OrificeNet& net = nets.at(from.band->orifice);
-      muscle.fibres = from.kind == MuscleKind::compressor ? lay_compressors(depths, net, from, options)
-                                                          : lay_rings(depths, net, from, result.modioli, options);
+      muscle.fibres = from.kind == MuscleKind::compressor
+                          ? lay_compressors(depths, net, from, options)
+                          : lay_rings(depths, net, from, result.modioli, options);
       if (from.band->medial_on_bone) muscle.origin_on = Attachment::cranium;
       if (from.kind == MuscleKind::sphincter_ring) join_modioli(result.modioli, muscle);
     } else {
@@ -246,13 +263,15 @@ Result build(const Inputs& inputs, const Options& options) {
     muscle.origin_distance = attachment_distance(inputs, muscle, true);
     muscle.insertion_distance = attachment_distance(inputs, muscle, false);
     if (muscle.shortest < 1e-3)
-      result.warnings.push_back(muscle.name + ": a fibre is shorter than 1 mm; its regions lie on each other");
+      result.warnings.push_back(muscle.name +
+                                ": a fibre is shorter than 1 mm; its regions lie on each other");
     if (muscle.crossings > 0)
       result.warnings.push_back(muscle.name + ": its fibres cross in " + std::to_string(muscle.crossings) +
                                 " places; its regions or landmarks near it may be misplaced");
     result.muscles.push_back(std::move(muscle));
   }
-  for (Modiolus& node : result.modioli) node.radius = measured_radius(node, result.muscles, query);
+  for (Modiolus& node : result.modioli)
+    node.radius = measured_radius(node, result.muscles, query);
   return result;
 }
 

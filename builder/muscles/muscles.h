@@ -43,11 +43,11 @@ struct Muscle {
   double strength = 0.0;       ///< force at full activation, newton, all fibres together
   double cross_section = 0.0;  ///< square metres
   double mean_length = 0.0, shortest = 0.0, longest = 0.0;  ///< of the fibres, metres
-  double area = 0.0;       ///< of the sheet the fibres span, square metres
-  double volume = 0.0;     ///< cross-section times mean length, cubic metres
-  double thickness = 0.0;  ///< volume over area, metres; 0 without an area
-  /// Farthest fibre end from what the muscle is fastened to there (bone, skin, or the SMAS, as the modiolus is in it),
-  /// metres; 0 where that is no surface of this head (hyoid, fascia, galea, tarsus).
+  double area = 0.0;                                        ///< of the sheet the fibres span, square metres
+  double volume = 0.0;                                      ///< cross-section times mean length, cubic metres
+  double thickness = 0.0;                                   ///< volume over area, metres; 0 without an area
+  /// Farthest fibre end from what the muscle is fastened to there (bone, skin, or the SMAS, as the modiolus
+  /// is in it), metres; 0 where that is no surface of this head (hyoid, fascia, galea, tarsus).
   double origin_distance = 0.0, insertion_distance = 0.0;
   int crossings = 0;  ///< places where two of its fibres cross; see crossings()
 };
@@ -59,7 +59,7 @@ struct Inputs {
   const spatial::SurfaceQuery* cranium = nullptr;   ///< may be null: bone ends then hang at their depth
   const spatial::SurfaceQuery* mandible = nullptr;  ///< likewise
   const spatial::SurfaceQuery* teeth = nullptr;     ///< may be null; the lips' depth ends on them
-  const splines::Warp* warp = nullptr;  ///< generic anatomy -> this head; null: they are the same
+  const splines::Warp* warp = nullptr;              ///< generic anatomy -> this head; null: they are the same
   /// Landmarks on this head's skin. Rings need cheilion of both sides, stomion and, for each eye,
   /// exocanthion, endocanthion, palpebrale_superius and palpebrale_inferius.
   std::map<std::string, Vec3> landmarks;
@@ -68,18 +68,18 @@ struct Inputs {
 
 /// A region drawn on this head that stands for the generic one.
 struct Sketch {
-  std::vector<Vec3> points;   ///< metres, on the head: its skin, its SMAS or its bones
-  bool is_curve = false;      ///< they go round the region in order; else they lie anywhere in it
+  std::vector<Vec3> points;  ///< metres, on the head: its skin, its SMAS or its bones
+  bool is_curve = false;     ///< they go round the region in order; else they lie anywhere in it
 };
 
 /// What a user changed of one muscle.
 struct Edit {
-  double strength = 1.0;       ///< times the generic strength
-  double width = 1.0;          ///< times the width of both regions across the course, or of a ring's band
+  double strength = 1.0;  ///< times the generic strength
+  double width = 1.0;     ///< times the width of both regions across the course, or of a ring's band
   Vec3 insertion_offset = Vec3::Zero();  ///< moves the insertion, metres
   std::optional<double> peak_shortening;
   std::optional<int> bundles;
-  std::optional<double> spacing;         ///< between fibres, metres
+  std::optional<double> spacing;  ///< between fibres, metres
   std::optional<Sketch> origin, insertion;
   std::optional<std::vector<Vec3>> waypoints;  ///< metres, on this head; empty: the straight course
 };
@@ -92,18 +92,19 @@ struct Options {
   int fewest_points = 5, most_points = 25;
   /// Where in a region a fibre ends: 0 at the side that faces the other region, 1 at the far side.
   double region_share = 0.5;
-  double stress = 3.0e5;           ///< of muscle at full activation, pascal
-  double least_prevalence = 0.0;   ///< leave out muscles that fewer people have
-  std::vector<std::string> absent; ///< names or wholes to leave out
+  double stress = 3.0e5;              ///< of muscle at full activation, pascal
+  double least_prevalence = 0.0;      ///< leave out muscles that fewer people have
+  std::vector<std::string> absent;    ///< names or wholes to leave out
   std::map<std::string, Edit> edits;  ///< by name
-  /// Half the width of the node lateral to each corner of the mouth where the muscles meet that insert on the modiolus,
-  /// and the rings of the mouth with them, metres; 0 leaves each at its own place.
+  /// Half the width of the node lateral to each corner of the mouth where the muscles meet that insert on the
+  /// modiolus, and the rings of the mouth with them, metres; 0 leaves each at its own place.
   double modiolus_radius = 0.005;
 };
 
-/// The node lateral to a corner of the mouth in which muscles are interwoven; what one of them pulls, the others feel.
+/// The node lateral to a corner of the mouth in which muscles are interwoven; what one of them pulls, the
+/// others feel.
 struct Modiolus {
-  std::string name;                  ///< modiolus_left or modiolus_right
+  std::string name;  ///< modiolus_left or modiolus_right
   anatomy::Side side = anatomy::Side::left;
   Vec3 centre = Vec3::Zero();        ///< metres, on the SMAS
   double radius = 0.0;               ///< farthest end of a fibre from the centre along the SMAS, metres
@@ -120,18 +121,18 @@ struct Result {
 /// by the warp, their geodesic hulls on the SMAS joined by mutual tangents, and fibres drawn between the
 /// facing arcs as boundary-value geodesics, each point at its depth between skin and bone. Sphincters are
 /// rings at constant distance from the orifice, compressors run across them. Muscles that lie deep or
-/// away from the SMAS (chewing, tongue base, orbit), or whose way an opening of it bars (depressor septi), run from region
-/// to region through their waypoints. Fibres of one muscle that would cross are put in order.
-/// Throws `Error` naming the muscle when inputs are missing, an edit names no muscle, or a region makes no sense: a sketch
-/// with fewer than three points, off the head, of no extent, or whose curve crosses itself.
+/// away from the SMAS (chewing, tongue base, orbit), or whose way an opening of it bars (depressor septi),
+/// run from region to region through their waypoints. Fibres of one muscle that would cross are put in order.
+/// Throws `Error` naming the muscle when inputs are missing, an edit names no muscle, or a region makes no
+/// sense: a sketch with fewer than three points, off the head, of no extent, or whose curve crosses itself.
 Result build(const Inputs& inputs, const Options& options = {});
 
 /// Sets lengths, area, volume and thickness of `muscle` from its fibres.
 void measure(Muscle& muscle);
 
-/// How many times two fibres of one muscle cross, seen along the SMAS' normals, or, where none of their points is bound
-/// to the SMAS, along the normal of the sheet they span. Ends that touch do not count. Each fibre is held against the four
-/// that follow it, as fibres lie side by side in their order.
+/// How many times two fibres of one muscle cross, seen along the SMAS' normals, or, where none of their
+/// points is bound to the SMAS, along the normal of the sheet they span. Ends that touch do not count. Each
+/// fibre is held against the four that follow it, as fibres lie side by side in their order.
 int crossings(const std::vector<Fibre>& fibres, const spatial::SurfaceQuery& smas);
 
 }  // namespace fascia::muscles

@@ -22,7 +22,8 @@ struct Start {
   double angle = 0.0;  // of the outward direction, seen from the front
 };
 
-Vec3 needed(const std::map<std::string, Vec3>& landmarks, const std::string& name, const std::string& orifice) {
+Vec3 needed(const std::map<std::string, Vec3>& landmarks, const std::string& name,
+            const std::string& orifice) {
   const auto found = landmarks.find(name);
   if (found == landmarks.end())
     throw Error("muscles around " + orifice + ": landmark " + name + " is missing; place it on the skin");
@@ -43,7 +44,9 @@ std::vector<Start> rim(const Vec3& from, const Vec3& middle, const Vec3& to, dou
   return starts;
 }
 
-double unwrapped(double angle, double near) { return angle - 2 * kPi * std::round((angle - near) / (2 * kPi)); }
+double unwrapped(double angle, double near) {
+  return angle - 2 * kPi * std::round((angle - near) / (2 * kPi));
+}
 
 /// Appends `starts` and then a fan around their last place until the first direction of `next`.
 void append_with_corner(std::vector<Start>& all, const std::vector<Start>& starts, const Start& next) {
@@ -75,7 +78,8 @@ std::vector<Start> rim_starts(const std::map<std::string, Vec3>& landmarks, cons
     lower = needed(landmarks, "palpebrale_inferius" + side, orifice);
   }
   if (left[0] - right[0] < 1e-6)
-    throw Error("muscles around " + orifice + ": its corners lie in the wrong order; left is the subject's left");
+    throw Error("muscles around " + orifice +
+                ": its corners lie in the wrong order; left is the subject's left");
   const std::vector<Start> up = rim(left, upper, right, 1.0), down = rim(right, lower, left, 1.0);
   std::vector<Start> all;
   append_with_corner(all, up, down.front());
@@ -110,7 +114,8 @@ std::vector<Vec3> walk(const Carrier& smas, const Start& start, double step, int
   return ray;
 }
 
-/// Points of a net put at their depth: on the SMAS, or, in its opening, where it would be if it went straight on.
+/// Points of a net put at their depth: on the SMAS, or, in its opening, where it would be if it went straight
+/// on.
 FibrePoint at_depth(const Depths& depths, const Vec3& point, double fraction) {
   const Carrier& smas = depths.smas();
   const spatial::ClosestPoint closest = smas.query.closest(point);
@@ -131,13 +136,14 @@ std::vector<double> along_ring(const OrificeNet& net, double distance, double be
     // Coordinates are cyclic: go on from the last one.
     const double around = double(net.rays.size());
     rays[i] += around * std::round((rays[i - 1] - rays[i]) / around);
-    lengths.push_back(lengths.back() + (net.point(rays[i], distance) - net.point(rays[i - 1], distance)).norm());
+    lengths.push_back(lengths.back() +
+                      (net.point(rays[i], distance) - net.point(rays[i - 1], distance)).norm());
   }
   std::vector<double> even;
   for (int i = 0; i < count; ++i) {
     const double wanted = lengths.back() * i / std::max(1, count - 1);
-    const size_t k = std::clamp<size_t>(std::lower_bound(lengths.begin(), lengths.end(), wanted) - lengths.begin(), 1,
-                                        lengths.size() - 1);
+    const size_t k = std::clamp<size_t>(
+        std::lower_bound(lengths.begin(), lengths.end(), wanted) - lengths.begin(), 1, lengths.size() - 1);
     const double step = lengths[k] - lengths[k - 1];
     const double share = step > 0.0 ? (wanted - lengths[k - 1]) / step : 0.0;
     even.push_back(rays[k - 1] + share * (rays[k] - rays[k - 1]));
@@ -147,7 +153,9 @@ std::vector<double> along_ring(const OrificeNet& net, double distance, double be
 
 double ring_length(const OrificeNet& net, double distance, double begin, double end) {
   const OrificeNet::Ring ring = net.ring(distance);
-  const auto at = [&](int i) { return net.point(net.ray_at(begin + (end - begin) * i / 24, ring), distance); };
+  const auto at = [&](int i) {
+    return net.point(net.ray_at(begin + (end - begin) * i / 24, ring), distance);
+  };
   double sum = 0.0;
   Vec3 last = at(0);
   for (int i = 1; i <= 24; ++i) {
@@ -186,11 +194,14 @@ double OrificeNet::ray_at(double angle, const Ring& ring) const {
   const size_t count = rays.size();
   const auto offset = [&](size_t i) {  // of ray i's point from the angle asked for, in (−π, π]
     double off = ring.angles[i] - angle;
-    while (off > kPi) off -= 2 * kPi;
-    while (off <= -kPi) off += 2 * kPi;
+    while (off > kPi)
+      off -= 2 * kPi;
+    while (off <= -kPi)
+      off += 2 * kPi;
     return off;
   };
-  // Close to the rim the rays of a curved lip may be seen at the angle twice: the ring's place is the outermost.
+  // Close to the rim the rays of a curved lip may be seen at the angle twice: the ring's place is the
+  // outermost.
   double before = offset(0), best = 0.0, farthest = -1.0;
   for (size_t i = 0; i < count; ++i) {
     const size_t next = (i + 1) % count;
@@ -209,15 +220,18 @@ double OrificeNet::ray_at(double angle, const Ring& ring) const {
   return best;
 }
 
-OrificeNet orifice_net(const Carrier& smas, const std::map<std::string, Vec3>& landmarks, const std::string& orifice,
-                       double reach) {
+OrificeNet orifice_net(const Carrier& smas, const std::map<std::string, Vec3>& landmarks,
+                       const std::string& orifice, double reach) {
   const std::vector<Start> starts = rim_starts(landmarks, orifice);
   OrificeNet net;
   const int steps = std::clamp(static_cast<int>(std::ceil(reach / 0.0015)), 2, 60);
   net.step = reach / steps;
-  for (const Start& start : starts) net.rays.push_back(walk(smas, start, net.step, steps));
-  for (const Start& start : starts) net.centre += start.place / double(starts.size());
-  // Between the corners, but as high as the lips meet in the middle: so rings close to the lips pass it on their own side.
+  for (const Start& start : starts)
+    net.rays.push_back(walk(smas, start, net.step, steps));
+  for (const Start& start : starts)
+    net.centre += start.place / double(starts.size());
+  // Between the corners, but as high as the lips meet in the middle: so rings close to the lips pass it on
+  // their own side.
   if (orifice == "mouth") {
     net.centre = 0.5 * (landmarks.at("cheilion_left") + landmarks.at("cheilion_right"));
     net.centre[1] = landmarks.at("stomion")[1];
@@ -227,8 +241,8 @@ OrificeNet orifice_net(const Carrier& smas, const std::map<std::string, Vec3>& l
 
 namespace {
 
-/// Fibres that hang on the canthal ligament draw together towards it: what share of its distance from the orifice a fibre
-/// keeps at `share` of its way from the medial end.
+/// Fibres that hang on the canthal ligament draw together towards it: what share of its distance from the
+/// orifice a fibre keeps at `share` of its way from the medial end.
 double kept_distance(double share) {
   constexpr double at_ligament = 0.35, way = 0.35;
   const double t = std::clamp(share / way, 0.0, 1.0);
@@ -262,12 +276,13 @@ std::optional<NodeOnNet> node_at(const OrificeNet& net, const std::vector<Modiol
   return std::nullopt;
 }
 
-/// Moves a ring's place on the net (`ray`, `reach` from the rim) towards the node at its end, `share` of the ring away.
-/// Rings keep their order: at the corner of the mouth they lie side by side across the node.
+/// Moves a ring's place on the net (`ray`, `reach` from the rim) towards the node at its end, `share` of the
+/// ring away. Rings keep their order: at the corner of the mouth they lie side by side across the node.
 void draw_to_node(const OrificeNet& net, const NodeOnNet& node, double share, double& ray, double& reach) {
   constexpr double way = 0.35, widest_band = 0.022;  // of the ring; metres
   const double t = std::clamp(1.0 - share / way, 0.0, 1.0), drawn = t * t * (3.0 - 2.0 * t);
-  const double at_node = node.distance + std::min(1.0, node.radius / widest_band) * (reach - 0.5 * widest_band);
+  const double at_node =
+      node.distance + std::min(1.0, node.radius / widest_band) * (reach - 0.5 * widest_band);
   ray += drawn * std::remainder(node.ray - ray, double(net.rays.size()));
   reach += drawn * (std::max(0.0005, at_node) - reach);
 }
@@ -309,9 +324,12 @@ std::vector<Fibre> lay_rings(const Depths& depths, const OrificeNet& net, const 
     if (band.medial_on_bone && !medial_first) std::reverse(fibre.points.begin(), fibre.points.end());
     fibres.push_back(std::move(fibre));
   }
-  put_in_order(fibres, depths.smas().query, [&](const Vec3& position, double share) {
-    return depths.near(position, sampled(muscle.depth_fraction, share));
-  }, false);
+  put_in_order(
+      fibres, depths.smas().query,
+      [&](const Vec3& position, double share) {
+        return depths.near(position, sampled(muscle.depth_fraction, share));
+      },
+      false);
   return fibres;
 }
 
@@ -334,9 +352,12 @@ std::vector<Fibre> lay_compressors(const Depths& depths, const OrificeNet& net, 
     }
     fibres.push_back(std::move(fibre));
   }
-  put_in_order(fibres, depths.smas().query, [&](const Vec3& position, double share) {
-    return depths.near(position, sampled(muscle.depth_fraction, share));
-  }, false);
+  put_in_order(
+      fibres, depths.smas().query,
+      [&](const Vec3& position, double share) {
+        return depths.near(position, sampled(muscle.depth_fraction, share));
+      },
+      false);
   return fibres;
 }
 

@@ -21,7 +21,8 @@ struct OrificeNet {
 
   /// The points of all rays at a distance from the rim.
   struct Ring {
-    std::vector<double> angles;  ///< at which they are seen about the centre: 0 to the subject's left, π/2 upward
+    std::vector<double>
+        angles;  ///< at which they are seen about the centre: 0 to the subject's left, π/2 upward
     std::vector<Vec3> points;
   };
   Ring ring(double distance) const;
@@ -32,7 +33,7 @@ struct OrificeNet {
 
 /// The net of `orifice` (mouth, eye_left or eye_right) out to `reach` metres. Throws `Error` naming the
 /// landmarks it misses.
-OrificeNet orifice_net(const Carrier& smas, const std::map<std::string, Vec3>& landmarks, const std::string& orifice,
-                       double reach);
+OrificeNet orifice_net(const Carrier& smas, const std::map<std::string, Vec3>& landmarks,
+                       const std::string& orifice, double reach);
 
 }  // namespace fascia::muscles

@@ -28,17 +28,21 @@ struct Course {
 std::vector<Vec3> sketched_region(const Sketch& sketch, const Place& place, const Inputs& inputs,
                                   const spatial::SurfaceQuery& smas, const std::string& what);
 
-/// The nodes of both sides: where the insertions of `courses` on the modiolus lie in the middle, those drawn together to
-/// `options.modiolus_radius` about it, but for sketched ones. Sides on which none inserts have none.
-std::vector<Modiolus> gather_modioli(const Carrier& smas, std::vector<Course>& courses, const Options& options);
+/// The nodes of both sides: where the insertions of `courses` on the modiolus lie in the middle, those drawn
+/// together to `options.modiolus_radius` about it, but for sketched ones. Sides on which none inserts have
+/// none.
+std::vector<Modiolus> gather_modioli(const Carrier& smas, std::vector<Course>& courses,
+                                     const Options& options);
 
-/// Fibres on the SMAS at their depth: straps, fans and sheets by one construction. None when an opening of the SMAS bars
-/// the way of one of them, or they cannot be laid without crossing.
-std::vector<Fibre> lay_on_smas(Carrier& smas, const Depths& depths, const Course& course, const Options& options);
+/// Fibres on the SMAS at their depth: straps, fans and sheets by one construction. None when an opening of
+/// the SMAS bars the way of one of them, or they cannot be laid without crossing.
+std::vector<Fibre> lay_on_smas(Carrier& smas, const Depths& depths, const Course& course,
+                               const Options& options);
 
 /// Fibres straight through space from region to region by the waypoints, kept out of the bones.
 std::vector<Fibre> lay_through_space(const Carrier& smas, const Course& course,
-                                     const std::vector<const spatial::SurfaceQuery*>& bones, const Options& options);
+                                     const std::vector<const spatial::SurfaceQuery*>& bones,
+                                     const Options& options);
 
 /// Rings at constant distance from an orifice. Those of the mouth draw together in the node at its corner.
 std::vector<Fibre> lay_rings(const Depths& depths, const OrificeNet& net, const anatomy::Muscle& muscle,

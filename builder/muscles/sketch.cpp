@@ -29,17 +29,22 @@ double distance_to_head(const Vec3& point, const Inputs& inputs, const spatial::
 /// The points in the plane that fits them best.
 std::vector<Vec2> flattened(const std::vector<Vec3>& points) {
   Vec3 middle = Vec3::Zero();
-  for (const Vec3& p : points) middle += p / double(points.size());
+  for (const Vec3& p : points)
+    middle += p / double(points.size());
   Mat3 spread = Mat3::Zero();
-  for (const Vec3& p : points) spread += (p - middle) * (p - middle).transpose();
+  for (const Vec3& p : points)
+    spread += (p - middle) * (p - middle).transpose();
   const Eigen::SelfAdjointEigenSolver<Mat3> axes(spread);
   std::vector<Vec2> flat;
   for (const Vec3& p : points)
-    flat.emplace_back((p - middle).dot(axes.eigenvectors().col(2)), (p - middle).dot(axes.eigenvectors().col(1)));
+    flat.emplace_back((p - middle).dot(axes.eigenvectors().col(2)),
+                      (p - middle).dot(axes.eigenvectors().col(1)));
   return flat;
 }
 
-double cross(const Vec2& a, const Vec2& b) { return a[0] * b[1] - a[1] * b[0]; }
+double cross(const Vec2& a, const Vec2& b) {
+  return a[0] * b[1] - a[1] * b[0];
+}
 
 bool cross_each_other(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
   return cross(b - a, c - a) * cross(b - a, d - a) < 0.0 && cross(d - c, a - c) * cross(d - c, b - c) < 0.0;
@@ -52,14 +57,16 @@ void check_simple(const std::vector<Vec2>& curve, const std::string& what) {
       if (i == 0 && j + 1 == count) continue;  // neighbours at the closing point
       if (cross_each_other(curve[i], curve[i + 1], curve[j], curve[(j + 1) % count]))
         throw Error(what + ": the curve crosses itself after its points " + std::to_string(i + 1) + " and " +
-                    std::to_string(j + 1) + "; draw it once around the region, or give the points as \"points\"");
+                    std::to_string(j + 1) +
+                    "; draw it once around the region, or give the points as \"points\"");
     }
 }
 
 /// The outline of `points`; what lies inside adds nothing to a region. Points in line stay as they are.
 std::vector<Vec3> outline(const std::vector<Vec3>& points, const std::vector<Vec2>& flat) {
   std::vector<Vec3> region;
-  for (int i : planar_hull(flat)) region.push_back(points[static_cast<size_t>(i)]);
+  for (int i : planar_hull(flat))
+    region.push_back(points[static_cast<size_t>(i)]);
   return region.size() >= 3 ? region : points;
 }
 
@@ -70,24 +77,31 @@ std::vector<Vec3> sketched_region(const Sketch& sketch, const Place& place, cons
   std::vector<Vec3> points;
   for (size_t i = 0; i < sketch.points.size(); ++i) {
     const Vec3& p = sketch.points[i];
-    if (!p.allFinite()) throw Error(what + ": point " + std::to_string(i + 1) + " is not three finite numbers");
+    if (!p.allFinite())
+      throw Error(what + ": point " + std::to_string(i + 1) + " is not three finite numbers");
     const double off = distance_to_head(p, inputs, smas);
     if (off > kOffHead)
       throw Error(what + ": point " + std::to_string(i + 1) + " lies " + millimetres(off) +
                   " off the head; place it on the skin, in the axes and units of the head file");
-    const bool known = std::any_of(points.begin(), points.end(), [&](const Vec3& q) { return (p - q).norm() < 1e-4; });
+    const bool known =
+        std::any_of(points.begin(), points.end(), [&](const Vec3& q) { return (p - q).norm() < 1e-4; });
     if (!known) points.push_back(p);
   }
   if (points.size() < 3)
-    throw Error(what + ": " + std::to_string(points.size()) + " different points; a region needs three or more");
+    throw Error(what + ": " + std::to_string(points.size()) +
+                " different points; a region needs three or more");
   const Vec3 extent = bounds(points).size();
   if (extent.norm() < 1e-3)
-    throw Error(what + ": the region is only " + millimetres(extent.norm()) + " wide; draw one of some millimetres");
+    throw Error(what + ": the region is only " + millimetres(extent.norm()) +
+                " wide; draw one of some millimetres");
   const std::vector<Vec2> flat = flattened(points);
-  if (sketch.is_curve) check_simple(flat, what);
-  else points = outline(points, flat);
+  if (sketch.is_curve)
+    check_simple(flat, what);
+  else
+    points = outline(points, flat);
   if (place.bone)
-    for (Vec3& p : points) p = place.bone->closest(p).position;
+    for (Vec3& p : points)
+      p = place.bone->closest(p).position;
   return points;
 }
 

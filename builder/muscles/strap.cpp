@@ -10,7 +10,8 @@ namespace {
 
 std::vector<SurfacePoint> projected(const Carrier& smas, const std::vector<Vec3>& points) {
   std::vector<SurfacePoint> places;
-  for (const Vec3& point : points) places.push_back(smas.closest(point));
+  for (const Vec3& point : points)
+    places.push_back(smas.closest(point));
   return places;
 }
 
@@ -21,15 +22,17 @@ struct Ends {
 
 Vec3 middle(const Hull& hull) {
   Vec3 sum = Vec3::Zero();
-  for (const Vec3& p : hull.positions) sum += p / hull.size();
+  for (const Vec3& p : hull.positions)
+    sum += p / hull.size();
   return sum;
 }
 
 /// Between two hulls: from arc to arc, both run from the right tangent to the left one.
-Ends ends_between(const Hull& origin, const Hull& insertion, const FacingArcs& arcs, const anatomy::Muscle& muscle,
-                  const Options& options) {
-  const double width = 0.5 * (std::max(arc_length(origin, arcs.first_near), arc_length(origin, arcs.first_far)) +
-                              std::max(arc_length(insertion, arcs.second_near), arc_length(insertion, arcs.second_far)));
+Ends ends_between(const Hull& origin, const Hull& insertion, const FacingArcs& arcs,
+                  const anatomy::Muscle& muscle, const Options& options) {
+  const double width =
+      0.5 * (std::max(arc_length(origin, arcs.first_near), arc_length(origin, arcs.first_far)) +
+             std::max(arc_length(insertion, arcs.second_near), arc_length(insertion, arcs.second_far)));
   const int count = fibre_count(0.7 * width, muscle, options);
   const auto at_share = [&](double region_share) {
     Ends ends;
@@ -52,7 +55,8 @@ Ends ends_between(const Hull& origin, const Hull& insertion, const FacingArcs& a
 }
 
 /// One region inside the other: fibres from the inner outline straight out to the outer one.
-Ends ends_radial(const Hull& origin, const Hull& insertion, const anatomy::Muscle& muscle, const Options& options) {
+Ends ends_radial(const Hull& origin, const Hull& insertion, const anatomy::Muscle& muscle,
+                 const Options& options) {
   const auto around = [](const Hull& hull, const Vec3& centre, const Vec3& direction) {
     int best = 0;
     for (int i = 1; i < hull.size(); ++i)
@@ -63,7 +67,8 @@ Ends ends_radial(const Hull& origin, const Hull& insertion, const anatomy::Muscl
   };
   const auto outline = [](const Hull& hull) {
     Arc arc;
-    for (int i = 0; i <= hull.size(); ++i) arc.push_back(i % hull.size());
+    for (int i = 0; i <= hull.size(); ++i)
+      arc.push_back(i % hull.size());
     return arc;
   };
   const bool origin_larger = arc_length(origin, outline(origin)) > arc_length(insertion, outline(insertion));
@@ -88,11 +93,13 @@ Ends find_ends(Carrier& smas, const Course& course, const Options& options) {
   const auto left = mutual_tangent(smas, origin, insertion, HullSide::right, HullSide::right);
   const auto right = mutual_tangent(smas, origin, insertion, HullSide::left, HullSide::left);
   if (!left || !right) return ends_radial(origin, insertion, course.muscle, options);
-  return ends_between(origin, insertion, facing_arcs(origin, insertion, *left, *right), course.muscle, options);
+  return ends_between(origin, insertion, facing_arcs(origin, insertion, *left, *right), course.muscle,
+                      options);
 }
 
 /// The carrier's polyline from `from` over `through` to `to`, geodesic leg by leg.
-std::vector<Vec3> geodesic_course(Carrier& smas, const Vec3& from, const std::vector<Vec3>& through, const Vec3& to) {
+std::vector<Vec3> geodesic_course(Carrier& smas, const Vec3& from, const std::vector<Vec3>& through,
+                                  const Vec3& to) {
   std::vector<Vec3> line;
   SurfacePoint at = smas.closest(from);
   const auto leg = [&](const Vec3& goal) {
@@ -101,7 +108,8 @@ std::vector<Vec3> geodesic_course(Carrier& smas, const Vec3& from, const std::ve
     line.insert(line.end(), path.positions.begin() + (line.empty() ? 0 : 1), path.positions.end());
     at = next;
   };
-  for (const Vec3& point : through) leg(point);
+  for (const Vec3& point : through)
+    leg(point);
   leg(to);
   return line;
 }
@@ -111,12 +119,14 @@ void smooth(std::vector<Vec3>& line, int rounds) {
   std::vector<Vec3> last;
   for (int round = 0; round < rounds; ++round) {
     last = line;
-    for (size_t i = 1; i + 1 < line.size(); ++i) line[i] = 0.5 * last[i] + 0.25 * (last[i - 1] + last[i + 1]);
+    for (size_t i = 1; i + 1 < line.size(); ++i)
+      line[i] = 0.5 * last[i] + 0.25 * (last[i - 1] + last[i + 1]);
   }
 }
 
 /// Whether an opening of the SMAS lies in the way, so that a line over it goes a long way round.
-bool goes_round(const std::vector<Vec3>& line, const Vec3& from, const std::vector<Vec3>& through, const Vec3& to) {
+bool goes_round(const std::vector<Vec3>& line, const Vec3& from, const std::vector<Vec3>& through,
+                const Vec3& to) {
   std::vector<Vec3> direct = {from};
   direct.insert(direct.end(), through.begin(), through.end());
   direct.push_back(to);
@@ -127,7 +137,8 @@ bool goes_round(const std::vector<Vec3>& line, const Vec3& from, const std::vect
 
 }  // namespace
 
-std::vector<Fibre> lay_on_smas(Carrier& smas, const Depths& depths, const Course& course, const Options& options) {
+std::vector<Fibre> lay_on_smas(Carrier& smas, const Depths& depths, const Course& course,
+                               const Options& options) {
   const Ends ends = find_ends(smas, course, options);
   const size_t count = ends.origin.size();
   const Vec3 &middle_origin = ends.origin[count / 2], &middle_insertion = ends.insertion[count / 2];

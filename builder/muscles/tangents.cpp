@@ -8,22 +8,27 @@ namespace fascia::muscles {
 
 namespace {
 
-double cross(const Vec2& a, const Vec2& b) { return a[0] * b[1] - a[1] * b[0]; }
+double cross(const Vec2& a, const Vec2& b) {
+  return a[0] * b[1] - a[1] * b[0];
+}
 
 Vec3 middle(const Hull& hull) {
   Vec3 sum = Vec3::Zero();
-  for (const Vec3& p : hull.positions) sum += p;
+  for (const Vec3& p : hull.positions)
+    sum += p;
   return sum / std::max(1, hull.size());
 }
 
 std::vector<Vec2> flatten(const Hull& hull, const Vec3& origin, const Vec3& x, const Vec3& y) {
   std::vector<Vec2> flat;
-  for (const Vec3& p : hull.positions) flat.emplace_back((p - origin).dot(x), (p - origin).dot(y));
+  for (const Vec3& p : hull.positions)
+    flat.emplace_back((p - origin).dot(x), (p - origin).dot(y));
   return flat;
 }
 
 /// True when all of `hull` lies on `side` of the line from `from` along `direction`, or on it.
-bool keeps_side(const std::vector<Vec2>& hull, const Vec2& from, const Vec2& direction, HullSide side, double slack) {
+bool keeps_side(const std::vector<Vec2>& hull, const Vec2& from, const Vec2& direction, HullSide side,
+                double slack) {
   for (const Vec2& p : hull) {
     const double left = cross(direction, p - from);
     if (side == HullSide::right ? left > slack : left < -slack) return false;
@@ -32,8 +37,8 @@ bool keeps_side(const std::vector<Vec2>& hull, const Vec2& from, const Vec2& dir
 }
 
 /// The tangent of the two outlines in a plane; the longest of several that coincide in line.
-std::optional<Tangent> planar_tangent(const std::vector<Vec2>& first, const std::vector<Vec2>& second, HullSide first_side,
-                                      HullSide second_side) {
+std::optional<Tangent> planar_tangent(const std::vector<Vec2>& first, const std::vector<Vec2>& second,
+                                      HullSide first_side, HullSide second_side) {
   std::optional<Tangent> found;
   for (size_t i = 0; i < first.size(); ++i)
     for (size_t j = 0; j < second.size(); ++j) {
@@ -74,8 +79,8 @@ Arc walk(const Hull& hull, int from, int to, int step) {
 
 }  // namespace
 
-std::optional<Tangent> mutual_tangent(Carrier& carrier, const Hull& first, const Hull& second, HullSide first_side,
-                                      HullSide second_side) {
+std::optional<Tangent> mutual_tangent(Carrier& carrier, const Hull& first, const Hull& second,
+                                      HullSide first_side, HullSide second_side) {
   const Vec3 a = middle(first), b = middle(second);
   Vec3 normal = carrier.normal(carrier.closest(a)) + carrier.normal(carrier.closest(b));
   Vec3 x = b - a;
@@ -110,7 +115,8 @@ FacingArcs facing_arcs(const Hull& first, const Hull& second, const Tangent& lef
 
 double arc_length(const Hull& hull, const Arc& arc) {
   double sum = 0.0;
-  for (size_t k = 0; k + 1 < arc.size(); ++k) sum += (hull.positions[arc[k + 1]] - hull.positions[arc[k]]).norm();
+  for (size_t k = 0; k + 1 < arc.size(); ++k)
+    sum += (hull.positions[arc[k + 1]] - hull.positions[arc[k]]).norm();
   return sum;
 }
 

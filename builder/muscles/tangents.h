@@ -20,8 +20,8 @@ enum class HullSide { left, right };
 /// inner one. Found in the plane of the two and walked corner by corner on the surface until both
 /// neighbours at either end lie on the side asked for. None when one hull contains the other, and for
 /// inner tangents when they overlap.
-std::optional<Tangent> mutual_tangent(Carrier& carrier, const Hull& first, const Hull& second, HullSide first_side,
-                                      HullSide second_side);
+std::optional<Tangent> mutual_tangent(Carrier& carrier, const Hull& first, const Hull& second,
+                                      HullSide first_side, HullSide second_side);
 
 /// A piece of a hull's outline as corner indices in order.
 using Arc = std::vector<int>;

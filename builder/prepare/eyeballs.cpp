@@ -21,7 +21,8 @@ size_t direction_cell(const Vec3& d) {
 std::optional<Vec3> cornea_axis(const Eyeball& ball, const std::vector<Vec3>& points) {
   // The sphere is fitted to the cornea too: the sclera's own radius is the median distance.
   std::vector<double> distances;
-  for (const Vec3& p : points) distances.push_back((p - ball.centre).norm());
+  for (const Vec3& p : points)
+    distances.push_back((p - ball.centre).norm());
   const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
   std::nth_element(distances.begin(), middle, distances.end());
   const double sclera = *middle;
@@ -43,10 +44,12 @@ std::optional<Vec3> cornea_axis(const Eyeball& ball, const std::vector<Vec3>& po
 }
 
 /// Balls made of rings have a pole where the triangles of the last ring meet; it lies in the pupil.
-std::optional<Vec3> pole_axis(const Eyeball& ball, const std::vector<Vec3>& points, const std::vector<Triangle>& triangles) {
+std::optional<Vec3> pole_axis(const Eyeball& ball, const std::vector<Vec3>& points,
+                              const std::vector<Triangle>& triangles) {
   std::vector<int> meeting(points.size(), 0);
   for (const Triangle& t : triangles)
-    for (int v : t) ++meeting[static_cast<size_t>(v)];
+    for (int v : t)
+      ++meeting[static_cast<size_t>(v)];
   int most = 0;
   std::optional<Vec3> axis;
   for (size_t v = 0; v < points.size(); ++v) {
@@ -63,7 +66,8 @@ std::optional<Vec3> pole_axis(const Eyeball& ball, const std::vector<Vec3>& poin
 Eyeball fit_sphere(const std::vector<Vec3>& points, double* rms) {
   // |p|^2 = 2 c.p + (r^2 - |c|^2) is linear in c and the bracket; centred for conditioning.
   Vec3 mean = Vec3::Zero();
-  for (const Vec3& p : points) mean += p / static_cast<double>(points.size());
+  for (const Vec3& p : points)
+    mean += p / static_cast<double>(points.size());
   Eigen::MatrixX4d rows(points.size(), 4);
   Eigen::VectorXd squares(points.size());
   for (size_t i = 0; i < points.size(); ++i) {
@@ -76,7 +80,8 @@ Eyeball fit_sphere(const std::vector<Vec3>& points, double* rms) {
   sphere.centre = solution.head<3>() + mean;
   sphere.radius = std::sqrt(std::max(0.0, solution[3] + solution.head<3>().squaredNorm()));
   double sum = 0.0;
-  for (const Vec3& p : points) sum += std::pow((p - sphere.centre).norm() - sphere.radius, 2);
+  for (const Vec3& p : points)
+    sum += std::pow((p - sphere.centre).norm() - sphere.radius, 2);
   if (rms) *rms = std::sqrt(sum / static_cast<double>(points.size()));
   return sphere;
 }
@@ -87,9 +92,12 @@ std::optional<RoundPart> round_part(const std::vector<Vec3>& points, const Vec3&
   RoundPart part;
   part.ball = fit_sphere(points, &rms);
   const Eyeball& ball = part.ball;
-  if (!(rms < 0.12 * ball.radius) || ball.radius < 0.006 || ball.radius > 0.025 || (ball.centre - lids).norm() > 0.03) return std::nullopt;
+  if (!(rms < 0.12 * ball.radius) || ball.radius < 0.006 || ball.radius > 0.025 ||
+      (ball.centre - lids).norm() > 0.03)
+    return std::nullopt;
   std::bitset<24> covered;
-  for (const Vec3& p : points) covered.set(direction_cell(p - ball.centre));
+  for (const Vec3& p : points)
+    covered.set(direction_cell(p - ball.centre));
   part.coverage = static_cast<double>(covered.count()) / 24.0;
   return part;
 }

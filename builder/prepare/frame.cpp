@@ -16,7 +16,8 @@ struct Unit {
   const char* name;
   double metres;
 };
-constexpr std::array<Unit, 5> known_units = {{{"m", 1.0}, {"dm", 0.1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}}};
+constexpr std::array<Unit, 5> known_units = {
+    {{"m", 1.0}, {"dm", 0.1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}}};
 
 double declared_metres(const std::string& units) {
   for (const Unit& unit : known_units)
@@ -24,7 +25,8 @@ double declared_metres(const std::string& units) {
   char* end = nullptr;
   const double value = std::strtod(units.c_str(), &end);
   if (*end == 0 && std::isfinite(value) && value > 0) return value;
-  throw Error("units '" + units + "' are unknown: give auto, m, cm, mm or the metres of one unit as a number");
+  throw Error("units '" + units +
+              "' are unknown: give auto, m, cm, mm or the metres of one unit as a number");
 }
 
 std::string unit_name(double metres) {
@@ -69,8 +71,10 @@ Mat3 nearest_axes(const Mat3& rotation) {
 bool are_collinear(const std::vector<Vec3>& points) {
   Eigen::Matrix3Xd centred(3, points.size());
   Vec3 mean = Vec3::Zero();
-  for (const Vec3& p : points) mean += p / static_cast<double>(points.size());
-  for (size_t i = 0; i < points.size(); ++i) centred.col(static_cast<Eigen::Index>(i)) = points[i] - mean;
+  for (const Vec3& p : points)
+    mean += p / static_cast<double>(points.size());
+  for (size_t i = 0; i < points.size(); ++i)
+    centred.col(static_cast<Eigen::Index>(i)) = points[i] - mean;
   const Eigen::JacobiSVD<Eigen::Matrix3Xd> svd(centred);
   return svd.singularValues()[1] < 1e-3 * svd.singularValues()[0];
 }
@@ -78,8 +82,9 @@ bool are_collinear(const std::vector<Vec3>& points) {
 double snapped_unit(double scale, std::vector<std::string>& warnings) {
   for (const Unit& unit : known_units)
     if (std::abs(std::log(scale / unit.metres)) < std::log(1.45)) return unit.metres;
-  warnings.push_back("the landmarks fit none of m, dm, cm, mm and inch; the head was scaled to adult size (one unit = " +
-                     std::to_string(scale) + " m); give --units to set it");
+  warnings.push_back(
+      "the landmarks fit none of m, dm, cm, mm and inch; the head was scaled to adult size (one unit = " +
+      std::to_string(scale) + " m); give --units to set it");
   return scale;
 }
 
@@ -100,8 +105,9 @@ Frame from_landmarks(const formats::Scene& scene, const formats::LandmarkFile& g
       generic.push_back(known->second);
     }
   if (here.size() < 3 || are_collinear(here))
-    throw Error("'" + scene.path.string() + "': " + std::to_string(here.size()) +
-                " landmarks with known names do not fix size and facing; give at least three that are not in a line");
+    throw Error(
+        "'" + scene.path.string() + "': " + std::to_string(here.size()) +
+        " landmarks with known names do not fix size and facing; give at least three that are not in a line");
   const Similarity fit = procrustes(here, generic);
   const double metres =
       options.units == "auto" ? snapped_unit(fit.scale, frame.warnings) : declared_metres(options.units);
@@ -153,9 +159,11 @@ TriangleMesh joined_meshes(const formats::Scene& scene, const std::string& only)
     if (!only.empty() && mesh.name != only) continue;
     const int base = all.vertex_count();
     all.vertices.insert(all.vertices.end(), mesh.positions.begin(), mesh.positions.end());
-    for (const Triangle& t : mesh.triangles) all.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
+    for (const Triangle& t : mesh.triangles)
+      all.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
   }
-  if (!only.empty() && all.empty()) throw Error("'" + scene.path.string() + "' has no mesh '" + only + "'; it has: " + known);
+  if (!only.empty() && all.empty())
+    throw Error("'" + scene.path.string() + "' has no mesh '" + only + "'; it has: " + known);
   return all;
 }
 
@@ -165,14 +173,16 @@ formats::LandmarkFile in_file_units(const formats::Scene& scene, const formats::
   double best = 1e300, ratio = 1.0;
   for (double candidate : {1.0, 1e-3, 1e3, 1e-2, 1e2, 1e-1, 1e1}) {
     double sum = 0.0;
-    for (const auto& [name, p] : given.points) sum += surface.nearest_place(candidate * p).distance;
+    for (const auto& [name, p] : given.points)
+      sum += surface.nearest_place(candidate * p).distance;
     if (sum < 0.5 * best) {
       best = sum;
       ratio = candidate;
     }
   }
   formats::LandmarkFile file = given;
-  for (auto& [name, p] : file.points) p *= ratio;
+  for (auto& [name, p] : file.points)
+    p *= ratio;
   return file;
 }
 
@@ -180,7 +190,8 @@ Frame find_frame(const formats::Scene& scene, const formats::LandmarkFile& given
                  const std::map<std::string, Vec3>& reference, const PrepareOptions& options) {
   if (options.up != "auto" && options.up != "y" && options.up != "z")
     throw Error("up axis '" + options.up + "' is unknown: give auto, y or z");
-  return given.points.empty() ? from_convention(scene, options) : from_landmarks(scene, given, reference, options);
+  return given.points.empty() ? from_convention(scene, options)
+                              : from_landmarks(scene, given, reference, options);
 }
 
 }  // namespace fascia::prepare

@@ -34,14 +34,16 @@ std::vector<Component> gather(const WeldedScene& welded) {
       component.points.push_back(welded.surface.vertices[static_cast<size_t>(v)]);
     }
   }
-  for (Component& component : all) component.box = bounds(component.points);
+  for (Component& component : all)
+    component.box = bounds(component.points);
   return all;
 }
 
 std::string names_of(const formats::Scene& scene, const Component& component) {
   std::string names;
   for (int m : component.meshes)
-    names += " " + scene.meshes[static_cast<size_t>(m)].name + " " + scene.meshes[static_cast<size_t>(m)].material;
+    names +=
+        " " + scene.meshes[static_cast<size_t>(m)].name + " " + scene.meshes[static_cast<size_t>(m)].material;
   return names;
 }
 
@@ -51,10 +53,12 @@ std::optional<Vec3> landmark(const std::map<std::string, Vec3>& landmarks, const
   return at->second;
 }
 
-int skin_component(const formats::Scene& scene, const WeldedScene& welded, const std::vector<Component>& components,
-                   const std::map<std::string, Vec3>& landmarks, const PrepareOptions& options) {
+int skin_component(const formats::Scene& scene, const WeldedScene& welded,
+                   const std::vector<Component>& components, const std::map<std::string, Vec3>& landmarks,
+                   const PrepareOptions& options) {
   std::vector<double> score(components.size());
-  for (size_t c = 0; c < components.size(); ++c) score[c] = 1e-6 * components[c].area;
+  for (size_t c = 0; c < components.size(); ++c)
+    score[c] = 1e-6 * components[c].area;
   if (!options.skin.empty()) {
     joined_meshes(scene, options.skin);  // says which names there are when this is none
     for (size_t c = 0; c < components.size(); ++c)
@@ -65,7 +69,8 @@ int skin_component(const formats::Scene& scene, const WeldedScene& welded, const
     const spatial::SurfaceQuery surface(welded.surface);
     for (const auto& [name, p] : landmarks) {
       const spatial::ClosestPoint hit = surface.nearest_place(p);
-      if (hit.found()) score[static_cast<size_t>(welded.component[static_cast<size_t>(hit.surface.triangle)])] += 1.0;
+      if (hit.found())
+        score[static_cast<size_t>(welded.component[static_cast<size_t>(hit.surface.triangle)])] += 1.0;
     }
   }
   return static_cast<int>(std::max_element(score.begin(), score.end()) - score.begin());
@@ -94,12 +99,13 @@ struct Placed {
 std::optional<Placed> in_mouth(const Component& component, const std::map<std::string, Vec3>& landmarks) {
   const auto left = landmark(landmarks, "cheilion_left"), right = landmark(landmarks, "cheilion_right");
   if (!left || !right) return std::nullopt;
-  const Vec3 mouth = 0.5 * (*left + *right), from = component.box.centre() - mouth, size = component.box.size();
+  const Vec3 mouth = 0.5 * (*left + *right), from = component.box.centre() - mouth,
+             size = component.box.size();
   const bool is_inside = std::abs(from[0]) < 0.04 && from[1] > -0.045 && from[1] < 0.035 && from[2] > -0.07 &&
                          component.box.upper[2] < mouth[2] + 0.02;
   if (!is_inside) return std::nullopt;
-  const bool is_tongue = std::abs(from[0]) < 0.004 && size[0] > 0.02 && size[0] < 0.06 && size[1] < 0.048 && size[2] > 0.03 &&
-                         from[1] < 0.003 && from[2] < -0.02 && !is_arch(component);
+  const bool is_tongue = std::abs(from[0]) < 0.004 && size[0] > 0.02 && size[0] < 0.06 && size[1] < 0.048 &&
+                         size[2] > 0.03 && from[1] < 0.003 && from[2] < -0.02 && !is_arch(component);
   if (is_tongue) return Placed{Zone::mouth, Part::tongue};
   if (size[1] > 0.035 || size.maxCoeff() > 0.07) return Placed{Zone::mouth, Part::mouth_interior};
   return Placed{Zone::mouth, from[1] > -0.003 ? Part::teeth_upper : Part::teeth_lower};
@@ -113,30 +119,38 @@ std::optional<Placed> at_lids(const Component& component, const std::map<std::st
     const Vec3 from = component.box.centre() - 0.5 * (*outer + *inner), size = component.box.size();
     const double width = (*outer - *inner).norm();
     // A brow lies above the lids and is longer than high; lashes stand out in front of the lids.
-    const bool is_brow = from[1] > 0.35 * width && from[1] < 1.3 * width && std::abs(from[0]) < 0.6 * width && size[0] > 0.8 * width &&
-                         size[0] < 2.2 * width && size[1] < 0.8 * width && size[2] < 1.5 * width;
+    const bool is_brow = from[1] > 0.35 * width && from[1] < 1.3 * width && std::abs(from[0]) < 0.6 * width &&
+                         size[0] > 0.8 * width && size[0] < 2.2 * width && size[1] < 0.8 * width &&
+                         size[2] < 1.5 * width;
     if (is_brow) return Placed{Zone::lids, Part::brows};
-    if (from.norm() < 0.022 && size.maxCoeff() < 0.05) return Placed{Zone::lids, from[2] > 0.2 * width ? Part::lashes : Part::eye_surround};
+    if (from.norm() < 0.022 && size.maxCoeff() < 0.05)
+      return Placed{Zone::lids, from[2] > 0.2 * width ? Part::lashes : Part::eye_surround};
   }
   return std::nullopt;
 }
 
-/// Hair goes over the crown and is about as wide as the head; glasses sit before the eyes and reach from ear to ear; clothes begin
-/// below the chin.
+/// Hair goes over the crown and is about as wide as the head; glasses sit before the eyes and reach from ear
+/// to ear; clothes begin below the chin.
 std::optional<Placed> about_head(const Component& component, const std::map<std::string, Vec3>& landmarks) {
-  const auto glabella = landmark(landmarks, "glabella"), menton = landmark(landmarks, "menton"), nasion = landmark(landmarks, "nasion");
+  const auto glabella = landmark(landmarks, "glabella"), menton = landmark(landmarks, "menton"),
+             nasion = landmark(landmarks, "nasion");
   const auto ear_left = landmark(landmarks, "tragion_left"), ear_right = landmark(landmarks, "tragion_right");
   if (!glabella || !menton || !nasion || !ear_left || !ear_right) return std::nullopt;
   const double height = (*glabella - *menton).norm(), width = (*ear_left - *ear_right).norm();
   const Bounds& box = component.box;
   const Vec3 size = box.size();
-  const bool is_over_crown = box.upper[1] > (*glabella)[1] + 0.45 * height && box.upper[1] < (*glabella)[1] + 1.6 * height;
-  if (is_over_crown && size[0] > 0.7 * width && size[0] < 3.0 * width) return Placed{Zone::about_head, Part::hair};
-  const bool is_at_eyes = box.centre()[1] < (*glabella)[1] + 0.1 * height && box.centre()[1] > (*nasion)[1] - 0.35 * height;
+  const bool is_over_crown =
+      box.upper[1] > (*glabella)[1] + 0.45 * height && box.upper[1] < (*glabella)[1] + 1.6 * height;
+  if (is_over_crown && size[0] > 0.7 * width && size[0] < 3.0 * width)
+    return Placed{Zone::about_head, Part::hair};
+  const bool is_at_eyes =
+      box.centre()[1] < (*glabella)[1] + 0.1 * height && box.centre()[1] > (*nasion)[1] - 0.35 * height;
   const bool is_before_eyes = box.upper[2] > (*nasion)[2] - 0.005 && box.upper[2] < (*nasion)[2] + 0.06;
-  if (is_at_eyes && is_before_eyes && size[0] > 0.7 * width && size[0] < 1.5 * width && size[1] < 0.7 * height)
+  if (is_at_eyes && is_before_eyes && size[0] > 0.7 * width && size[0] < 1.5 * width &&
+      size[1] < 0.7 * height)
     return Placed{Zone::about_head, Part::glasses};
-  if (box.upper[1] < (*menton)[1] + 0.1 * height && size.maxCoeff() > 0.5 * width) return Placed{Zone::about_head, Part::clothes};
+  if (box.upper[1] < (*menton)[1] + 0.1 * height && size.maxCoeff() > 0.5 * width)
+    return Placed{Zone::about_head, Part::clothes};
   return Placed{Zone::about_head, Part::other};
 }
 
@@ -148,9 +162,16 @@ Placed place_of(const Component& component, const std::map<std::string, Vec3>& l
 
 Zone zone_of(Part part) {
   switch (part) {
-    case Part::teeth_upper: case Part::teeth_lower: case Part::gums_upper: case Part::gums_lower: case Part::mouth_interior: case Part::tongue:
+    case Part::teeth_upper:
+    case Part::teeth_lower:
+    case Part::gums_upper:
+    case Part::gums_lower:
+    case Part::mouth_interior:
+    case Part::tongue:
       return Zone::mouth;
-    case Part::lashes: case Part::brows: case Part::eye_surround:
+    case Part::lashes:
+    case Part::brows:
+    case Part::eye_surround:
       return Zone::lids;
     default:
       return Zone::about_head;
@@ -158,25 +179,30 @@ Zone zone_of(Part part) {
 }
 
 /// Which jaw teeth or gums belong to: by their name, else by lying below the mouth's line.
-Part of_jaw(Part upper, const NamedPart& named, const Component& component, const std::map<std::string, Vec3>& landmarks) {
+Part of_jaw(Part upper, const NamedPart& named, const Component& component,
+            const std::map<std::string, Vec3>& landmarks) {
   const Part lower = upper == Part::teeth_upper ? Part::teeth_lower : Part::gums_lower;
   if (named.jaw != NamedPart::Jaw::unsaid) return named.jaw == NamedPart::Jaw::lower ? lower : upper;
   const auto mouth = landmark(landmarks, "stomion");
   if (!mouth) return upper;
-  if (upper == Part::gums_upper && component.box.upper[1] > (*mouth)[1] + 0.004 && component.box.lower[1] < (*mouth)[1] - 0.012)
+  if (upper == Part::gums_upper && component.box.upper[1] > (*mouth)[1] + 0.004 &&
+      component.box.lower[1] < (*mouth)[1] - 0.012)
     return Part::mouth_interior;  // of both jaws in one
   return component.box.centre()[1] < (*mouth)[1] - 0.003 ? lower : upper;
 }
 
 /// Place says what a part can be; among that the name decides, and where place says nothing, the name alone.
-Part part_of(const Component& component, const NamedPart& named, const std::map<std::string, Vec3>& landmarks, bool& is_by_place) {
+Part part_of(const Component& component, const NamedPart& named, const std::map<std::string, Vec3>& landmarks,
+             bool& is_by_place) {
   const Placed placed = place_of(component, landmarks);
-  // Brows and lashes of both eyes are often one mesh, which lies between the eyes; cards of hair lie anywhere about the head.
+  // Brows and lashes of both eyes are often one mesh, which lies between the eyes; cards of hair lie anywhere
+  // about the head.
   const bool may_be = named.part && (placed.zone == Zone::unknown || zone_of(*named.part) == placed.zone ||
                                      (zone_of(*named.part) != Zone::mouth && placed.zone != Zone::mouth));
   is_by_place = !may_be;
   if (!may_be) return placed.likely;
-  if (*named.part == Part::teeth_upper || *named.part == Part::gums_upper) return of_jaw(*named.part, named, component, landmarks);
+  if (*named.part == Part::teeth_upper || *named.part == Part::gums_upper)
+    return of_jaw(*named.part, named, component, landmarks);
   return *named.part;
 }
 
@@ -184,7 +210,8 @@ Part part_of(const Component& component, const NamedPart& named, const std::map<
 double middle_of_face(const std::map<std::string, Vec3>& landmarks) {
   double sum = 0.0, count = 0.0;
   for (const char* pair : {"exocanthion_", "endocanthion_", "cheilion_"})
-    if (const auto left = landmark(landmarks, (pair + std::string("left")).c_str()), right = landmark(landmarks, (pair + std::string("right")).c_str());
+    if (const auto left = landmark(landmarks, (pair + std::string("left")).c_str()),
+        right = landmark(landmarks, (pair + std::string("right")).c_str());
         left && right) {
       sum += (*left)[0] + (*right)[0];
       count += 2.0;
@@ -193,7 +220,8 @@ double middle_of_face(const std::map<std::string, Vec3>& landmarks) {
 }
 
 /// Two rows of teeth that place alone took for upper ones: the lower of them is the lower row.
-void tell_rows_apart(const std::vector<Component>& components, const std::vector<bool>& is_by_place, std::vector<Part>& parts) {
+void tell_rows_apart(const std::vector<Component>& components, const std::vector<bool>& is_by_place,
+                     std::vector<Part>& parts) {
   double lowest = 1e300, highest = -1e300;
   bool has_both = false;
   for (size_t c = 0; c < parts.size(); ++c) {
@@ -204,15 +232,18 @@ void tell_rows_apart(const std::vector<Component>& components, const std::vector
   }
   if (has_both || highest - lowest < 0.004) return;
   for (size_t c = 0; c < parts.size(); ++c)
-    if (is_by_place[c] && parts[c] == Part::teeth_upper && components[c].box.centre()[1] < 0.5 * (lowest + highest)) parts[c] = Part::teeth_lower;
+    if (is_by_place[c] && parts[c] == Part::teeth_upper &&
+        components[c].box.centre()[1] < 0.5 * (lowest + highest))
+      parts[c] = Part::teeth_lower;
 }
 
 }  // namespace
 
 const char* part_name(Part part) {
-  static constexpr const char* names[] = {"skin",        "eye_left",       "eye_right", "eye_surround",
-                                          "teeth_upper", "teeth_lower",    "gums_upper", "gums_lower", "mouth_interior", "tongue",
-                                          "lashes",      "brows",          "hair",      "glasses", "clothes", "other"};
+  static constexpr const char* names[] = {"skin",           "eye_left",    "eye_right",  "eye_surround",
+                                          "teeth_upper",    "teeth_lower", "gums_upper", "gums_lower",
+                                          "mouth_interior", "tongue",      "lashes",     "brows",
+                                          "hair",           "glasses",     "clothes",    "other"};
   return names[static_cast<int>(part)];
 }
 
@@ -228,18 +259,23 @@ std::optional<Vec3> middle_of_lids(const std::map<std::string, Vec3>& landmarks,
 /// The triangles of one component, with its own vertices.
 TriangleMesh component_mesh(const WeldedScene& welded, size_t component) {
   std::vector<bool> is_kept(welded.surface.triangles.size());
-  for (size_t t = 0; t < is_kept.size(); ++t) is_kept[t] = welded.component[t] == static_cast<int>(component);
+  for (size_t t = 0; t < is_kept.size(); ++t)
+    is_kept[t] = welded.component[t] == static_cast<int>(component);
   return submesh(welded.surface, is_kept, nullptr);
 }
 
-/// Marks the eyeball of one side and shells over it. An eyeball is what is round behind the lids and covers the most directions.
-std::optional<Eyeball> find_eye(const WeldedScene& welded, const std::vector<Component>& components, const std::vector<NamedPart>& names,
-                                const std::map<std::string, Vec3>& landmarks, bool is_left, int skin, std::vector<std::optional<Part>>& known) {
+/// Marks the eyeball of one side and shells over it. An eyeball is what is round behind the lids and covers
+/// the most directions.
+std::optional<Eyeball> find_eye(const WeldedScene& welded, const std::vector<Component>& components,
+                                const std::vector<NamedPart>& names,
+                                const std::map<std::string, Vec3>& landmarks, bool is_left, int skin,
+                                std::vector<std::optional<Part>>& known) {
   const auto lids = middle_of_lids(landmarks, is_left);
   std::vector<std::pair<size_t, RoundPart>> round;
   double most = 0.0;
   for (size_t c = 0; c < components.size(); ++c) {
-    if (static_cast<int>(c) == skin || (components[c].box.centre()[0] > middle_of_face(landmarks)) != is_left) continue;
+    if (static_cast<int>(c) == skin || (components[c].box.centre()[0] > middle_of_face(landmarks)) != is_left)
+      continue;
     if (!lids && !names[c].says_eye) continue;
     const Vec3 size = components[c].box.size();
     if (!(size.minCoeff() > 0.25 * size.maxCoeff())) continue;
@@ -252,7 +288,9 @@ std::optional<Eyeball> find_eye(const WeldedScene& welded, const std::vector<Com
   size_t of = 0;
   for (const auto& [c, part] : round) {
     const bool is_shell = part.coverage < 0.75 * most || (part.coverage < 0.6 && names[c].part);
-    known[c] = is_shell ? names[c].part.value_or(Part::eye_surround) : is_left ? Part::eye_left : Part::eye_right;
+    known[c] = is_shell  ? names[c].part.value_or(Part::eye_surround)
+               : is_left ? Part::eye_left
+                         : Part::eye_right;
     if (is_shell || (eye && part.ball.radius <= eye->radius)) continue;
     eye = part.ball;
     of = c;
@@ -272,7 +310,8 @@ Parts recognise_parts(const formats::Scene& scene, const WeldedScene& welded,
   parts.component_parts.assign(components.size(), Part::other);
   const int skin = skin_component(scene, welded, components, landmarks, options);
   std::vector<NamedPart> names;
-  for (const Component& component : components) names.push_back(part_by_name(names_of(scene, component)));
+  for (const Component& component : components)
+    names.push_back(part_by_name(names_of(scene, component)));
   std::vector<std::optional<Part>> known(components.size());
   known[static_cast<size_t>(skin)] = Part::skin;
   parts.eye_left = find_eye(welded, components, names, landmarks, true, skin, known);

@@ -17,8 +17,8 @@ struct WeldedScene {
 /// objects of an OBJ: texture seams close, lips and lids that merely touch stay two.
 WeldedScene weld_scene(const formats::Scene& scene, const Mat4& input_to_metres);
 
-/// What every connected component of `welded` is, and the eyeballs among them: by shape and place first, by name where
-/// those leave a choice.
+/// What every connected component of `welded` is, and the eyeballs among them: by shape and place first, by
+/// name where those leave a choice.
 ///
 /// `landmarks` in the rig frame may be empty: the largest component is then the skin and only names tell
 /// the rest apart. Throws fascia::Error when `options.skin` names no mesh.

@@ -12,13 +12,15 @@ namespace {
 
 /// Landmarks drawn by hand lie a little off the surface; far off, they belong to another mesh.
 std::map<std::string, Vec3> onto_skin(const formats::Scene& scene, const spatial::SurfaceQuery& surface,
-                                      const std::map<std::string, Vec3>& landmarks, std::vector<std::string>& warnings) {
+                                      const std::map<std::string, Vec3>& landmarks,
+                                      std::vector<std::string>& warnings) {
   std::map<std::string, Vec3> projected;
   for (const auto& [name, p] : landmarks) {
     const spatial::ClosestPoint hit = surface.nearest_place(p);
     const double off_mm = 1e3 * hit.distance;
-    const std::string where = "landmark '" + name + "' lies " + std::to_string(static_cast<int>(off_mm + 0.5)) +
-                              " mm from the skin of '" + scene.path.string() + "'";
+    const std::string where = "landmark '" + name + "' lies " +
+                              std::to_string(static_cast<int>(off_mm + 0.5)) + " mm from the skin of '" +
+                              scene.path.string() + "'";
     if (off_mm > 20.0)
       throw Error(where + ": place it on the skin, or check that landmarks and head are in the same axes");
     if (off_mm > 8.0) warnings.push_back(where + "; its nearest skin point is used");
@@ -37,7 +39,8 @@ PreparedHead prepare(const formats::Scene& scene, const formats::LandmarkFile& g
   head.units = frame.units;
   head.warnings = std::move(frame.warnings);
   std::map<std::string, Vec3> landmarks;
-  for (const auto& [name, p] : frame.landmarks) landmarks[name] = transform_point(head.input_to_metres, p);
+  for (const auto& [name, p] : frame.landmarks)
+    landmarks[name] = transform_point(head.input_to_metres, p);
 
   const WeldedScene welded = weld_scene(scene, head.input_to_metres);
   const Parts parts = recognise_parts(scene, welded, landmarks, options);
@@ -49,7 +52,8 @@ PreparedHead prepare(const formats::Scene& scene, const formats::LandmarkFile& g
   for (size_t t = 0; t < welded.surface.triangles.size(); ++t) {
     const Part part = parts.component_parts[static_cast<size_t>(welded.component[t])];
     is_skin[t] = part == Part::skin;
-    for (int v : welded.surface.triangles[t]) vertex_part[static_cast<size_t>(v)] = part;
+    for (int v : welded.surface.triangles[t])
+      vertex_part[static_cast<size_t>(v)] = part;
   }
   std::vector<int> skin_vertex;
   head.skin = submesh(welded.surface, is_skin, &skin_vertex);

@@ -49,14 +49,15 @@ struct PreparedMesh {
 struct Eyeball {
   Vec3 centre = Vec3::Zero();
   double radius = 0.0;  ///< metres
-  Vec3 gaze = Vec3::UnitZ();  ///< unit vector: through cornea or pole of the mesh, straight ahead where neither shows
+  Vec3 gaze =
+      Vec3::UnitZ();  ///< unit vector: through cornea or pole of the mesh, straight ahead where neither shows
 };
 
 struct PreparedHead {
-  std::vector<PreparedMesh> meshes;       ///< one for each mesh of the scene, same order
-  TriangleMesh skin;                      ///< welded, metres, rig frame
+  std::vector<PreparedMesh> meshes;              ///< one for each mesh of the scene, same order
+  TriangleMesh skin;                             ///< welded, metres, rig frame
   std::optional<spatial::SurfaceQuery> surface;  ///< of `skin`; there once prepared, shared by its copies
-  std::map<std::string, Vec3> landmarks;  ///< the given ones, on the skin, metres, rig frame
+  std::map<std::string, Vec3> landmarks;         ///< the given ones, on the skin, metres, rig frame
   std::optional<Eyeball> eye_left, eye_right;
   Mat4 input_to_metres = Mat4::Identity();  ///< from file coordinates to the rig frame
   std::string units;                        ///< "m", "dm", "cm", "mm", "in" or metres a unit
@@ -72,20 +73,20 @@ struct PrepareOptions {
 /// Units of a landmark file that are known to be the head file's own.
 inline constexpr const char* head_units = "head";
 
-/// The landmarks' coordinates in the head file's units: of the decimal ratios the one that puts them on the surface, for a
-/// landmark file may be in millimetres beside a head in metres.
+/// The landmarks' coordinates in the head file's units: of the decimal ratios the one that puts them on the
+/// surface, for a landmark file may be in millimetres beside a head in metres.
 formats::LandmarkFile in_file_units(const formats::Scene& scene, const formats::LandmarkFile& given);
 
-/// All meshes of `scene` as one, in the file's axes and units; of the mesh named `only` alone when that is not empty.
-/// Throws fascia::Error, naming the meshes there are, when `only` names none.
+/// All meshes of `scene` as one, in the file's axes and units; of the mesh named `only` alone when that is
+/// not empty. Throws fascia::Error, naming the meshes there are, when `only` names none.
 TriangleMesh joined_meshes(const formats::Scene& scene, const std::string& only = "");
 
 /// Finds units, axes and parts of `scene`, and welds its skin.
 ///
-/// `given` are the landmarks by hand, `reference` the generic head's skin landmarks by the same names (metres,
-/// rig frame): size, up and facing follow from comparing the two, so at least three common ones that are not
-/// in line are needed when `given` is not empty. Without landmarks glTF's own convention (metres, +Y up,
-/// +Z front) holds, other files are judged by their extent.
+/// `given` are the landmarks by hand, `reference` the generic head's skin landmarks by the same names
+/// (metres, rig frame): size, up and facing follow from comparing the two, so at least three common ones that
+/// are not in line are needed when `given` is not empty. Without landmarks glTF's own convention (metres, +Y
+/// up, +Z front) holds, other files are judged by their extent.
 ///
 /// Vertices are welded only where the mesh has open edges, so lips and lids that touch stay apart.
 /// Throws fascia::Error naming file and landmark when a landmark lies off the surface, units or axes

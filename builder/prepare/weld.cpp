@@ -8,7 +8,9 @@ namespace fascia::prepare {
 namespace {
 
 /// Meshes that may be welded to each other: the primitives of one glTF mesh, all objects of other files.
-int weld_group(const formats::SceneMesh& mesh) { return mesh.mesh >= 0 ? mesh.mesh * 4096 + mesh.node : -1; }
+int weld_group(const formats::SceneMesh& mesh) {
+  return mesh.mesh >= 0 ? mesh.mesh * 4096 + mesh.node : -1;
+}
 
 std::vector<bool> on_open_edge(const TriangleMesh& mesh) {
   const Connectivity links = connectivity(mesh);
@@ -23,8 +25,9 @@ std::vector<bool> on_open_edge(const TriangleMesh& mesh) {
 }
 
 /// Map from the vertices of `raw` to merged ones, of vertices `[begin, end)` that lie on open edges.
-void merge_open_vertices(const TriangleMesh& raw, const std::vector<bool>& open, const std::vector<int>& members,
-                         double tolerance, std::vector<int>& representative) {
+void merge_open_vertices(const TriangleMesh& raw, const std::vector<bool>& open,
+                         const std::vector<int>& members, double tolerance,
+                         std::vector<int>& representative) {
   TriangleMesh rim;
   std::vector<int> source;
   for (int v : members)
@@ -67,7 +70,8 @@ WeldedScene weld_scene(const formats::Scene& scene, const Mat4& input_to_metres)
   std::vector<int> representative(raw.vertices.size());
   std::iota(representative.begin(), representative.end(), 0);
   const double tolerance = 1e-6;  // metres: seams repeat their positions to single precision
-  for (const auto& [group, members] : groups) merge_open_vertices(raw, open, members, tolerance, representative);
+  for (const auto& [group, members] : groups)
+    merge_open_vertices(raw, open, members, tolerance, representative);
 
   std::vector<int> compact(raw.vertices.size(), -1);
   for (size_t v = 0; v < raw.vertices.size(); ++v) {
@@ -75,15 +79,19 @@ WeldedScene weld_scene(const formats::Scene& scene, const Mat4& input_to_metres)
     compact[v] = welded.surface.vertex_count();
     welded.surface.vertices.push_back(raw.vertices[v]);
   }
-  const auto target = [&](int v) { return compact[static_cast<size_t>(representative[static_cast<size_t>(v)])]; };
+  const auto target = [&](int v) {
+    return compact[static_cast<size_t>(representative[static_cast<size_t>(v)])];
+  };
   for (size_t t = 0; t < raw.triangles.size(); ++t) {
-    const Triangle corners = {target(raw.triangles[t][0]), target(raw.triangles[t][1]), target(raw.triangles[t][2])};
+    const Triangle corners = {target(raw.triangles[t][0]), target(raw.triangles[t][1]),
+                              target(raw.triangles[t][2])};
     if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) continue;
     welded.surface.triangles.push_back(corners);
     welded.triangle_mesh.push_back(triangle_mesh[t]);
   }
   for (std::vector<int>& map : raw_of) {
-    for (int& v : map) v = target(v);
+    for (int& v : map)
+      v = target(v);
     welded.vertex_map.push_back(std::move(map));
   }
   welded.component = components(welded.surface, &welded.component_count);

@@ -25,7 +25,8 @@ class Stages {
     if (options_.progress) options_.progress(name);
     const auto started = std::chrono::steady_clock::now();
     auto result = stage();
-    report_.stages.push_back({name, std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count()});
+    report_.stages.push_back(
+        {name, std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count()});
     return result;
   }
 
@@ -36,12 +37,13 @@ class Stages {
 
 std::map<std::string, Vec3> places(const std::map<std::string, landmarks::SkinLandmark>& all) {
   std::map<std::string, Vec3> points;
-  for (const auto& [name, landmark] : all) points[name] = landmark.position;
+  for (const auto& [name, landmark] : all)
+    points[name] = landmark.position;
   return points;
 }
 
-void report_landmarks(const std::map<std::string, landmarks::SkinLandmark>& all, const anatomy::GenericAnatomy& anatomy,
-                      BuildReport& report) {
+void report_landmarks(const std::map<std::string, landmarks::SkinLandmark>& all,
+                      const anatomy::GenericAnatomy& anatomy, BuildReport& report) {
   for (const auto& [name, landmark] : all) {
     ++(landmark.is_given ? report.landmarks_given : report.landmarks_found);
     const anatomy::Landmark* known = anatomy.landmark(name);
@@ -54,7 +56,9 @@ void report_landmarks(const std::map<std::string, landmarks::SkinLandmark>& all,
     if (known && known->required && landmark.confidence < 0.5) report.low_confidence.push_back(name);
   }
   for (const std::string& name : report.low_confidence)
-    report.warnings.push_back("landmark '" + name + "' was placed with low confidence; look at it with 'fascia export --part landmarks' and give it in --landmarks");
+    report.warnings.push_back("landmark '" + name +
+                              "' was placed with low confidence; look at it with 'fascia export --part "
+                              "landmarks' and give it in --landmarks");
 }
 
 void report_skull(const skull::FitResult& skull, BuildReport& report) {
@@ -67,7 +71,8 @@ void report_skull(const skull::FitResult& skull, BuildReport& report) {
   report.curve_points_used = skull.curve_points_used;
   report.skull_uncovered_share = skull.uncovered_share;
   std::map<std::string, const skull::FittedLandmark*> fitted;
-  for (const skull::FittedLandmark& landmark : skull.landmarks) fitted[landmark.name] = &landmark;
+  for (const skull::FittedLandmark& landmark : skull.landmarks)
+    fitted[landmark.name] = &landmark;
   for (BuildReport::LandmarkFigures& figures : report.landmarks) {
     const auto at = fitted.find(figures.name);
     figures.has_bone = at != fitted.end();
@@ -80,15 +85,17 @@ void report_skull(const skull::FitResult& skull, BuildReport& report) {
 }
 
 /// The given landmarks with the user's own in their place, all in the head file's units.
-formats::LandmarkFile with_edited_landmarks(const formats::Scene& scene, const formats::LandmarkFile& given, const Edits& edits,
-                                            const anatomy::GenericAnatomy& anatomy) {
+formats::LandmarkFile with_edited_landmarks(const formats::Scene& scene, const formats::LandmarkFile& given,
+                                            const Edits& edits, const anatomy::GenericAnatomy& anatomy) {
   if (edits.landmarks.empty()) return given;
   for (const auto& [name, point] : edits.landmarks)
     if (!anatomy.landmark(name))
-      throw Error("'" + edits.file + "': there is no landmark '" + name + "'; 'fascia export --part landmarks' lists them");
+      throw Error("'" + edits.file + "': there is no landmark '" + name +
+                  "'; 'fascia export --part landmarks' lists them");
   formats::LandmarkFile all = prepare::in_file_units(scene, given);
   const formats::LandmarkFile own = prepare::in_file_units(scene, {edits.units, edits.landmarks});
-  for (const auto& [name, point] : own.points) all.points[name] = point;
+  for (const auto& [name, point] : own.points)
+    all.points[name] = point;
   all.units = prepare::head_units;
   return all;
 }
@@ -96,8 +103,10 @@ formats::LandmarkFile with_edited_landmarks(const formats::Scene& scene, const f
 void report_parts(const prepare::PreparedHead& head, BuildReport& report) {
   for (const prepare::PreparedMesh& mesh : head.meshes) {
     std::map<prepare::Part, int> counts;
-    for (prepare::Part part : mesh.parts) ++counts[part];
-    for (const auto& [part, vertices] : counts) report.parts.push_back({mesh.name, prepare::part_name(part), vertices});
+    for (prepare::Part part : mesh.parts)
+      ++counts[part];
+    for (const auto& [part, vertices] : counts)
+      report.parts.push_back({mesh.name, prepare::part_name(part), vertices});
   }
   report.eye_left = head.eye_left;
   report.eye_right = head.eye_right;
@@ -113,11 +122,13 @@ BuildResult build_rig(const formats::Scene& scene, const formats::LandmarkFile& 
   BuildResult result;
   BuildReport& report = result.report;
   Stages stages(options, report);
-  const FoundLandmarks found = stages.run("landmarks", [&] { return find_landmarks(scene, by_hand, anatomy, options.prepare); });
+  const FoundLandmarks found =
+      stages.run("landmarks", [&] { return find_landmarks(scene, by_hand, anatomy, options.prepare); });
   const prepare::PreparedHead& head = found.head;
   const SkinLandmarks& all_landmarks = found.landmarks;
   // One stage of three parts: the head's place tells units and parts, which tell where the landmarks are.
-  report.stages = {{"head", found.seconds[0]}, {"prepare", found.seconds[1]}, {"landmarks", found.seconds[2]}};
+  report.stages = {
+      {"head", found.seconds[0]}, {"prepare", found.seconds[1]}, {"landmarks", found.seconds[2]}};
   report.units = head.units;
   report.input_to_metres = head.input_to_metres;
   report.warnings = head.warnings;
@@ -126,7 +137,8 @@ BuildResult build_rig(const formats::Scene& scene, const formats::LandmarkFile& 
   report_landmarks(all_landmarks, anatomy, report);
   const std::map<std::string, Vec3> points = places(all_landmarks);
 
-  const skull::FitResult skull = stages.run("skull", [&] { return fit_skull(anatomy, head, all_landmarks, options.tissue_scale); });
+  const skull::FitResult skull =
+      stages.run("skull", [&] { return fit_skull(anatomy, head, all_landmarks, options.tissue_scale); });
   report_skull(skull, report);
   report.warnings.insert(report.warnings.end(), skull.warnings.begin(), skull.warnings.end());
 
@@ -143,12 +155,14 @@ BuildResult build_rig(const formats::Scene& scene, const formats::LandmarkFile& 
   report.smas_outside_layers = smas.outside_layers;
   report.smas_min_angle_deg = smas.quality.min_angle;
 
-  result.rig.muscles = stages.run("muscles", [&] { return build_muscles(anatomy, head, skull, smas, points, options.edits, report); });
+  result.rig.muscles = stages.run(
+      "muscles", [&] { return build_muscles(anatomy, head, skull, smas, points, options.edits, report); });
   result.rig.skull = rig_skull(skull, head, all_landmarks);
   result.rig.smas = rig_smas(smas, skull, anatomy);
   result.rig.actuation = rig_actuation(anatomy, result.rig.muscles);
   result.rig.input_to_metres = head.input_to_metres.cast<float>();
-  result.rig.tissue = stages.run("tissue", [&] { return build_tissue(scene, head, skull, smas, points, result.rig, options, report); });
+  result.rig.tissue = stages.run(
+      "tissue", [&] { return build_tissue(scene, head, skull, smas, points, result.rig, options, report); });
   return result;
 }
 

@@ -39,7 +39,7 @@ struct BuildReport {
     std::string mesh, part;  ///< name in the file; what it, or some connected piece of it, was taken for
     int vertices = 0;
   };
-  std::vector<PartFigures> parts;  ///< in the file's order of meshes
+  std::vector<PartFigures> parts;                       ///< in the file's order of meshes
   std::optional<prepare::Eyeball> eye_left, eye_right;  ///< metres, rig frame
   std::vector<StageTime> stages;
   int landmarks_given = 0, landmarks_found = 0;
@@ -49,15 +49,17 @@ struct BuildReport {
     bool given = false, required = false;
     double confidence = 0.0;
     bool has_bone = false;  ///< else the figures below are 0
-    double depth_mm = 0.0, table_mm = 0.0, deviation_mm = 0.0;  ///< fitted; by the table, scaled; between people
-    double residual_mm = 0.0;  ///< from the fitted bone to where the table puts it
+    double depth_mm = 0.0, table_mm = 0.0,
+           deviation_mm = 0.0;  ///< fitted; by the table, scaled; between people
+    double residual_mm = 0.0;   ///< from the fitted bone to where the table puts it
   };
   std::vector<LandmarkFigures> landmarks;  ///< by name
   double landmark_rms_mm = 0.0, landmark_max_mm = 0.0;
   int bone_outside_skin = 0, bone_corrected = 0;
   double bone_corrected_max_mm = 0.0;
   int curve_points = 0, curve_points_used = 0;
-  double skull_uncovered_share = 0.0;  ///< of the skull, left out because the head does not have the skin over it
+  double skull_uncovered_share =
+      0.0;  ///< of the skull, left out because the head does not have the skin over it
   int smas_vertices = 0, smas_triangles = 0, smas_outside_layers = 0;
   double smas_min_angle_deg = 0.0;
   struct MuscleFigures {
@@ -65,7 +67,8 @@ struct BuildReport {
     int fibres = 0, crossings = 0;
     double length_mm = 0.0, shortest_mm = 0.0, longest_mm = 0.0;  ///< mean of the fibres, and the extremes
     double area_mm2 = 0.0, thickness_mm = 0.0, volume_mm3 = 0.0, strength_n = 0.0;
-    double origin_distance_mm = 0.0, insertion_distance_mm = 0.0;  ///< farthest fibre end from what it is fastened to
+    double origin_distance_mm = 0.0,
+           insertion_distance_mm = 0.0;  ///< farthest fibre end from what it is fastened to
   };
   std::vector<MuscleFigures> muscles;
   struct ModiolusFigures {
@@ -96,8 +99,9 @@ struct BuildResult {
 
 /// Builds the rig of `scene`.
 ///
-/// `landmarks` are the given ones (see formats/landmark_file.h), none as a rule: the rest is found, or, where all
-/// that `anatomy` marks as required are given, carried over through them. Throws fascia::Error naming the stage's part at fault and the remedy.
+/// `landmarks` are the given ones (see formats/landmark_file.h), none as a rule: the rest is found, or, where
+/// all that `anatomy` marks as required are given, carried over through them. Throws fascia::Error naming the
+/// stage's part at fault and the remedy.
 BuildResult build_rig(const formats::Scene& scene, const formats::LandmarkFile& landmarks,
                       const anatomy::GenericAnatomy& anatomy, const BuildOptions& options = {});
 

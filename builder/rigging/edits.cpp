@@ -9,7 +9,9 @@ namespace fascia::rigging {
 
 namespace {
 
-std::string in_file(const Edits& edits) { return edits.file.empty() ? "" : "'" + edits.file + "': "; }
+std::string in_file(const Edits& edits) {
+  return edits.file.empty() ? "" : "'" + edits.file + "': ";
+}
 
 /// How many letters have to be changed, added or taken away to make `b` of `a`.
 size_t letters_apart(const std::string& a, const std::string& b) {
@@ -36,7 +38,8 @@ std::vector<const anatomy::Muscle*> named(const anatomy::GenericAnatomy& anatomy
   return found;
 }
 
-[[noreturn]] void refuse_unknown(const Edits& edits, const anatomy::GenericAnatomy& anatomy, const std::string& name) {
+[[noreturn]] void refuse_unknown(const Edits& edits, const anatomy::GenericAnatomy& anatomy,
+                                 const std::string& name) {
   std::string nearest;
   size_t least = name.size() / 2 + 1;
   for (const anatomy::Muscle& muscle : anatomy.muscles)
@@ -45,11 +48,13 @@ std::vector<const anatomy::Muscle*> named(const anatomy::GenericAnatomy& anatomy
         least = apart;
         nearest = known;
       }
-  throw Error(in_file(edits) + "there is no muscle '" + name + "'; " +
-              (nearest.empty() ? "'fascia info RIG.glb --channels' lists them" : "did you mean '" + nearest + "'?"));
+  throw Error(
+      in_file(edits) + "there is no muscle '" + name + "'; " +
+      (nearest.empty() ? "'fascia info RIG.glb --channels' lists them" : "did you mean '" + nearest + "'?"));
 }
 
-const anatomy::Variant* variant_of(const Edits& edits, const anatomy::Muscle& muscle, const std::string& name) {
+const anatomy::Variant* variant_of(const Edits& edits, const anatomy::Muscle& muscle,
+                                   const std::string& name) {
   std::string known = "absent, present";
   for (const anatomy::Variant& variant : muscle.variants) {
     if (variant.name == name) return &variant;
@@ -62,17 +67,21 @@ const anatomy::Variant* variant_of(const Edits& edits, const anatomy::Muscle& mu
 /// The length of one unit of the edits' points in units of the head file.
 double unit_ratio(const Edits& edits, const Mat4& input_to_metres) {
   if (edits.units.empty()) return 1.0;
-  const double metres = edits.units == "m" ? 1.0 : edits.units == "cm" ? 0.01 : edits.units == "mm" ? 0.001 : std::stod(edits.units);
+  const double metres = edits.units == "m"    ? 1.0
+                        : edits.units == "cm" ? 0.01
+                        : edits.units == "mm" ? 0.001
+                                              : std::stod(edits.units);
   return metres / input_to_metres.topLeftCorner<3, 1>().norm();
 }
 
 std::vector<Vec3> in_metres(std::vector<Vec3> points, double ratio, const Mat4& input_to_metres) {
-  for (Vec3& p : points) p = transform_point(input_to_metres, ratio * p);
+  for (Vec3& p : points)
+    p = transform_point(input_to_metres, ratio * p);
   return points;
 }
 
-void apply(const Edits& edits, const MuscleEdit& from, const anatomy::Muscle& muscle, double ratio, const Mat4& input_to_metres,
-           muscles::Options& options) {
+void apply(const Edits& edits, const MuscleEdit& from, const anatomy::Muscle& muscle, double ratio,
+           const Mat4& input_to_metres, muscles::Options& options) {
   muscles::Edit& edit = options.edits[muscle.name];
   bool present = true;
   if (from.variant) {
@@ -90,9 +99,12 @@ void apply(const Edits& edits, const MuscleEdit& from, const anatomy::Muscle& mu
   if (from.peak_shortening) edit.peak_shortening = from.peak_shortening;
   if (from.bundles) edit.bundles = from.bundles;
   if (from.fibre_spacing) edit.spacing = from.fibre_spacing;
-  if (from.insertion_offset) edit.insertion_offset += ratio * (input_to_metres.topLeftCorner<3, 3>() * *from.insertion_offset);
-  for (const auto& [sketch, target] : {std::pair(&from.origin, &edit.origin), std::pair(&from.insertion, &edit.insertion)})
-    if (*sketch) *target = muscles::Sketch{in_metres((*sketch)->points, ratio, input_to_metres), (*sketch)->is_curve};
+  if (from.insertion_offset)
+    edit.insertion_offset += ratio * (input_to_metres.topLeftCorner<3, 3>() * *from.insertion_offset);
+  for (const auto& [sketch, target] :
+       {std::pair(&from.origin, &edit.origin), std::pair(&from.insertion, &edit.insertion)})
+    if (*sketch)
+      *target = muscles::Sketch{in_metres((*sketch)->points, ratio, input_to_metres), (*sketch)->is_curve};
   if (from.waypoints) edit.waypoints = in_metres(*from.waypoints, ratio, input_to_metres);
 }
 
@@ -107,22 +119,26 @@ void set_variant(Edits& edits, const std::string& assignment) {
 
 anatomy::GenericAnatomy with_new_muscles(const anatomy::GenericAnatomy& anatomy, const Edits& edits) {
   anatomy::GenericAnatomy all = anatomy;
-  for (const std::filesystem::path& file : edits.muscle_files) anatomy::add_muscles(all, file);
+  for (const std::filesystem::path& file : edits.muscle_files)
+    anatomy::add_muscles(all, file);
   for (const anatomy::Muscle& muscle : edits.new_muscles) {
     if (all.muscle(muscle.name))
-      throw Error(in_file(edits) + "new muscle " + muscle.name + ": there is one of that name; change that one in \"muscles\"");
+      throw Error(in_file(edits) + "new muscle " + muscle.name +
+                  ": there is one of that name; change that one in \"muscles\"");
     anatomy::add_muscle(all, muscle);
   }
   return all;
 }
 
-muscles::Options muscle_options(const Edits& edits, const anatomy::GenericAnatomy& anatomy, const Mat4& input_to_metres) {
+muscles::Options muscle_options(const Edits& edits, const anatomy::GenericAnatomy& anatomy,
+                                const Mat4& input_to_metres) {
   muscles::Options options;
   options.spacing = edits.fibre_spacing;
   options.least_prevalence = edits.least_prevalence;
   const double ratio = unit_ratio(edits, input_to_metres);
   // What is said of a whole comes first, what is said of one part last.
-  std::vector<std::pair<std::vector<const anatomy::Muscle*>, const std::pair<const std::string, MuscleEdit>*>> order;
+  std::vector<std::pair<std::vector<const anatomy::Muscle*>, const std::pair<const std::string, MuscleEdit>*>>
+      order;
   for (const auto& entry : edits.muscles) {
     order.emplace_back(named(anatomy, entry.first), &entry);
     const auto& targets = order.back().first;
@@ -130,13 +146,17 @@ muscles::Options muscle_options(const Edits& edits, const anatomy::GenericAnatom
     const MuscleEdit& edit = entry.second;
     if (targets.size() > 1 && (edit.origin || edit.insertion || edit.waypoints || edit.insertion_offset)) {
       std::string names;
-      for (const anatomy::Muscle* muscle : targets) names += (names.empty() ? "" : ", ") + muscle->name;
-      throw Error(in_file(edits) + entry.first + ": stands for several muscles; give the places of one of " + names);
+      for (const anatomy::Muscle* muscle : targets)
+        names += (names.empty() ? "" : ", ") + muscle->name;
+      throw Error(in_file(edits) + entry.first + ": stands for several muscles; give the places of one of " +
+                  names);
     }
   }
-  std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.first.size() > b.first.size(); });
+  std::stable_sort(order.begin(), order.end(),
+                   [](const auto& a, const auto& b) { return a.first.size() > b.first.size(); });
   for (const auto& [targets, entry] : order)
-    for (const anatomy::Muscle* muscle : targets) apply(edits, entry->second, *muscle, ratio, input_to_metres, options);
+    for (const anatomy::Muscle* muscle : targets)
+      apply(edits, entry->second, *muscle, ratio, input_to_metres, options);
   return options;
 }
 

@@ -18,17 +18,20 @@ namespace fascia::rigging {
 struct FoundLandmarks {
   prepare::PreparedHead head;
   std::map<std::string, landmarks::SkinLandmark> landmarks;  ///< metres, rig frame
-  std::optional<landmarks::FaceRegions> regions;  ///< of the vertices of `head.skin`; nothing when nothing was searched
-  double likeness = 1.0;             ///< share of the generic face that the mesh follows; 1 when nothing was searched
-  bool is_inside_out = false;        ///< the file's triangles face inward; those of `head` were turned
-  std::array<double, 3> seconds{};   ///< for finding the head, preparing it, placing the landmarks
+  std::optional<landmarks::FaceRegions>
+      regions;            ///< of the vertices of `head.skin`; nothing when nothing was searched
+  double likeness = 1.0;  ///< share of the generic face that the mesh follows; 1 when nothing was searched
+  bool is_inside_out = false;       ///< the file's triangles face inward; those of `head` were turned
+  std::array<double, 3> seconds{};  ///< for finding the head, preparing it, placing the landmarks
   std::vector<std::string> warnings;
 };
 
-/// Finds the head in `scene`, prepares it and places all skin landmarks: the given ones as they are, the rest found,
-/// or, where all that `anatomy` marks as required are given, carried over through them.
-/// `with_regions` asks for the regions of the skin as well. Throws fascia::Error when there is no face, and as `prepare` does.
+/// Finds the head in `scene`, prepares it and places all skin landmarks: the given ones as they are, the rest
+/// found, or, where all that `anatomy` marks as required are given, carried over through them. `with_regions`
+/// asks for the regions of the skin as well. Throws fascia::Error when there is no face, and as `prepare`
+/// does.
 FoundLandmarks find_landmarks(const formats::Scene& scene, const formats::LandmarkFile& given,
-                              const anatomy::GenericAnatomy& anatomy, const prepare::PrepareOptions& options = {}, bool with_regions = false);
+                              const anatomy::GenericAnatomy& anatomy,
+                              const prepare::PrepareOptions& options = {}, bool with_regions = false);
 
 }  // namespace fascia::rigging

@@ -20,7 +20,8 @@ bool has_all_required(const formats::LandmarkFile& given, const anatomy::Generic
 }
 
 /// Where the given landmarks put the generic head; nothing when they are fewer than four or lie in a plane.
-std::optional<landmarks::Placement> placement_of(const formats::LandmarkFile& given, const anatomy::GenericAnatomy& anatomy) {
+std::optional<landmarks::Placement> placement_of(const formats::LandmarkFile& given,
+                                                 const anatomy::GenericAnatomy& anatomy) {
   std::vector<Vec3> generic, here;
   for (const auto& [name, p] : given.points)
     if (const anatomy::Landmark* known = anatomy.landmark(name); known && known->skin) {
@@ -62,13 +63,13 @@ landmarks::Placement mapped(const landmarks::Placement& placement, const Mat4& m
 
 /// The head as found in a file, before its units and axes are known.
 struct LocatedHead {
-  formats::LandmarkFile landmarks;                ///< given ones and, where those are missing, rough ones; file's units
+  formats::LandmarkFile landmarks;  ///< given ones and, where those are missing, rough ones; file's units
   std::optional<landmarks::FoundHead> found;      ///< nothing when all required landmarks are given
   std::optional<landmarks::GenericFace> generic;  ///< with `found`
 };
 
-LocatedHead locate_head(const formats::Scene& scene, const formats::LandmarkFile& given, const anatomy::GenericAnatomy& anatomy,
-                        const prepare::PrepareOptions& options) {
+LocatedHead locate_head(const formats::Scene& scene, const formats::LandmarkFile& given,
+                        const anatomy::GenericAnatomy& anatomy, const prepare::PrepareOptions& options) {
   LocatedHead located;
   located.landmarks = given;
   if (has_all_required(given, anatomy)) return located;
@@ -76,7 +77,8 @@ LocatedHead locate_head(const formats::Scene& scene, const formats::LandmarkFile
   located.landmarks.units = prepare::head_units;
   located.generic = landmarks::generic_face(anatomy);
   const TriangleMesh mesh = prepare::joined_meshes(scene, options.skin);
-  located.found = landmarks::find_head(*located.generic, mesh, scene.path.string(), placement_of(located.landmarks, anatomy), declared_up(options.up));
+  located.found = landmarks::find_head(*located.generic, mesh, scene.path.string(),
+                                       placement_of(located.landmarks, anatomy), declared_up(options.up));
   for (const auto& [name, p] : landmarks::rough_landmarks(*located.generic, anatomy, *located.found))
     located.landmarks.points.emplace(name, p);
   return located;
@@ -102,13 +104,15 @@ void place_landmarks(FoundLandmarks& result, const LocatedHead& located, const f
   } else {
     result.landmarks = landmarks::complete(by_hand, anatomy, skin, &unknown);
   }
-  for (const std::string& name : unknown) result.warnings.push_back("landmark '" + name + "' is not known and was left out");
+  for (const std::string& name : unknown)
+    result.warnings.push_back("landmark '" + name + "' is not known and was left out");
 }
 
 /// The same meshes with their triangles facing the other way.
 formats::Scene turned_over(formats::Scene scene) {
   for (formats::SceneMesh& mesh : scene.meshes)
-    for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
+    for (Triangle& t : mesh.triangles)
+      std::swap(t[1], t[2]);
   return scene;
 }
 
@@ -119,12 +123,15 @@ Points reference_points(const anatomy::GenericAnatomy& anatomy) {
   return points;
 }
 
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 }  // namespace
 
 FoundLandmarks find_landmarks(const formats::Scene& scene, const formats::LandmarkFile& given,
-                              const anatomy::GenericAnatomy& anatomy, const prepare::PrepareOptions& options, bool with_regions) {
+                              const anatomy::GenericAnatomy& anatomy, const prepare::PrepareOptions& options,
+                              bool with_regions) {
   FoundLandmarks result;
   const double started = now();
   const LocatedHead located = locate_head(scene, given, anatomy, options);
@@ -134,13 +141,15 @@ FoundLandmarks find_landmarks(const formats::Scene& scene, const formats::Landma
   }
   const double located_at = now();
   const Points reference = reference_points(anatomy);
-  result.head = result.is_inside_out ? prepare::prepare(turned_over(scene), located.landmarks, reference, options)
-                                     : prepare::prepare(scene, located.landmarks, reference, options);
+  result.head = result.is_inside_out
+                    ? prepare::prepare(turned_over(scene), located.landmarks, reference, options)
+                    : prepare::prepare(scene, located.landmarks, reference, options);
   // What prepare says of places that were only roughly found is no news: they are found anew.
   std::erase_if(result.head.warnings, [&](const std::string& warning) {
-    return std::any_of(located.landmarks.points.begin(), located.landmarks.points.end(), [&](const auto& point) {
-      return !given.points.count(point.first) && warning.rfind("landmark '" + point.first + "'", 0) == 0;
-    });
+    return std::any_of(
+        located.landmarks.points.begin(), located.landmarks.points.end(), [&](const auto& point) {
+          return !given.points.count(point.first) && warning.rfind("landmark '" + point.first + "'", 0) == 0;
+        });
   });
   const double prepared_at = now();
   place_landmarks(result, located, given, anatomy, with_regions);

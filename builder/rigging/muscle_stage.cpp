@@ -16,19 +16,24 @@ const char* kind_name(anatomy::MuscleKind kind) {
 /// The rig knows four kinds of ends; what hangs on the rest of the body stays with the cranium.
 rig::FibreEnd fibre_end(anatomy::Attachment on) {
   switch (on) {
-    case anatomy::Attachment::mandible: return rig::FibreEnd::mandible;
-    case anatomy::Attachment::skin: return rig::FibreEnd::skin;
+    case anatomy::Attachment::mandible:
+      return rig::FibreEnd::mandible;
+    case anatomy::Attachment::skin:
+      return rig::FibreEnd::skin;
     case anatomy::Attachment::galea:
     case anatomy::Attachment::smas:
     case anatomy::Attachment::modiolus:
-    case anatomy::Attachment::tarsus: return rig::FibreEnd::smas;
-    default: return rig::FibreEnd::cranium;
+    case anatomy::Attachment::tarsus:
+      return rig::FibreEnd::smas;
+    default:
+      return rig::FibreEnd::cranium;
   }
 }
 
 std::vector<rig::Vec3f> polygon(const std::vector<Vec3>& points) {
   std::vector<rig::Vec3f> out;
-  for (const Vec3& p : points) out.push_back(p.cast<float>());
+  for (const Vec3& p : points)
+    out.push_back(p.cast<float>());
   return out;
 }
 
@@ -77,12 +82,14 @@ BuildReport::MuscleFigures figures(const muscles::Muscle& muscle) {
 void report_edits(const Edits& edits, const muscles::Options& options, BuildReport& report) {
   report.edits.landmarks = static_cast<int>(edits.landmarks.size());
   report.edits.absent = options.absent;
-  for (const anatomy::Muscle& muscle : edits.new_muscles) report.edits.added.push_back(muscle.name);
+  for (const anatomy::Muscle& muscle : edits.new_muscles)
+    report.edits.added.push_back(muscle.name);
   const auto listed = [](const std::vector<std::string>& list, const std::string& name) {
     return std::find(list.begin(), list.end(), name) != list.end();
   };
   for (const auto& [name, edit] : options.edits)
-    if (!listed(report.edits.absent, name) && !listed(report.edits.added, name)) report.edits.changed.push_back(name);
+    if (!listed(report.edits.absent, name) && !listed(report.edits.added, name))
+      report.edits.changed.push_back(name);
 }
 
 /// Upper and lower teeth as one surface.
@@ -96,9 +103,10 @@ TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b) {
 
 }  // namespace
 
-std::vector<rig::Muscle> build_muscles(const anatomy::GenericAnatomy& anatomy, const prepare::PreparedHead& head,
-                                       const skull::FitResult& skull, const smas::Result& smas, const Points& landmarks,
-                                       const Edits& edits, BuildReport& report) {
+std::vector<rig::Muscle> build_muscles(const anatomy::GenericAnatomy& anatomy,
+                                       const prepare::PreparedHead& head, const skull::FitResult& skull,
+                                       const smas::Result& smas, const Points& landmarks, const Edits& edits,
+                                       BuildReport& report) {
   const spatial::SurfaceQuery &skin = *head.surface, cranium(skull.cranium), mandible(skull.mandible);
   const TriangleMesh all_teeth = joined(skull.teeth_upper, skull.teeth_lower);
   const std::optional<spatial::SurfaceQuery> teeth =
@@ -126,7 +134,8 @@ std::vector<rig::Muscle> build_muscles(const anatomy::GenericAnatomy& anatomy, c
   return all;
 }
 
-rig::Actuation rig_actuation(const anatomy::GenericAnatomy& anatomy, const std::vector<rig::Muscle>& muscles) {
+rig::Actuation rig_actuation(const anatomy::GenericAnatomy& anatomy,
+                             const std::vector<rig::Muscle>& muscles) {
   rig::Actuation out;
   std::map<std::string, uint32_t> channel_of;
   for (const anatomy::Actuator& actuator : anatomy.actuators) {
@@ -151,7 +160,8 @@ rig::Actuation rig_actuation(const anatomy::GenericAnatomy& anatomy, const std::
   wholes.name = "whole";
   for (const anatomy::Whole& whole : anatomy.wholes) {
     wholes.members.push_back(whole.name);
-    for (const std::string& member : whole.members) add_entry(wholes, member, 1.0);
+    for (const std::string& member : whole.members)
+      add_entry(wholes, member, 1.0);
   }
   out.sets.push_back(std::move(wholes));
   for (const anatomy::ExpressionSet& vocabulary : anatomy.expression_sets) {
@@ -159,7 +169,8 @@ rig::Actuation rig_actuation(const anatomy::GenericAnatomy& anatomy, const std::
     set.name = vocabulary.name;
     for (const anatomy::Expression& expression : vocabulary.expressions) {
       set.members.push_back(expression.name);
-      for (const auto& [channel, weight] : expression.weights) add_entry(set, channel, weight);
+      for (const auto& [channel, weight] : expression.weights)
+        add_entry(set, channel, weight);
     }
     out.sets.push_back(std::move(set));
   }

@@ -14,7 +14,8 @@ TriangleMesh part_mesh(const prepare::PreparedHead& head, prepare::Part part) {
     const int base = all.vertex_count();
     std::vector<Triangle> kept;
     for (const Triangle& t : mesh.triangles)
-      if (mesh.parts[static_cast<size_t>(t[0])] == part) kept.push_back({t[0] + base, t[1] + base, t[2] + base});
+      if (mesh.parts[static_cast<size_t>(t[0])] == part)
+        kept.push_back({t[0] + base, t[1] + base, t[2] + base});
     if (kept.empty()) continue;
     all.vertices.insert(all.vertices.end(), mesh.positions.begin(), mesh.positions.end());
     all.triangles.insert(all.triangles.end(), kept.begin(), kept.end());
@@ -49,32 +50,38 @@ rig::Eye rig_eye(const std::optional<prepare::Eyeball>& eye) {
 
 rig::Surface rig_surface(const TriangleMesh& mesh) {
   rig::Surface surface;
-  for (const Vec3& p : mesh.vertices) surface.positions.push_back(p.cast<float>());
+  for (const Vec3& p : mesh.vertices)
+    surface.positions.push_back(p.cast<float>());
   for (const Triangle& t : mesh.triangles)
-    surface.triangles.push_back({static_cast<uint32_t>(t[0]), static_cast<uint32_t>(t[1]), static_cast<uint32_t>(t[2])});
+    surface.triangles.push_back(
+        {static_cast<uint32_t>(t[0]), static_cast<uint32_t>(t[1]), static_cast<uint32_t>(t[2])});
   return surface;
 }
 
 skull::FitResult fit_skull(const anatomy::GenericAnatomy& anatomy, const prepare::PreparedHead& head,
                            const SkinLandmarks& landmarks, double tissue_scale) {
   std::map<std::string, skull::TargetLandmark> targets;
-  for (const auto& [name, landmark] : landmarks) targets[name] = {landmark.position, landmark.confidence};
+  for (const auto& [name, landmark] : landmarks)
+    targets[name] = {landmark.position, landmark.confidence};
   skull::FitOptions options;
   options.tissue_scale = tissue_scale;
-  const TriangleMesh upper = part_mesh(head, prepare::Part::teeth_upper), lower = part_mesh(head, prepare::Part::teeth_lower);
+  const TriangleMesh upper = part_mesh(head, prepare::Part::teeth_upper),
+                     lower = part_mesh(head, prepare::Part::teeth_lower);
   if (!upper.empty()) options.teeth_upper = &upper;
   if (!lower.empty()) options.teeth_lower = &lower;
   return skull::fit(skull::from_anatomy(anatomy), head.skin, targets, options);
 }
 
-rig::Skull rig_skull(const skull::FitResult& skull, const prepare::PreparedHead& head, const SkinLandmarks& landmarks) {
+rig::Skull rig_skull(const skull::FitResult& skull, const prepare::PreparedHead& head,
+                     const SkinLandmarks& landmarks) {
   rig::Skull out;
   out.cranium = rig_surface(skull.cranium);
   out.mandible = rig_surface(skull.mandible);
   out.teeth_upper = rig_surface(skull.teeth_upper);
   out.teeth_lower = rig_surface(skull.teeth_lower);
   std::map<std::string, const skull::FittedLandmark*> fitted;
-  for (const skull::FittedLandmark& landmark : skull.landmarks) fitted[landmark.name] = &landmark;
+  for (const skull::FittedLandmark& landmark : skull.landmarks)
+    fitted[landmark.name] = &landmark;
   for (const auto& [name, landmark] : landmarks) {
     rig::Landmark entry;
     entry.name = name;

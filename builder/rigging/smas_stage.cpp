@@ -5,7 +5,8 @@
 
 namespace fascia::rigging {
 
-rig::Smas rig_smas(const smas::Result& smas, const skull::FitResult& skull, const anatomy::GenericAnatomy& anatomy) {
+rig::Smas rig_smas(const smas::Result& smas, const skull::FitResult& skull,
+                   const anatomy::GenericAnatomy& anatomy) {
   rig::Smas out;
   out.surface = rig_surface(smas.mesh);
   const anatomy::Tissue& tissue = anatomy.tissue;
@@ -14,14 +15,18 @@ rig::Smas rig_smas(const smas::Result& smas, const skull::FitResult& skull, cons
   const double widest_glide = 0.012;  // metres: the galea over the forehead, the freest plane
   for (size_t v = 0; v < smas.mesh.vertices.size(); ++v) {
     out.depth_to_skin.push_back(static_cast<float>(smas.skin_distance[v]));
-    out.depth_to_bone.push_back(std::isfinite(smas.bone_distance[v]) ? static_cast<float>(smas.bone_distance[v]) : -1.0F);
+    out.depth_to_bone.push_back(
+        std::isfinite(smas.bone_distance[v]) ? static_cast<float>(smas.bone_distance[v]) : -1.0F);
     out.skin_attachment.push_back(static_cast<float>(std::clamp(to_skin(smas.mesh.vertices[v]), 0.0, 1.0)));
-    out.bone_attachment.push_back(static_cast<float>(std::clamp(1.0 - glide(smas.mesh.vertices[v]) / widest_glide, 0.0, 1.0)));
+    out.bone_attachment.push_back(
+        static_cast<float>(std::clamp(1.0 - glide(smas.mesh.vertices[v]) / widest_glide, 0.0, 1.0)));
   }
   for (const anatomy::RetainingLigament& ligament : tissue.ligaments)
     for (size_t i = 0; i < ligament.bone.size() && i < ligament.skin.size(); ++i)
-      out.ligaments.push_back({ligament.name, skull.warp(ligament.bone[i]).cast<float>(), skull.warp(ligament.skin[i]).cast<float>(),
-                               static_cast<float>(ligament.stiffness / static_cast<double>(ligament.bone.size()))});
+      out.ligaments.push_back(
+          {ligament.name, skull.warp(ligament.bone[i]).cast<float>(),
+           skull.warp(ligament.skin[i]).cast<float>(),
+           static_cast<float>(ligament.stiffness / static_cast<double>(ligament.bone.size()))});
   return out;
 }
 

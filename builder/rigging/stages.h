@@ -23,22 +23,25 @@ skull::FitResult fit_skull(const anatomy::GenericAnatomy& anatomy, const prepare
                            const SkinLandmarks& landmarks, double tissue_scale);
 
 /// Lays all muscles of `anatomy` as `edits` ask and adds their figures and warnings to `report`.
-std::vector<rig::Muscle> build_muscles(const anatomy::GenericAnatomy& anatomy, const prepare::PreparedHead& head,
-                                       const skull::FitResult& skull, const smas::Result& smas, const Points& landmarks,
-                                       const Edits& edits, BuildReport& report);
+std::vector<rig::Muscle> build_muscles(const anatomy::GenericAnatomy& anatomy,
+                                       const prepare::PreparedHead& head, const skull::FitResult& skull,
+                                       const smas::Result& smas, const Points& landmarks, const Edits& edits,
+                                       BuildReport& report);
 
-rig::Skull rig_skull(const skull::FitResult& skull, const prepare::PreparedHead& head, const SkinLandmarks& landmarks);
+rig::Skull rig_skull(const skull::FitResult& skull, const prepare::PreparedHead& head,
+                     const SkinLandmarks& landmarks);
 
 /// The SMAS with the attachment zones and ligaments of the anatomy carried over to this head.
-rig::Smas rig_smas(const smas::Result& smas, const skull::FitResult& skull, const anatomy::GenericAnatomy& anatomy);
+rig::Smas rig_smas(const smas::Result& smas, const skull::FitResult& skull,
+                   const anatomy::GenericAnatomy& anatomy);
 
 /// Channels and vocabularies; wholes such as orbicularis_oculi_left become the set `whole`.
 rig::Actuation rig_actuation(const anatomy::GenericAnatomy& anatomy, const std::vector<rig::Muscle>& muscles);
 
 /// Makes the lattice levels up to `options.detail` and binds every primitive of the scene.
-rig::Tissue build_tissue(const formats::Scene& scene, const prepare::PreparedHead& head, const skull::FitResult& skull,
-                         const smas::Result& smas, const Points& landmarks, const rig::Rig& rig,
-                         const BuildOptions& options, BuildReport& report);
+rig::Tissue build_tissue(const formats::Scene& scene, const prepare::PreparedHead& head,
+                         const skull::FitResult& skull, const smas::Result& smas, const Points& landmarks,
+                         const rig::Rig& rig, const BuildOptions& options, BuildReport& report);
 
 /// `mesh` in the rig's single precision.
 rig::Surface rig_surface(const TriangleMesh& mesh);

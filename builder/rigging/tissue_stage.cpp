@@ -29,7 +29,8 @@ std::vector<MeshPart> take_apart(const formats::Scene& scene, const prepare::Pre
       part.part = head.meshes[m].parts[v];
       part.vertices.push_back(static_cast<uint32_t>(v));
     }
-    for (auto& [kind, part] : parts) all.push_back(std::move(part));
+    for (auto& [kind, part] : parts)
+      all.push_back(std::move(part));
   }
   return all;
 }
@@ -44,7 +45,8 @@ tissue::PartMesh part_mesh(const prepare::PreparedMesh& mesh, const MeshPart& pa
     if (part.part == prepare::Part::skin) out.skin_vertices.push_back(mesh.skin_vertices[v]);
   }
   for (const Triangle& t : mesh.triangles) {
-    const Triangle corners = {map[static_cast<size_t>(t[0])], map[static_cast<size_t>(t[1])], map[static_cast<size_t>(t[2])]};
+    const Triangle corners = {map[static_cast<size_t>(t[0])], map[static_cast<size_t>(t[1])],
+                              map[static_cast<size_t>(t[2])]};
     if (corners[0] >= 0 && corners[1] >= 0 && corners[2] >= 0) out.triangles.push_back(corners);
   }
   return out;
@@ -52,7 +54,8 @@ tissue::PartMesh part_mesh(const prepare::PreparedMesh& mesh, const MeshPart& pa
 
 /// Puts the bindings of a mesh's parts together again, vertex by vertex.
 std::vector<rig::Binding> put_together(const formats::Scene& scene, const prepare::PreparedHead& head,
-                                       const std::vector<MeshPart>& parts, const std::vector<rig::Binding>& bindings) {
+                                       const std::vector<MeshPart>& parts,
+                                       const std::vector<rig::Binding>& bindings) {
   std::vector<rig::Binding> whole;
   for (size_t i = 0; i < parts.size(); ++i) {
     const bool goes_on = i > 0 && parts[i].mesh == parts[i - 1].mesh;
@@ -73,7 +76,8 @@ std::vector<rig::Binding> put_together(const formats::Scene& scene, const prepar
       whole.push_back(std::move(binding));
     }
     rig::Binding& binding = whole.back();
-    if (bindings[i].influences != binding.influences) throw Error("bindings of one mesh differ in their influences");
+    if (bindings[i].influences != binding.influences)
+      throw Error("bindings of one mesh differ in their influences");
     if (parts[i].part == prepare::Part::skin) binding.part = "skin";
     for (size_t v = 0; v < parts[i].vertices.size(); ++v) {
       const size_t to = parts[i].vertices[v];
@@ -99,9 +103,9 @@ std::vector<tissue::LevelOptions> levels_up_to(const std::string& detail) {
 
 }  // namespace
 
-rig::Tissue build_tissue(const formats::Scene& scene, const prepare::PreparedHead& head, const skull::FitResult& skull,
-                         const smas::Result& smas, const Points& landmarks, const rig::Rig& rig,
-                         const BuildOptions& options, BuildReport& report) {
+rig::Tissue build_tissue(const formats::Scene& scene, const prepare::PreparedHead& head,
+                         const skull::FitResult& skull, const smas::Result& smas, const Points& landmarks,
+                         const rig::Rig& rig, const BuildOptions& options, BuildReport& report) {
   tissue::TissueInputs inputs;
   inputs.skin = head.skin;
   inputs.landmarks = landmarks;
@@ -117,16 +121,19 @@ rig::Tissue build_tissue(const formats::Scene& scene, const prepare::PreparedHea
   inputs.muscles = rig.muscles;
   inputs.channels = rig.actuation.channels;
   const std::vector<MeshPart> parts = take_apart(scene, head);
-  for (const MeshPart& part : parts) inputs.parts.push_back(part_mesh(head.meshes[part.mesh], part));
+  for (const MeshPart& part : parts)
+    inputs.parts.push_back(part_mesh(head.meshes[part.mesh], part));
   tissue::TissueOptions tissue_options;
   tissue_options.levels = levels_up_to(options.detail);
   tissue::TissueResult built = tissue::build(inputs, tissue_options);
   for (const auto& figures : built.figures) {
     report.tissue.push_back({figures.level, figures.nodes, figures.springs});
     if (figures.turned_prisms > 0)
-      report.warnings.push_back("level " + figures.level + " has " + std::to_string(figures.turned_prisms) + " turned prisms at rest");
+      report.warnings.push_back("level " + figures.level + " has " + std::to_string(figures.turned_prisms) +
+                                " turned prisms at rest");
   }
-  for (std::vector<rig::Binding>& bindings : built.tissue.bindings) bindings = put_together(scene, head, parts, bindings);
+  for (std::vector<rig::Binding>& bindings : built.tissue.bindings)
+    bindings = put_together(scene, head, parts, bindings);
   return std::move(built.tissue);
 }
 

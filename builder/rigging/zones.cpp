@@ -14,7 +14,8 @@ double distance_outside(const std::vector<Vec2>& outline, const Vec2& p) {
   double nearest = 1e300;
   for (size_t i = 0, j = outline.size() - 1; i < outline.size(); j = i++) {
     const Vec2 &a = outline[j], &b = outline[i];
-    if ((a[1] > p[1]) != (b[1] > p[1]) && p[0] < (b[0] - a[0]) * (p[1] - a[1]) / (b[1] - a[1]) + a[0]) inside = !inside;
+    if ((a[1] > p[1]) != (b[1] > p[1]) && p[0] < (b[0] - a[0]) * (p[1] - a[1]) / (b[1] - a[1]) + a[0])
+      inside = !inside;
     const Vec2 side = b - a;
     const double length = side.squaredNorm();
     const double t = length > 0 ? std::clamp((p - a).dot(side) / length, 0.0, 1.0) : 0.0;
@@ -34,7 +35,8 @@ ZoneField::ZoneField(const std::vector<anatomy::Zone>& zones, double otherwise, 
     area.value = zone.value;
     area.falloff = std::max(zone.falloff, 1e-4);
     area.centre = Vec3::Zero();
-    for (const Vec3& p : carried) area.centre += p / static_cast<double>(carried.size());
+    for (const Vec3& p : carried)
+      area.centre += p / static_cast<double>(carried.size());
     Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
     double reach = 0.0;
     for (const Vec3& p : carried) {
@@ -47,7 +49,8 @@ ZoneField::ZoneField(const std::vector<anatomy::Zone>& zones, double otherwise, 
     area.y = axes.eigenvectors().col(1);
     // The far side of the head is as near to the plane as the near one: a slab keeps it out.
     area.depth = 0.02 + 0.5 * reach;
-    for (const Vec3& p : carried) area.outline.emplace_back((p - area.centre).dot(area.x), (p - area.centre).dot(area.y));
+    for (const Vec3& p : carried)
+      area.outline.emplace_back((p - area.centre).dot(area.x), (p - area.centre).dot(area.y));
     areas_.push_back(std::move(area));
   }
 }

@@ -47,7 +47,8 @@ BoneSystem::BoneSystem(std::span<const Observation> observations,
   options_.exponent = exponent;
   options_.lambda = smoothing;
   factorisation_ = std::make_shared<const splines::Factorisation>(sites_, options_);
-  bending_ = factorisation_->coefficients(MatrixXd::Identity(sites_.rows(), sites_.rows())).topRows(sites_.rows());
+  bending_ =
+      factorisation_->coefficients(MatrixXd::Identity(sites_.rows(), sites_.rows())).topRows(sites_.rows());
 }
 
 MatrixXd BoneSystem::displacements(std::span<const Observation> observations,
@@ -56,8 +57,9 @@ MatrixXd BoneSystem::displacements(std::span<const Observation> observations,
   std::vector<Slide> slides;
   for (size_t i = 0; i < observations.size(); ++i) {
     const Index row = static_cast<Index>(i);
-    data.row(row) = (observations[i].used ? Vec3(observations[i].to - observations[i].from) : Vec3(Vec3::Zero()))
-                        .transpose();
+    data.row(row) =
+        (observations[i].used ? Vec3(observations[i].to - observations[i].from) : Vec3(Vec3::Zero()))
+            .transpose();
     add_slides(observations[i], row, options_.lambda, slides);
   }
   for (size_t i = 0; i < tangents.size(); ++i)
@@ -83,7 +85,8 @@ MatrixXd BoneSystem::displacements(std::span<const Observation> observations,
                                   ? Eigen::VectorXd(factor.solve(right))
                                   : Eigen::VectorXd(form.selfadjointView<Eigen::Lower>().ldlt().solve(right));
   for (Index i = 0; i < count; ++i)
-    data.row(slides[static_cast<size_t>(i)].row) += way[i] * slides[static_cast<size_t>(i)].direction.transpose();
+    data.row(slides[static_cast<size_t>(i)].row) +=
+        way[i] * slides[static_cast<size_t>(i)].direction.transpose();
   return data;
 }
 
@@ -101,7 +104,8 @@ void BoneSystem::prepare(std::span<const Vec3> points) {
     for (Index i = 0; i < basis_.rows(); ++i) {
       const auto at = static_cast<size_t>(i);
       const double squared = (q - Vec3(all.x[at], all.y[at], all.z[at])).squaredNorm();
-      basis_(i, v) = all.kernel.exponent() == 1 ? all.kernel.sign() * std::sqrt(squared) : all.kernel.value(squared);
+      basis_(i, v) =
+          all.kernel.exponent() == 1 ? all.kernel.sign() * std::sqrt(squared) : all.kernel.value(squared);
     }
   }
 }
@@ -118,7 +122,8 @@ std::vector<Vec3> BoneSystem::positions(const splines::Warp& warp) const {
     const Vec3 q = (points_[v] - all.centre) * all.scale;
     Vec3 moved = coefficients * basis_.col(static_cast<Index>(v));
     for (size_t k = 0; k < all.monomials.size(); ++k)
-      moved += splines::monomial_value(all.monomials[k], q) * all.polynomial.row(static_cast<Index>(k)).transpose();
+      moved += splines::monomial_value(all.monomials[k], q) *
+               all.polynomial.row(static_cast<Index>(k)).transpose();
     out[v] = points_[v] + moved;
   }
   return out;

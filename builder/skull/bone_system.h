@@ -33,8 +33,8 @@ struct TangentObservation {
 /// as long as only targets move, every solve is a product.
 ///
 /// Sliding targets are settled where the sum of bending energy, misfit and slide is least: a linear system in
-/// the slides, as for sliding semilandmarks (F. Bookstein. 1997; P. Gunz et al. 2005), with B the bending form of
-/// the smoothing spline and each slide held by its own deviation.
+/// the slides, as for sliding semilandmarks (F. Bookstein. 1997; P. Gunz et al. 2005), with B the bending
+/// form of the smoothing spline and each slide held by its own deviation.
 class BoneSystem {
  public:
   BoneSystem() = default;

@@ -130,8 +130,8 @@ std::vector<Violation> ClearanceCheck::operator()(std::span<const Vec3> vertices
   return out;
 }
 
-int push_inside(ClearanceCheck& check, const std::vector<std::vector<int>>& neighbours, std::vector<Vec3>& vertices,
-                int rounds, double& largest) {
+int push_inside(ClearanceCheck& check, const std::vector<std::vector<int>>& neighbours,
+                std::vector<Vec3>& vertices, int rounds, double& largest) {
   const std::vector<Vec3> before = vertices;
   for (int round = 0; round < rounds; ++round) {
     const std::vector<Violation> found = check(vertices);

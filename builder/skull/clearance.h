@@ -34,8 +34,8 @@ std::vector<double> clearances(std::span<const SkinOver> over, const FitOptions&
 /// move, so a vertex that was deep enough is not measured again until it could have come near.
 class ClearanceCheck {
  public:
-  /// `outward`: of each vertex, unit and already turned to the head, or zero. Skin that does not face that way
-  /// does not count: the lining of an open mouth lies in front of teeth that it does not cover.
+  /// `outward`: of each vertex, unit and already turned to the head, or zero. Skin that does not face that
+  /// way does not count: the lining of an open mouth lies in front of teeth that it does not cover.
   ClearanceCheck(const Exterior& skin, std::vector<double> clearance, std::vector<Vec3> outward);
 
   /// The vertices nearer to the outer skin than their clearance, in order.
@@ -60,7 +60,7 @@ std::vector<std::vector<int>> vertex_neighbours(const TriangleMesh& mesh);
 
 /// Moves the vertices that violate their clearance inwards, their neighbours along, until none is left or
 /// `rounds` are over. Returns how many vertices moved; `largest` is raised to the largest displacement, m.
-int push_inside(ClearanceCheck& check, const std::vector<std::vector<int>>& neighbours, std::vector<Vec3>& vertices,
-                int rounds, double& largest);
+int push_inside(ClearanceCheck& check, const std::vector<std::vector<int>>& neighbours,
+                std::vector<Vec3>& vertices, int rounds, double& largest);
 
 }  // namespace fascia::skull

@@ -17,7 +17,8 @@ bool arrives_on_skin(const Exterior& skin, const Vec3& carried) {
 
 }  // namespace
 
-Coverage coverage(const Generic& generic, const Bones& bones, const splines::Warp& to_head, const Exterior& skin) {
+Coverage coverage(const Generic& generic, const Bones& bones, const splines::Warp& to_head,
+                  const Exterior& skin) {
   Coverage out;
   const std::array<const TriangleMesh*, 4> meshes{&generic.cranium, &generic.mandible, &generic.teeth_upper,
                                                   &generic.teeth_lower};

@@ -24,7 +24,8 @@ std::vector<Vec3> resampled(std::vector<Vec3> line, bool closed, double spacing)
   for (int k = 0; k < pieces + (closed ? 0 : 1); ++k) {
     const double s = along.back() * k / pieces;
     const size_t next = std::clamp<size_t>(
-        static_cast<size_t>(std::lower_bound(along.begin(), along.end(), s) - along.begin()), 1, line.size() - 1);
+        static_cast<size_t>(std::lower_bound(along.begin(), along.end(), s) - along.begin()), 1,
+        line.size() - 1);
     const double t = (s - along[next - 1]) / std::max(1e-12, along[next] - along[next - 1]);
     out.push_back(line[next - 1] + t * (line[next] - line[next - 1]));
   }
@@ -54,7 +55,8 @@ std::vector<CurvePoint> curve_points(const Generic& generic, double spacing) {
   for (const BoneCurve& curve : generic.curves)
     for (const Vec3& p : resampled(curve.points, curve.closed, spacing))
       // Where curves meet one point is enough; the two sides of the midline stay apart.
-      if (std::none_of(bones.begin(), bones.end(), [&](const Vec3& other) { return (other - p).norm() < 0.0005; }))
+      if (std::none_of(bones.begin(), bones.end(),
+                       [&](const Vec3& other) { return (other - p).norm() < 0.0005; }))
         bones.push_back(p);
   const std::vector<SkinOver> over = skin_over(generic, bones);
   for (size_t i = 0; i < bones.size(); ++i) {
@@ -62,12 +64,13 @@ std::vector<CurvePoint> curve_points(const Generic& generic, double spacing) {
     point.bone = bones[i];
     point.outward = over[i].outward;
     // On the midplane the nearest skin is a tie between left and right.
-    if (std::abs(point.bone.x()) < 1e-4) point.outward = Vec3(0, point.outward.y(), point.outward.z()).normalized();
+    if (std::abs(point.bone.x()) < 1e-4)
+      point.outward = Vec3(0, point.outward.y(), point.outward.z()).normalized();
     point.depth = over[i].depth;
     point.deviation = deviation_at(generic, bones[i]);
-    const bool near_landmark = std::any_of(generic.landmarks.begin(), generic.landmarks.end(), [&](const auto& l) {
-      return l.has_bone && (l.bone - bones[i]).norm() < 0.003;
-    });
+    const bool near_landmark =
+        std::any_of(generic.landmarks.begin(), generic.landmarks.end(),
+                    [&](const auto& l) { return l.has_bone && (l.bone - bones[i]).norm() < 0.003; });
     if (!near_landmark) out.push_back(point);
   }
   return out;

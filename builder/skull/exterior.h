@@ -15,8 +15,8 @@ struct Exterior {
   spatial::SurfaceQuery surface;  ///< the outer part, with all vertices of the skin
   std::vector<int> triangle_of;   ///< triangle of the skin for each triangle of `surface`
   std::vector<std::array<bool, 3>>
-      open_sides;                   ///< sides of `surface` where it was cut from a lining, or ends
-  std::vector<bool> open_vertices;  ///< vertices on such sides
+      open_sides;                     ///< sides of `surface` where it was cut from a lining, or ends
+  std::vector<bool> open_vertices;    ///< vertices on such sides
   std::vector<bool> border_vertices;  ///< vertices where the skin itself ends: the neck, the edge of a scan
 
   /// Closest point of the outer skin. What is nearest to a rim, such as the bone behind the meeting lips,

@@ -111,7 +111,8 @@ std::vector<TangentObservation> Fitter::State::tangents(bool first) const {
   return tangent_observations(pairs, jacobians(first), options.normal_deviation);
 }
 
-// Depth directions and targets as the map stands: landmarks, seen teeth, curve points, clearance, in this order.
+// Depth directions and targets as the map stands: landmarks, seen teeth, curve points, clearance, in this
+// order.
 void Fitter::State::gather_observations(bool first, const std::vector<Mat3>& turns) {
   aim(pairs, turns, options.skin_normal_share);
   observations = landmark_observations(pairs);
@@ -183,7 +184,8 @@ void Fitter::State::follow_skin() {
     if (!closest.found() || at == bones.generic.end()) continue;
     const double least = allowed[static_cast<size_t>(at - bones.generic.begin())];
     // Where it is, but no nearer to the skin than it may be: it moves on with the map.
-    held.to = closest.signed_distance > -least ? Vec3(closest.position - 1.05 * least * closest.pseudonormal) : now;
+    held.to =
+        closest.signed_distance > -least ? Vec3(closest.position - 1.05 * least * closest.pseudonormal) : now;
   }
 }
 
@@ -219,7 +221,8 @@ void Fitter::State::report_landmarks() {
 // Everything that follows from the warp.
 void Fitter::State::finish() {
   constexpr double teeth_limit = 0.004;  // m; more would be a head whose lips are open
-  const std::vector<Vec3> warped = moving ? system.positions(warp) : warp(std::span<const Vec3>(bones.generic));
+  const std::vector<Vec3> warped =
+      moving ? system.positions(warp) : warp(std::span<const Vec3>(bones.generic));
   result.bone_map = BoneMap(warp, settled_patches(warp, patches));
   std::vector<Vec3> placed = vertex_map(bones, result.bone_map, warped);
   retract_teeth(*check, bones, vertex_map, warped, teeth_limit, result.bone_map, placed);
@@ -257,7 +260,8 @@ Fitter::Fitter(Generic generic, Exterior skin, const std::map<std::string, Targe
   s.result.similarity = start_pose(s.pairs);
   s.register_teeth();
   s.bones = gather(s.generic);
-  s.check.emplace(s.skin, clearances(s.bones, s.patches, options), outward_directions(s.bones, s.result.similarity));
+  s.check.emplace(s.skin, clearances(s.bones, s.patches, options),
+                  outward_directions(s.bones, s.result.similarity));
   s.vertex_map = VertexMap(s.bones, s.patches);
   s.curves = curve_points(s.generic, options.curve_spacing);
   s.solve(std::max(0, options.normal_passes) + 1);
@@ -269,9 +273,10 @@ Fitter::Fitter(Generic generic, Exterior skin, const std::map<std::string, Targe
         std::to_string(s.result.bone_outside_skin) +
         " bone vertices could not be brought inside the skin; look at the landmarks near them");
   if (s.result.uncovered_share > 0)
-    s.result.warnings.push_back("the scan ends where " +
-                                std::to_string(static_cast<int>(std::lround(100 * s.result.uncovered_share))) +
-                                " % of the skull would lie; that part was left out");
+    s.result.warnings.push_back(
+        "the scan ends where " +
+        std::to_string(static_cast<int>(std::lround(100 * s.result.uncovered_share))) +
+        " % of the skull would lie; that part was left out");
 }
 
 Fitter::~Fitter() = default;
@@ -315,8 +320,8 @@ const FitResult& Fitter::set_depth_scale(const std::string& name, double scale) 
   throw Error("skull: landmark " + name + " is not one of this fit's; make a new Fitter with it");
 }
 
-FitResult fit(const Generic& generic, const Exterior& skin, const std::map<std::string, TargetLandmark>& landmarks,
-              const FitOptions& options) {
+FitResult fit(const Generic& generic, const Exterior& skin,
+              const std::map<std::string, TargetLandmark>& landmarks, const FitOptions& options) {
   return Fitter(generic, skin, landmarks, options).result();
 }
 

@@ -8,15 +8,15 @@
 
 namespace fascia::skull {
 
-/// A skull fit that stays ready: what depends on the generic and on which landmarks there are is factored once, so
-/// that a landmark moved by hand, or a depth scaled, is followed at interactive rates.
+/// A skull fit that stays ready: what depends on the generic and on which landmarks there are is factored
+/// once, so that a landmark moved by hand, or a depth scaled, is followed at interactive rates.
 ///
-/// The constraints that keep bone inside the skin are chosen once, in the constructor, and afterwards follow the
-/// skin; vertex by vertex the correction is always made anew. After a large change make a new Fitter.
+/// The constraints that keep bone inside the skin are chosen once, in the constructor, and afterwards follow
+/// the skin; vertex by vertex the correction is always made anew. After a large change make a new Fitter.
 class Fitter {
  public:
-  /// Fits as `fit` does. `generic` and the teeth in `options` are not kept by reference beyond the call; `skin` is
-  /// cheap to copy. Throws as `fit` does.
+  /// Fits as `fit` does. `generic` and the teeth in `options` are not kept by reference beyond the call;
+  /// `skin` is cheap to copy. Throws as `fit` does.
   Fitter(Generic generic, Exterior skin, const std::map<std::string, TargetLandmark>& landmarks,
          const FitOptions& options = {});
   ~Fitter();
@@ -32,8 +32,8 @@ class Fitter {
   /// Sets sigma, the scale of all depths. Throws Error outside 0.05 to 10.
   const FitResult& set_tissue_scale(double scale);
 
-  /// Sets k, the scale of one landmark's depth. Throws Error for an unknown landmark or a scale outside 0.05 to
-  /// 10.
+  /// Sets k, the scale of one landmark's depth. Throws Error for an unknown landmark or a scale outside 0.05
+  /// to 10.
   const FitResult& set_depth_scale(const std::string& landmark, double scale);
 
  private:

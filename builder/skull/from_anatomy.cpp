@@ -5,7 +5,9 @@
 namespace fascia::skull {
 namespace {
 
-TriangleMesh mesh_of(const anatomy::MeshObject* object) { return object ? object->mesh : TriangleMesh{}; }
+TriangleMesh mesh_of(const anatomy::MeshObject* object) {
+  return object ? object->mesh : TriangleMesh{};
+}
 
 // Centre of a condyle: midway between its poles, at the height of its axis.
 Vec3 condyle(const anatomy::GenericAnatomy& anatomy, const std::string& side) {
@@ -25,13 +27,15 @@ Generic from_anatomy(const anatomy::GenericAnatomy& anatomy, const std::string& 
   out.teeth_upper = mesh_of(anatomy.skull_object("teeth_upper"));
   out.teeth_lower = mesh_of(anatomy.skull_object("teeth_lower"));
   out.skin = mesh_of(anatomy.head_object("skin"));
-  if (out.cranium.empty() || out.mandible.empty()) throw Error("anatomy: the generic skull lacks a cranium or a mandible");
+  if (out.cranium.empty() || out.mandible.empty())
+    throw Error("anatomy: the generic skull lacks a cranium or a mandible");
   if (anatomy.depth_tables.empty()) throw Error("anatomy: there is no table of tissue depths");
   const anatomy::TissueDepthTable* table =
       depth_table.empty() ? &anatomy.depth_tables.front() : anatomy.depth_table(depth_table);
   if (!table) {
     std::string known;
-    for (const auto& other : anatomy.depth_tables) known += (known.empty() ? "" : ", ") + other.name;
+    for (const auto& other : anatomy.depth_tables)
+      known += (known.empty() ? "" : ", ") + other.name;
     throw Error("there is no tissue depth table '" + depth_table + "'; known are " + known);
   }
   for (const anatomy::Landmark& landmark : anatomy.landmarks) {
@@ -51,7 +55,8 @@ Generic from_anatomy(const anatomy::GenericAnatomy& anatomy, const std::string& 
     out.landmarks.push_back(std::move(entry));
   }
   for (const anatomy::Curve& curve : anatomy.curves)
-    if (curve.on == "cranium" || curve.on == "mandible") out.curves.push_back({curve.name, curve.closed, curve.points});
+    if (curve.on == "cranium" || curve.on == "mandible")
+      out.curves.push_back({curve.name, curve.closed, curve.points});
   out.condyle_left = condyle(anatomy, "left");
   out.condyle_right = condyle(anatomy, "right");
   return out;

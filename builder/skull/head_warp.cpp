@@ -12,7 +12,8 @@ constexpr double bone_sd = 0.0005;  // m
 constexpr double smoothing = 100;
 constexpr double least_distance = 0.003;  // m; nearer points would say the same twice
 
-// Landmarks carried over still lie on the skin, so regions should follow them; those that the head lacks do not.
+// Landmarks carried over still lie on the skin, so regions should follow them; those that the head lacks do
+// not.
 double skin_deviation(double confidence) {
   return std::hypot(bone_sd, confidence > 0.05 ? 0.004 * (1 - confidence) : placement_deviation(confidence));
 }
@@ -35,7 +36,8 @@ HeadWarp::HeadWarp(const Generic& generic, const std::vector<LandmarkPair>& pair
     add(pairs[i].generic->skin, skin_deviation(pairs[i].target.confidence), static_cast<int>(i));
   for (const TriangleMesh* mesh : {&generic.cranium, &generic.mandible})
     for (const Vec3& point : symmetric_points(*mesh, mesh == &generic.cranium ? 50 : 25))
-      if (std::abs(point.x()) >= 0.002) add(point, bone_sd, -1);  // of two so near the midplane one would be dropped
+      if (std::abs(point.x()) >= 0.002)
+        add(point, bone_sd, -1);  // of two so near the midplane one would be dropped
   system_ = BoneSystem(observations_, {}, smoothing, 1);
 }
 

@@ -119,7 +119,8 @@ std::vector<Observation> landmark_observations(const std::vector<LandmarkPair>& 
     observation.from = pair.generic->bone;
     observation.to = pair.bone_target();
     // A depth laid off beside the right place is off as well, about as much.
-    observation.sd = std::hypot(std::max(pair.generic->depth_sd, 1e-4), placement_deviation(pair.target.confidence));
+    observation.sd =
+        std::hypot(std::max(pair.generic->depth_sd, 1e-4), placement_deviation(pair.target.confidence));
     observation.normal = pair.direction;
     observation.slide_sd = placement_deviation(pair.target.confidence);
     out.push_back(observation);

@@ -20,7 +20,8 @@ struct LandmarkPair {
   Vec3 bone_target() const { return target.skin - depth * direction; }
 };
 
-/// Unit normal of the outer skin near `point`, mean over 4 mm: one triangle of a lip or wrinkle would mislead.
+/// Unit normal of the outer skin near `point`, mean over 4 mm: one triangle of a lip or wrinkle would
+/// mislead.
 Vec3 mean_skin_normal(const spatial::SurfaceQuery& skin, const Vec3& point);
 
 /// Pairs by name, in alphabetical order. Unknown names are ignored with a warning.

@@ -29,7 +29,8 @@ std::vector<BoneMap::Patch> make_patches(const Generic& generic, const std::opti
     for (const TriangleMesh* mesh : {&generic.teeth_upper, &generic.teeth_lower})
       for (const Vec3& v : mesh->vertices)
         reach = std::max(reach, std::min(0.008, distance_to(anchors, v)));
-    BoneMap::Patch patch{std::move(anchors), reach + 1e-6, reach + 0.012, Mat4::Identity(), fixed.has_value()};
+    BoneMap::Patch patch{std::move(anchors), reach + 1e-6, reach + 0.012, Mat4::Identity(),
+                         fixed.has_value()};
     if (fixed) patch.similarity = *fixed;
     out.push_back(std::move(patch));
   };
@@ -48,7 +49,8 @@ std::vector<BoneMap::Patch> make_patches(const Generic& generic, const std::opti
   return out;
 }
 
-std::vector<BoneMap::Patch> settled_patches(const splines::Warp& warp, const std::vector<BoneMap::Patch>& pattern) {
+std::vector<BoneMap::Patch> settled_patches(const splines::Warp& warp,
+                                            const std::vector<BoneMap::Patch>& pattern) {
   std::vector<BoneMap::Patch> patches = pattern;
   for (BoneMap::Patch& patch : patches) {
     if (patch.fixed) continue;

@@ -13,6 +13,7 @@ std::vector<BoneMap::Patch> make_patches(const Generic& generic, const std::opti
                                          const std::optional<Mat4>& lower);
 
 /// `pattern` with the similarities that follow `warp`; those fixed by evidence stay.
-std::vector<BoneMap::Patch> settled_patches(const splines::Warp& warp, const std::vector<BoneMap::Patch>& pattern);
+std::vector<BoneMap::Patch> settled_patches(const splines::Warp& warp,
+                                            const std::vector<BoneMap::Patch>& pattern);
 
 }  // namespace fascia::skull

@@ -41,7 +41,8 @@ VertexMap::VertexMap(const Bones& bones, const std::vector<BoneMap::Patch>& patt
         pulls_.push_back({static_cast<int>(v), static_cast<int>(k), strength});
 }
 
-std::vector<Vec3> VertexMap::operator()(const Bones& bones, const BoneMap& map, std::span<const Vec3> warped) const {
+std::vector<Vec3> VertexMap::operator()(const Bones& bones, const BoneMap& map,
+                                        std::span<const Vec3> warped) const {
   std::vector<Vec3> out(warped.begin(), warped.end());
   for (size_t begin = 0, end = 0; begin < pulls_.size(); begin = end) {
     const auto v = static_cast<size_t>(pulls_[begin].vertex);
@@ -136,8 +137,8 @@ void retract_teeth(ClearanceCheck& check, const Bones& bones, const VertexMap& v
   }
 }
 
-void place_meshes(ClearanceCheck& check, const Generic& generic, const Bones& bones, std::vector<Vec3> vertices,
-                  FitResult& out) {
+void place_meshes(ClearanceCheck& check, const Generic& generic, const Bones& bones,
+                  std::vector<Vec3> vertices, FitResult& out) {
   constexpr int rounds = 24;
   out.corrected_max = 0;
   out.bone_outside_skin = out.bone_within_clearance = 0;

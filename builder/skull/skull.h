@@ -57,12 +57,12 @@ struct FitOptions {
   int normal_passes = 8;           ///< times the depth directions are re-estimated on the fitted bone
   double normal_tolerance = 5e-5;  ///< no more passes once no bone target moves farther than this, m
   double skin_normal_share = 0.5;  ///< depth direction: 0 that of the generic, 1 the skin's normal
-  double exponent = 1;               ///< of the spline's kernel: 1 the thin plate; 3 is smoother, and what normals need
-  double normal_deviation = 0;       ///< radians by which bone turns less or more than skin; > 0 takes the skin's
-                                     ///< normals at landmarks as derivative data (exponent > 2)
-  double curve_spacing = 0.012;      ///< of semilandmarks along the curves, m; 0 leaves the curves out
-  double clearance_share = 0.6;    ///< bone stays this share of the local depth under the skin...
-  double clearance_floor = 0.002;  ///< ...and at least this, m (scaled down with tissue_scale < 1)
+  double exponent = 1;  ///< of the spline's kernel: 1 the thin plate; 3 is smoother, and what normals need
+  double normal_deviation = 0;   ///< radians by which bone turns less or more than skin; > 0 takes the skin's
+                                 ///< normals at landmarks as derivative data (exponent > 2)
+  double curve_spacing = 0.012;  ///< of semilandmarks along the curves, m; 0 leaves the curves out
+  double clearance_share = 0.6;  ///< bone stays this share of the local depth under the skin...
+  double clearance_floor = 0.002;             ///< ...and at least this, m (scaled down with tissue_scale < 1)
   const TriangleMesh* teeth_upper = nullptr;  ///< teeth that the head already has, m
   const TriangleMesh* teeth_lower = nullptr;
   bool trim_uncovered = true;  ///< leave out what would lie under skin that the head does not have
@@ -102,7 +102,7 @@ class BoneMap {
     std::vector<Vec3> anchors;    ///< generic points that move by the similarity
     double inner = 0, outer = 0;  ///< full strength within `inner` of an anchor, none beyond `outer`, m
     Mat4 similarity = Mat4::Identity();
-    bool fixed = false;  ///< by teeth that the head shows; else it follows the warp
+    bool fixed = false;                          ///< by teeth that the head shows; else it follows the warp
     double strength(const Vec3& generic) const;  ///< 1 near the anchors, 0 far off, smooth between
   };
   BoneMap() = default;
@@ -126,14 +126,14 @@ struct FitResult {
   splines::Warp warp;  ///< generic head (skin and bone) -> this head: carries regions and curves
   Mat4 similarity = Mat4::Identity();  ///< generic -> head, Procrustes
   JawFrame jaw;
-  double landmark_rms = 0;  ///< of the residuals weighted by confidence, m
-  double landmark_max = 0;  ///< largest residual of a landmark with confidence 0.5 or more, m
+  double landmark_rms = 0;        ///< of the residuals weighted by confidence, m
+  double landmark_max = 0;        ///< largest residual of a landmark with confidence 0.5 or more, m
   int bone_outside_skin = 0;      ///< vertices outside the outer skin: 0 unless the head makes it impossible
   int bone_within_clearance = 0;  ///< vertices nearer to the skin than their clearance
   int corrected_vertices = 0;     ///< moved by the last correction
   double corrected_max = 0;       ///< m
   int curve_points = 0, curve_points_used = 0;  ///< semilandmarks, and those with skin over them
-  double uncovered_share = 0;     ///< of the skull's triangles, under skin that the head does not have
+  double uncovered_share = 0;  ///< of the skull's triangles, under skin that the head does not have
   std::vector<std::string> warnings;
 };
 
@@ -142,9 +142,10 @@ struct FitResult {
 /// beyond use, or when an option is out of range.
 ///
 /// Steps: Procrustes similarity; bone targets = skin point - sigma k depth along the depth direction;
-/// semilandmarks slid along the curves; smoothed thin-plate warp with the table's SD; directions re-estimated;
-/// similarity patches at teeth and joints; bone brought inside the skin, first by added constraints, then vertex
-/// by vertex; bone left out that would lie under skin the head does not have. See docs/skull.md.
+/// semilandmarks slid along the curves; smoothed thin-plate warp with the table's SD; directions
+/// re-estimated; similarity patches at teeth and joints; bone brought inside the skin, first by added
+/// constraints, then vertex by vertex; bone left out that would lie under skin the head does not have. See
+/// docs/skull.md.
 FitResult fit(const Generic& generic, const Exterior& skin,
               const std::map<std::string, TargetLandmark>& landmarks, const FitOptions& options = {});
 

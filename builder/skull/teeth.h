@@ -22,7 +22,8 @@ TeethMatch match_teeth(const TriangleMesh& generic, const TriangleMesh& actual, 
 /// About `count` points spread evenly over the vertices of `mesh`, by farthest-point sampling.
 std::vector<Vec3> spread_points(const TriangleMesh& mesh, int count);
 
-/// The same points and their mirror images in x: the generic is symmetric, a choice of its points must be too.
+/// The same points and their mirror images in x: the generic is symmetric, a choice of its points must be
+/// too.
 std::vector<Vec3> symmetric_points(const TriangleMesh& mesh, int count);
 
 }  // namespace fascia::skull

@@ -7,9 +7,9 @@
 
 namespace fascia::skull {
 
-/// Thickness of the soft tissue at any point of the generic face: a polyharmonic spline (kernel -r, affine part) in space
-/// through a table's depths at its landmarks on the skin, both sides. It passes through the table, and between and
-/// beyond the landmarks stays within the table's least and greatest depth.
+/// Thickness of the soft tissue at any point of the generic face: a polyharmonic spline (kernel -r, affine
+/// part) in space through a table's depths at its landmarks on the skin, both sides. It passes through the
+/// table, and between and beyond the landmarks stays within the table's least and greatest depth.
 class TissueDepthField {
  public:
   /// @param anatomy     landmarks and tables

@@ -10,7 +10,8 @@ namespace {
 
 // Angle from `from` clockwise to `to` about `normal`, in [0, 2 pi).
 double clockwise_angle(const Vec3& normal, const Vec3& from, const Vec3& to) {
-  const double angle = std::atan2(-normal.dot(from.cross(to)), from.dot(to) - normal.dot(from) * normal.dot(to));
+  const double angle =
+      std::atan2(-normal.dot(from.cross(to)), from.dot(to) - normal.dot(from) * normal.dot(to));
   return angle < 0.0 ? angle + 2.0 * M_PI : angle;
 }
 

@@ -48,10 +48,12 @@ class Front {
   std::vector<double> sizes;
   std::vector<Edge> edges;
   std::vector<std::vector<int>> outgoing;  // alive front edges that leave each vertex
-  VertexGrid all, open;  // every vertex; those on a front
+  VertexGrid all, open;                    // every vertex; those on a front
 
  private:
-  bool has_edge(int a, int b) const { return std::find(joined_[a].begin(), joined_[a].end(), b) != joined_[a].end(); }
+  bool has_edge(int a, int b) const {
+    return std::find(joined_[a].begin(), joined_[a].end(), b) != joined_[a].end();
+  }
   int add_edge(int from, int to, int opposite);
   void kill(int e);
   bool fill(int e, int apex);

@@ -22,7 +22,8 @@ std::vector<int> small_loop(const Front& front, int e) {
 }
 
 // A loop about the end of the domain is meant to stay.
-bool ends_domain(const Front& front, const std::vector<int>& loop, const std::function<bool(const Vec3&)>& domain) {
+bool ends_domain(const Front& front, const std::vector<int>& loop,
+                 const std::function<bool(const Vec3&)>& domain) {
   for (int e : loop) {
     EdgeFrame frame;
     if (domain && frame.set(front, e) && !domain(frame.mid + 0.7 * frame.size * frame.o)) return true;
@@ -36,7 +37,8 @@ int sharpest_ear(const Front& front, int first, size_t count) {
   double best_score = -2.0;
   for (size_t k = 0; k < count; ++k, e = front.edges[e].next) {
     const Front::Edge &edge = front.edges[e], &next = front.edges[edge.next];
-    const Vec3 &a = front.mesh.vertices[edge.from], &b = front.mesh.vertices[edge.to], &c = front.mesh.vertices[next.to];
+    const Vec3 &a = front.mesh.vertices[edge.from], &b = front.mesh.vertices[edge.to],
+               &c = front.mesh.vertices[next.to];
     const bool upright = (a - b).cross(c - b).dot(front.normals[edge.to]) > 0.0;
     const double score = (a - b).normalized().dot((c - b).normalized()) + (upright ? 2.0 : 0.0);
     if (score > best_score) best_score = score, best = e;
@@ -46,7 +48,8 @@ int sharpest_ear(const Front& front, int first, size_t count) {
 
 }  // namespace
 
-void close_small_gaps(std::vector<int> left_over, const std::function<bool(const Vec3&)>& domain, Front* front) {
+void close_small_gaps(std::vector<int> left_over, const std::function<bool(const Vec3&)>& domain,
+                      Front* front) {
   std::sort(left_over.begin(), left_over.end());
   for (int start : left_over) {
     if (!front->edges[start].alive) continue;
@@ -56,7 +59,8 @@ void close_small_gaps(std::vector<int> left_over, const std::function<bool(const
     for (size_t left = loop.size(); left >= 3; --left) {
       const int ear = sharpest_ear(*front, at, left);
       const size_t fresh = front->edges.size();
-      if (!front->connect(ear, front->edges[front->edges[ear].next].to) || front->edges.size() == fresh) break;
+      if (!front->connect(ear, front->edges[front->edges[ear].next].to) || front->edges.size() == fresh)
+        break;
       at = static_cast<int>(fresh);
     }
   }

@@ -39,8 +39,9 @@ class HeightFit {
   int zeros_ = 0;
 };
 
-/// Fits a greedy choice of at most `options.max_centres` data: half of them an even cover of the skin's `area`, square metres,
-/// the rest where that misses most.
-HeightFit fit_height(const std::vector<DepthSample>& samples, const Options& options, double scale, double area);
+/// Fits a greedy choice of at most `options.max_centres` data: half of them an even cover of the skin's
+/// `area`, square metres, the rest where that misses most.
+HeightFit fit_height(const std::vector<DepthSample>& samples, const Options& options, double scale,
+                     double area);
 
 }  // namespace fascia::smas

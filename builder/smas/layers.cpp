@@ -20,10 +20,12 @@ LayerDepth::LayerDepth(const std::vector<LayerSample>& table, const Landmarks& l
       const auto found = landmarks.find(sample.landmark + side);
       if (found == landmarks.end()) continue;
       if (!(sample.fraction > 0.0 && sample.fraction < 1.0) || !(sample.free_depth > 0.0))
-        throw Error("SMAS: layer data at '" + sample.landmark + "': fraction must lie in (0, 1) and depth be positive");
+        throw Error("SMAS: layer data at '" + sample.landmark +
+                    "': fraction must lie in (0, 1) and depth be positive");
       sites_.push_back({found->second, sample.fraction, sample.free_depth * scale});
     }
-  if (sites_.empty()) throw Error("SMAS: no landmark of the layer table is known; give landmarks of the face");
+  if (sites_.empty())
+    throw Error("SMAS: no landmark of the layer table is known; give landmarks of the face");
 }
 
 double LayerDepth::depth(const Vec3& skin, double to_bone) const {

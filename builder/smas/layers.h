@@ -18,8 +18,8 @@ using LayerSample = anatomy::SmasDepth;
 /// The layer table of an adult face.
 ///
 /// Skin and subcutaneous fat lie over the SMAS, so that its depth is the thickness of those two. They
-/// are thin over galea, nose, lids and lips, and thick over the malar and nasolabial fat. The numbers and their
-/// sources are the `smas_depths` of anatomy/data/tissue.json.
+/// are thin over galea, nose, lids and lips, and thick over the malar and nasolabial fat. The numbers and
+/// their sources are the `smas_depths` of anatomy/data/tissue.json.
 const std::vector<LayerSample>& adult_layers();
 
 /// Depth of the SMAS at any point of the skin, interpolated between the landmarks of a layer table.

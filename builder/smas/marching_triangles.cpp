@@ -23,9 +23,12 @@ namespace {
 constexpr double kLooseTolerance = 2e-3;
 
 ProbeOptions probe_options(const MarchingOptions& options) {
-  const double shortest = options.min_edge_length > 0.0 ? std::min(options.min_edge_length, options.edge_length) : options.edge_length;
+  const double shortest = options.min_edge_length > 0.0
+                              ? std::min(options.min_edge_length, options.edge_length)
+                              : options.edge_length;
   const double tolerance = options.improve ? std::max(options.tolerance, kLooseTolerance) : options.tolerance;
-  return {options.edge_length, shortest, options.max_normal_turn, tolerance * (options.improve ? shortest : options.edge_length)};
+  return {options.edge_length, shortest, options.max_normal_turn,
+          tolerance * (options.improve ? shortest : options.edge_length)};
 }
 
 class Marcher {
@@ -50,7 +53,8 @@ class Marcher {
   bool add_triangle(const EdgeFrame& frame);
   bool join(const EdgeFrame& frame, const std::vector<int>& partners, bool only_shapely);
   void push_new(size_t first) {
-    for (size_t e = first; e < front.edges.size(); ++e) queue_.push_back(static_cast<int>(e));
+    for (size_t e = first; e < front.edges.size(); ++e)
+      queue_.push_back(static_cast<int>(e));
   }
 
   const MarchingOptions& options_;
@@ -147,7 +151,8 @@ void Marcher::grow() {
           deferred_.push_back(e);
         }
         if (front.mesh.vertex_count() > options_.max_vertices)
-          throw Error("marching triangles: the surface takes more than " + std::to_string(options_.max_vertices) +
+          throw Error("marching triangles: the surface takes more than " +
+                      std::to_string(options_.max_vertices) +
                       " vertices; limit its domain or take a larger edge length");
       }
     }
@@ -192,24 +197,30 @@ MarchingResult marching_triangles(const ImplicitFunction& function, const Marchi
   components(result.mesh, &result.parts);
   const Connectivity links = connectivity(result.mesh);
   for (const auto& neighbours : links.neighbours)
-    for (int neighbour : neighbours) result.boundary_edges += neighbour < 0;
+    for (int neighbour : neighbours)
+      result.boundary_edges += neighbour < 0;
   return result;
 }
 
 std::vector<Vec3> grid_seeds(const ImplicitFunction& function, const Bounds& box, double spacing) {
   if (!(spacing > 0.0)) throw Error("marching triangles: the spacing of seeds must be positive");
   const Vec3 size = box.size();
-  if (!(size.minCoeff() >= 0.0) || !size.allFinite()) throw Error("marching triangles: the box of the seeds is empty");
+  if (!(size.minCoeff() >= 0.0) || !size.allFinite())
+    throw Error("marching triangles: the box of the seeds is empty");
   std::array<int, 3> count;
-  for (int k = 0; k < 3; ++k) count[k] = static_cast<int>(std::floor(size[k] / spacing)) + 2;
+  for (int k = 0; k < 3; ++k)
+    count[k] = static_cast<int>(std::floor(size[k] / spacing)) + 2;
   if (static_cast<double>(count[0]) * count[1] * count[2] > 5e7)
     throw Error("marching triangles: too many seeds; take a larger spacing");
-  const auto index = [&](int x, int y, int z) { return (static_cast<size_t>(z) * count[1] + y) * count[0] + x; };
+  const auto index = [&](int x, int y, int z) {
+    return (static_cast<size_t>(z) * count[1] + y) * count[0] + x;
+  };
   const auto point = [&](int x, int y, int z) { return Vec3(box.lower + spacing * Vec3(x, y, z)); };
   std::vector<double> values(static_cast<size_t>(count[0]) * count[1] * count[2]);
   for (int z = 0; z < count[2]; ++z)
     for (int y = 0; y < count[1]; ++y)
-      for (int x = 0; x < count[0]; ++x) values[index(x, y, z)] = function(point(x, y, z), nullptr);
+      for (int x = 0; x < count[0]; ++x)
+        values[index(x, y, z)] = function(point(x, y, z), nullptr);
   std::vector<Vec3> seeds;
   for (int z = 0; z < count[2]; ++z)
     for (int y = 0; y < count[1]; ++y)

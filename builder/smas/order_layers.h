@@ -31,8 +31,8 @@ struct Layers {
   Lie move_between(Vec3* point) const;
 };
 
-/// Moves all vertices of `surface` between the layers, mends the triangles that this spoilt without leaving them again, and drops
-/// from the border what cannot be mended. Returns how its vertices lie.
+/// Moves all vertices of `surface` between the layers, mends the triangles that this spoilt without leaving
+/// them again, and drops from the border what cannot be mended. Returns how its vertices lie.
 std::vector<Lie> order_layers(const Layers& layers, MarchingResult* surface);
 
 }  // namespace fascia::smas

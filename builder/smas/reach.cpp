@@ -27,13 +27,16 @@ const Vec3* maybe(const Landmarks& landmarks, const std::string& name) {
   return found == landmarks.end() || !found->second.allFinite() ? nullptr : &found->second;
 }
 
-Vec3 perpendicular(const Vec3& v, const Vec3& axis) { return (v - axis * axis.dot(v)).normalized(); }
+Vec3 perpendicular(const Vec3& v, const Vec3& axis) {
+  return (v - axis * axis.dot(v)).normalized();
+}
 
 }  // namespace
 
 double face_scale(const Landmarks& landmarks) {
   // Of the mean adult: outer canthi 89 mm apart, 110 mm from between them to gnathion.
-  const Vec3 &left = landmark(landmarks, "exocanthion_left"), &right = landmark(landmarks, "exocanthion_right");
+  const Vec3 &left = landmark(landmarks, "exocanthion_left"),
+             &right = landmark(landmarks, "exocanthion_right");
   const double height = (landmark(landmarks, "gnathion") - 0.5 * (left + right)).norm();
   const double scale = 0.5 * ((left - right).norm() / 0.089 + height / 0.110);
   if (!(scale > 1e-3)) throw Error("SMAS: exocanthion_left, exocanthion_right and gnathion lie at one point");
@@ -59,15 +62,18 @@ double ReachField::Opening::across(const Vec3& point) const {
 
 ReachField::ReachField(const Landmarks& landmarks, const ReachOptions& options, double band)
     : scale_(face_scale(landmarks)), band_(band) {
-  for (const char* side : {"_left", "_right"}) add_eye(landmarks, side, options.lid_margin * scale_);
+  for (const char* side : {"_left", "_right"})
+    add_eye(landmarks, side, options.lid_margin * scale_);
   add_mouth(landmarks, std::clamp(options.lip_part, 0.1, 1.0));
   if (options.nostrils) add_nostrils(landmarks);
   add_limits(landmarks, options);
 }
 
 void ReachField::add_eye(const Landmarks& landmarks, const std::string& side, double margin) {
-  const Vec3 &outer = landmark(landmarks, "exocanthion" + side), &inner = landmark(landmarks, "endocanthion" + side);
-  const Vec3 &above = landmark(landmarks, "palpebrale_superius" + side), &below = landmark(landmarks, "palpebrale_inferius" + side);
+  const Vec3 &outer = landmark(landmarks, "exocanthion" + side),
+             &inner = landmark(landmarks, "endocanthion" + side);
+  const Vec3 &above = landmark(landmarks, "palpebrale_superius" + side),
+             &below = landmark(landmarks, "palpebrale_inferius" + side);
   Opening eye;
   eye.centre = 0.5 * (outer + inner);
   eye.x = (side == "_left" ? outer - inner : inner - outer).normalized();
@@ -87,8 +93,9 @@ void ReachField::add_eye(const Landmarks& landmarks, const std::string& side, do
 
 void ReachField::add_mouth(const Landmarks& landmarks, double part) {
   const Vec3 &left = landmark(landmarks, "cheilion_left"), &right = landmark(landmarks, "cheilion_right");
-  const Vec3 &between = landmark(landmarks, "stomion");
-  const Vec3 &above = landmark(landmarks, "labiale_superius"), &below = landmark(landmarks, "labiale_inferius");
+  const Vec3& between = landmark(landmarks, "stomion");
+  const Vec3 &above = landmark(landmarks, "labiale_superius"),
+             &below = landmark(landmarks, "labiale_inferius");
   Opening mouth;
   mouth.x = (left - right).normalized();
   mouth.y = perpendicular(above - below, mouth.x);
@@ -136,7 +143,8 @@ void ReachField::add_nostrils(const Landmarks& landmarks) {
   nose.bend = -1.5 * ahead / (nose.half_width * nose.half_width);
   nose.near = -0.004 * scale_, nose.far = 0.008 * scale_;
   openings_.push_back(nose);
-  for (const Vec3& rim : centres) nostrils_.push_back({rim, nose.z, 0.9 * length});
+  for (const Vec3& rim : centres)
+    nostrils_.push_back({rim, nose.z, 0.9 * length});
 }
 
 bool ReachField::in_nostril(const Vec3& point, const Vec3& normal) const {
@@ -151,7 +159,8 @@ bool ReachField::in_nostril(const Vec3& point, const Vec3& normal) const {
 }
 
 void ReachField::add_limits(const Landmarks& landmarks, const ReachOptions& options) {
-  const Vec3 &left = landmark(landmarks, "exocanthion_left"), &right = landmark(landmarks, "exocanthion_right");
+  const Vec3 &left = landmark(landmarks, "exocanthion_left"),
+             &right = landmark(landmarks, "exocanthion_right");
   const Vec3 side = (left - right).normalized();
   const Vec3 &chin = landmark(landmarks, "gnathion"), &root = landmark(landmarks, "nasion");
   const Vec3 up = perpendicular(root - chin, side), front = side.cross(up);
@@ -159,7 +168,8 @@ void ReachField::add_limits(const Landmarks& landmarks, const ReachOptions& opti
   double foremost = -1e300;
   for (const char* name : {"tragion_left", "tragion_right"})
     foremost = std::max(foremost, landmark(landmarks, name).dot(front));
-  for (const char* name : {"preaurale_left", "preaurale_right", "otobasion_superius_left", "otobasion_superius_right"})
+  for (const char* name :
+       {"preaurale_left", "preaurale_right", "otobasion_superius_left", "otobasion_superius_right"})
     if (const Vec3* ear = maybe(landmarks, name)) foremost = std::max(foremost, ear->dot(front));
   limits_.push_back({front * (foremost + options.ear_gap * scale_), front});
   // Behind the hairline.
@@ -180,7 +190,8 @@ void ReachField::add_limits(const Landmarks& landmarks, const ReachOptions& opti
 
 double ReachField::within_limits(const Vec3& skin) const {
   double value = 1.0;
-  for (const Limit& limit : limits_) value = std::min(value, (skin - limit.at).dot(limit.inward));
+  for (const Limit& limit : limits_)
+    value = std::min(value, (skin - limit.at).dot(limit.inward));
   return value;
 }
 
@@ -225,7 +236,8 @@ bool ReachField::near_opening(const Vec3& point) const {
   return false;
 }
 
-FacialSkin facial_skin(const TriangleMesh& skin, const Landmarks& landmarks, const ReachField& field, double band) {
+FacialSkin facial_skin(const TriangleMesh& skin, const Landmarks& landmarks, const ReachField& field,
+                       double band) {
   std::vector<double> limits(skin.vertices.size()), openings(skin.vertices.size());
   for (size_t v = 0; v < limits.size(); ++v) {
     limits[v] = field.within_limits(skin.vertices[v]);
@@ -235,11 +247,13 @@ FacialSkin facial_skin(const TriangleMesh& skin, const Landmarks& landmarks, con
   std::vector<bool> keep(skin.triangles.size(), false);
   for (int t = 0; t < skin.triangle_count(); ++t) {
     const auto& [a, b, c] = skin.triangles[t];
-    keep[t] = std::max({limits[a], limits[b], limits[c]}) > -band && std::min({openings[a], openings[b], openings[c]}) > -band;
+    keep[t] = std::max({limits[a], limits[b], limits[c]}) > -band &&
+              std::min({openings[a], openings[b], openings[c]}) > -band;
   }
   // Lining looks at other skin close by: only the skin around the openings matters for that.
   std::vector<bool> around(skin.triangles.size(), false);
-  for (int t = 0; t < skin.triangle_count(); ++t) around[t] = field.near_opening(skin.vertices[skin.triangles[t][0]]);
+  for (int t = 0; t < skin.triangle_count(); ++t)
+    around[t] = field.near_opening(skin.vertices[skin.triangles[t][0]]);
   if (std::find(around.begin(), around.end(), true) == around.end())
     throw Error("SMAS: no skin near eyes and mouth; check that the landmarks lie on the head");
   const spatial::SurfaceQuery query(submesh(skin, around, nullptr));
@@ -262,11 +276,14 @@ FacialSkin facial_skin(const TriangleMesh& skin, const Landmarks& landmarks, con
   for (int t = 0; t < skin.triangle_count(); ++t) {
     if (!keep[t]) continue;
     const Triangle& c = skin.triangles[t];
-    const double d = ((skin.vertices[c[0]] + skin.vertices[c[1]] + skin.vertices[c[2]]) / 3.0 - start).squaredNorm();
+    const double d =
+        ((skin.vertices[c[0]] + skin.vertices[c[1]] + skin.vertices[c[2]]) / 3.0 - start).squaredNorm();
     if (d < nearest) nearest = d, first = t;
   }
   if (first < 0)
-    throw Error("SMAS: no skin of the face between ears, hairline and neck; check that the landmarks lie on the head");
+    throw Error(
+        "SMAS: no skin of the face between ears, hairline and neck; check that the landmarks lie on the "
+        "head");
   std::vector<bool> reached(skin.triangles.size(), false);
   std::vector<int> stack = {first};
   reached[first] = true;

@@ -44,7 +44,8 @@ class ReachField {
   /// Whether a patch of skin at `point` with unit `normal` could be the inside of an opening (lining of
   /// mouth, lids or nostril): it is near one and does not look out of it. A ray tells whether it is.
   bool may_be_lining(const Vec3& point, const Vec3& normal) const;
-  /// Whether a patch of skin is the lining of an eye socket for certain: behind the lids and facing the globe.
+  /// Whether a patch of skin is the lining of an eye socket for certain: behind the lids and facing the
+  /// globe.
   bool is_socket(const Vec3& point, const Vec3& normal) const;
   /// Whether `point` is within 40 mm (of an adult) of an opening.
   bool near_opening(const Vec3& point) const;
@@ -55,7 +56,7 @@ class ReachField {
   struct Opening {
     Vec3 centre, x, y, z;
     double half_width, up, down, bend, near, far;
-    double globe = 0.0;  // radius of the globe behind the lids; 0: not an eye
+    double globe = 0.0;                        // radius of the globe behind the lids; 0: not an eye
     double distance(const Vec3& point) const;  // ellipse and depth range
     double across(const Vec3& point) const;    // ellipse alone
   };
@@ -88,8 +89,10 @@ struct FacialSkin {
 };
 
 /// Cuts the outer skin of the face from a head: the connected skin around the cheeks and forehead where
-/// `field` > -`band`. The lining of mouth, nose and eye sockets, which looks at other skin close by, stays away.
+/// `field` > -`band`. The lining of mouth, nose and eye sockets, which looks at other skin close by, stays
+/// away.
 /// @throws Error when the landmarks do not lie on the skin.
-FacialSkin facial_skin(const TriangleMesh& skin, const Landmarks& landmarks, const ReachField& field, double band);
+FacialSkin facial_skin(const TriangleMesh& skin, const Landmarks& landmarks, const ReachField& field,
+                       double band);
 
 }  // namespace fascia::smas

@@ -14,7 +14,8 @@ namespace {
 // The surface around a vertex as the turn of the normals around it foretells it.
 class LocalSurface {
  public:
-  LocalSurface(const SurfaceMesh& m, int v) : at_(m.points[v]), n_(m.normals[v]), x_(n_.unitOrthogonal()), y_(n_.cross(x_)) {
+  LocalSurface(const SurfaceMesh& m, int v)
+      : at_(m.points[v]), n_(m.normals[v]), x_(n_.unitOrthogonal()), y_(n_.cross(x_)) {
     Eigen::Matrix2d moment = Eigen::Matrix2d::Zero(), turn = Eigen::Matrix2d::Zero();
     const auto add = [&](int w) {
       const Vec3 along = m.points[w] - at_, change = m.normals[w] - n_;
@@ -49,7 +50,9 @@ double worst_around(const SurfaceMesh& m, int v, const Vec3& point) {
   m.around(v, [&](int h) {
     const int a = m.to(h), b = m.apex(h);
     const Vec3 facing = m.normals[v] + m.normals[a] + m.normals[b];
-    const double cosine = is_upright(point, m.points[a], m.points[b], facing) ? smallest_angle_cosine(point, m.points[a], m.points[b]) : 2.0;
+    const double cosine = is_upright(point, m.points[a], m.points[b], facing)
+                              ? smallest_angle_cosine(point, m.points[a], m.points[b])
+                              : 2.0;
     worst = std::max(worst, cosine);
   });
   return worst;
@@ -110,7 +113,8 @@ struct Place {
 };
 
 // Where vertex `v` might go, the best first, as far as it is better than where it is.
-void better_places(const SurfaceMesh& m, const BoundaryMotion& boundary, bool off_surface, int v, std::vector<Place>* places) {
+void better_places(const SurfaceMesh& m, const BoundaryMotion& boundary, bool off_surface, int v,
+                   std::vector<Place>* places) {
   places->clear();
   const LocalSurface local(m, v);
   Vec3 x = local.x(), y = local.y();
@@ -130,20 +134,23 @@ void better_places(const SurfaceMesh& m, const BoundaryMotion& boundary, bool of
   for (double length : {0.06, 0.15, 0.3})
     for (int k = 0; k < 8; ++k) {
       Vec3 point, normal;
-      local.follow(length * m.sizes[v] * (std::cos(k * M_PI / 4.0) * x + std::sin(k * M_PI / 4.0) * y), &point, &normal);
+      local.follow(length * m.sizes[v] * (std::cos(k * M_PI / 4.0) * x + std::sin(k * M_PI / 4.0) * y),
+                   &point, &normal);
       consider(point, normal);
     }
   if (off_surface && !m.on_boundary(v)) {
     const Vec3 centre = centre_of_ring(m, v);
-    for (double share : {0.5, 1.0}) consider(m.points[v] + share * (centre - m.points[v]), m.normals[v]);
+    for (double share : {0.5, 1.0})
+      consider(m.points[v] + share * (centre - m.points[v]), m.normals[v]);
   }
-  std::stable_sort(places->begin(), places->end(), [](const Place& a, const Place& b) { return a.worst < b.worst; });
+  std::stable_sort(places->begin(), places->end(),
+                   [](const Place& a, const Place& b) { return a.worst < b.worst; });
 }
 
 }  // namespace
 
-bool relax_worst(const BoundaryMotion& boundary, double least_angle, const std::function<bool(int, const Vec3&)>& may_lie,
-                 SurfaceMesh* mesh) {
+bool relax_worst(const BoundaryMotion& boundary, double least_angle,
+                 const std::function<bool(int, const Vec3&)>& may_lie, SurfaceMesh* mesh) {
   SurfaceMesh& m = *mesh;
   const double limit = std::cos(least_angle);
   bool any = false;
@@ -153,7 +160,8 @@ bool relax_worst(const BoundaryMotion& boundary, double least_angle, const std::
     bool moved = false;
     for (const Triangle& t : m.triangles) {
       const Vec3 &a = m.points[t[0]], &b = m.points[t[1]], &c = m.points[t[2]];
-      if (smallest_angle_cosine(a, b, c) > limit || !is_upright(a, b, c, m.normals[t[0]] + m.normals[t[1]] + m.normals[t[2]]))
+      if (smallest_angle_cosine(a, b, c) > limit ||
+          !is_upright(a, b, c, m.normals[t[0]] + m.normals[t[1]] + m.normals[t[2]]))
         poor[t[0]] = poor[t[1]] = poor[t[2]] = 1;
     }
     for (int v = 0; v < static_cast<int>(m.points.size()); ++v) {
@@ -173,7 +181,8 @@ bool relax_worst(const BoundaryMotion& boundary, double least_angle, const std::
 }
 
 void settle(SurfaceField* field, SurfaceMesh* mesh) {
-  for (size_t v = 0; v < mesh->points.size(); ++v) field->project(&mesh->points[v], &mesh->normals[v], 0.5 * mesh->sizes[v]);
+  for (size_t v = 0; v < mesh->points.size(); ++v)
+    field->project(&mesh->points[v], &mesh->normals[v], 0.5 * mesh->sizes[v]);
 }
 
 }  // namespace fascia::smas

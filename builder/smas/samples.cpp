@@ -14,7 +14,8 @@ Bones::Bones(const TriangleMesh* cranium, const TriangleMesh* mandible,
   for (const TriangleMesh* bone : {cranium, mandible}) {
     if (!bone || bone->empty()) continue;
     std::vector<bool> inside(bone->vertices.size()), keep(bone->triangles.size());
-    for (size_t v = 0; v < inside.size(); ++v) inside[v] = region(bone->vertices[v]);
+    for (size_t v = 0; v < inside.size(); ++v)
+      inside[v] = region(bone->vertices[v]);
     bool any = false;
     for (size_t t = 0; t < keep.size(); ++t) {
       const auto& [a, b, c] = bone->triangles[t];
@@ -49,7 +50,8 @@ std::vector<Vec3> blended_normals(const TriangleMesh& mesh) {
   for (int round = 0; round < 2; ++round) {
     std::vector<Vec3> sum = normals;
     for (const Triangle& t : mesh.triangles)
-      for (int e = 0; e < 3; ++e) sum[t[e]] += 0.25 * (normals[t[(e + 1) % 3]] + normals[t[(e + 2) % 3]]);
+      for (int e = 0; e < 3; ++e)
+        sum[t[e]] += 0.25 * (normals[t[(e + 1) % 3]] + normals[t[(e + 2) % 3]]);
     for (size_t v = 0; v < sum.size(); ++v)
       if (sum[v].norm() > 1e-9) normals[v] = sum[v].normalized();
   }
@@ -60,7 +62,8 @@ std::vector<Vec3> blended_normals(const TriangleMesh& mesh) {
 // beyond what the bone allows.
 void smooth_depths(double radius, std::vector<DepthSample>* samples) {
   VertexGrid grid(radius);
-  for (const DepthSample& sample : *samples) grid.add(sample.skin);
+  for (const DepthSample& sample : *samples)
+    grid.add(sample.skin);
   // The weights are the same in every round.
   std::vector<int> near, neighbours;
   std::vector<double> weights, sums;
@@ -81,12 +84,15 @@ void smooth_depths(double radius, std::vector<DepthSample>* samples) {
   for (int round = 0; round < 2; ++round) {
     for (size_t i = 0, k = 0; i < samples->size(); ++i) {
       double sum = 0.0;
-      for (; k < ends[i]; ++k) sum += weights[k] * (*samples)[neighbours[k]].depth;
+      for (; k < ends[i]; ++k)
+        sum += weights[k] * (*samples)[neighbours[k]].depth;
       depths[i] = std::clamp(sum / sums[i], (*samples)[i].least, (*samples)[i].most);
     }
-    for (size_t i = 0; i < samples->size(); ++i) (*samples)[i].depth = depths[i];
+    for (size_t i = 0; i < samples->size(); ++i)
+      (*samples)[i].depth = depths[i];
   }
-  for (DepthSample& sample : *samples) sample.zero = sample.skin - sample.depth * sample.normal;
+  for (DepthSample& sample : *samples)
+    sample.zero = sample.skin - sample.depth * sample.normal;
 }
 
 }  // namespace

@@ -14,7 +14,8 @@ namespace fascia::smas {
 class Bones {
  public:
   /// Either bone may be null. Only what lies in `region` is looked at.
-  Bones(const TriangleMesh* cranium, const TriangleMesh* mandible, const std::function<bool(const Vec3&)>& region);
+  Bones(const TriangleMesh* cranium, const TriangleMesh* mandible,
+        const std::function<bool(const Vec3&)>& region);
 
   /// Distance to the nearer bone, negative inside one; infinite beyond `range`.
   double distance(const Vec3& point, double range = std::numeric_limits<double>::infinity()) const;
@@ -28,11 +29,11 @@ class Bones {
 
 /// A point where the depth of the SMAS is known.
 struct DepthSample {
-  Vec3 skin = Vec3::Zero();       ///< on the skin
-  Vec3 normal = Vec3::Zero();     ///< smoothed outward unit normal there
-  Vec3 zero = Vec3::Zero();       ///< where the SMAS passes
-  double depth = 0.0;             ///< from skin to zero, metres
-  double least = 0.0, most = 0.0; ///< bounds of the depth that the bone sets
+  Vec3 skin = Vec3::Zero();        ///< on the skin
+  Vec3 normal = Vec3::Zero();      ///< smoothed outward unit normal there
+  Vec3 zero = Vec3::Zero();        ///< where the SMAS passes
+  double depth = 0.0;              ///< from skin to zero, metres
+  double least = 0.0, most = 0.0;  ///< bounds of the depth that the bone sets
 };
 
 /// Depth samples over the face about `spacing` apart, where the skin is dense enough, and at each corner

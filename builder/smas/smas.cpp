@@ -17,12 +17,14 @@ namespace {
 
 double area_of(const TriangleMesh& mesh) {
   double area = 0.0;
-  for (int t = 0; t < mesh.triangle_count(); ++t) area += triangle_area(mesh, t);
+  for (int t = 0; t < mesh.triangle_count(); ++t)
+    area += triangle_area(mesh, t);
   return area;
 }
 
 // Whether the closest point of the facial skin is on its boundary: then the query lies beyond it.
-bool beyond(const Connectivity& links, const SurfacePoint& at, const std::vector<bool>& border, const TriangleMesh& mesh) {
+bool beyond(const Connectivity& links, const SurfacePoint& at, const std::vector<bool>& border,
+            const TriangleMesh& mesh) {
   const Triangle& t = mesh.triangles[at.triangle];
   int corner = -1, zeros = 0;
   for (int e = 0; e < 3; ++e) {
@@ -40,7 +42,8 @@ std::vector<bool> border_vertices(const TriangleMesh& mesh, const Connectivity& 
   std::vector<bool> border(mesh.vertices.size(), false);
   for (int t = 0; t < mesh.triangle_count(); ++t)
     for (int e = 0; e < 3; ++e)
-      if (links.neighbours[t][e] < 0) border[mesh.triangles[t][e]] = border[mesh.triangles[t][(e + 1) % 3]] = true;
+      if (links.neighbours[t][e] < 0)
+        border[mesh.triangles[t][e]] = border[mesh.triangles[t][(e + 1) % 3]] = true;
   return border;
 }
 
@@ -100,9 +103,10 @@ Result build(const Inputs& inputs, const Options& options) {
     return (offset - normal * normal.dot(offset)).norm() < 0.5 * edge;
   };
   const Vec3& start = inputs.landmarks.at("glabella");
-  marching.seeds.push_back(std::min_element(samples.begin(), samples.end(), [&](const DepthSample& a, const DepthSample& b) {
-                             return (a.skin - start).squaredNorm() < (b.skin - start).squaredNorm();
-                           })->zero);
+  marching.seeds.push_back(
+      std::min_element(samples.begin(), samples.end(), [&](const DepthSample& a, const DepthSample& b) {
+        return (a.skin - start).squaredNorm() < (b.skin - start).squaredNorm();
+      })->zero);
   MarchingResult surface = marching_triangles(function, marching);
 
   Result result;
@@ -115,7 +119,8 @@ Result build(const Inputs& inputs, const Options& options) {
   }
   trim(0.35, &surface.mesh, &surface.normals, &surface.sizes, &field);
   keep_main_part(&surface.mesh, &surface.normals, &surface.sizes, &field);
-  if (surface.mesh.empty()) throw Error("SMAS: no surface between skin and bone; check the landmarks and the fitted skull");
+  if (surface.mesh.empty())
+    throw Error("SMAS: no surface between skin and bone; check the landmarks and the fitted skull");
   QualityOptions quality;
   quality.tolerance = 1e-3 * edge;
   quality.boundary_smoothing = 0.3;
@@ -124,15 +129,18 @@ Result build(const Inputs& inputs, const Options& options) {
   const std::vector<Vec3> skin_normals = vertex_normals(*inputs.skin);
   const auto outward = [&](const SurfacePoint& at) {
     const Triangle& t = inputs.skin->triangles[face.skin_triangle[at.triangle]];
-    return Vec3(at.barycentric[0] * skin_normals[t[0]] + at.barycentric[1] * skin_normals[t[1]] + at.barycentric[2] * skin_normals[t[2]]);
+    return Vec3(at.barycentric[0] * skin_normals[t[0]] + at.barycentric[1] * skin_normals[t[1]] +
+                at.barycentric[2] * skin_normals[t[2]]);
   };
-  const std::vector<Lie> lies = order_layers({skin, bones, options.clearance * scale, 0.06 * scale, outward}, &surface);
+  const std::vector<Lie> lies =
+      order_layers({skin, bones, options.clearance * scale, 0.06 * scale, outward}, &surface);
   result.mesh = std::move(surface.mesh);
   result.normals = std::move(surface.normals);
   for (const Lie& lie : lies) {
     result.skin_distance.push_back(lie.under_skin);
     result.bone_distance.push_back(lie.over_bone);
-    result.skin_points.push_back({face.skin_triangle[lie.skin.surface.triangle], lie.skin.surface.barycentric});
+    result.skin_points.push_back(
+        {face.skin_triangle[lie.skin.surface.triangle], lie.skin.surface.barycentric});
     result.outside_layers += !lie.between();
   }
   result.boundary = boundary_loops(result.mesh, connectivity(result.mesh));

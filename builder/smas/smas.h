@@ -46,19 +46,20 @@ struct Options {
 
 /// The SMAS, and how it lies between skin and bone.
 struct Result {
-  TriangleMesh mesh;           ///< oriented outwards, one part, open at the outer limit, lids, mouth, nostrils
-  std::vector<Vec3> normals;   ///< unit outward normals, one a vertex
+  TriangleMesh mesh;          ///< oriented outwards, one part, open at the outer limit, lids, mouth, nostrils
+  std::vector<Vec3> normals;  ///< unit outward normals, one a vertex
   std::vector<double> skin_distance;      ///< thickness of skin and fat over each vertex, metres
   std::vector<double> bone_distance;      ///< distance to the nearer bone, metres; infinite without bones
   std::vector<SurfacePoint> skin_points;  ///< point of the given skin over each vertex
   /// Boundary loops as vertex numbers, longest first: the first is the outer limit.
   std::vector<std::vector<int>> boundary;
-  int outside_layers = 0;      ///< vertices not strictly between bone and skin
-  int folds = 0;               ///< triangles that face against their vertices' normals
+  int outside_layers = 0;  ///< vertices not strictly between bone and skin
+  int folds = 0;           ///< triangles that face against their vertices' normals
   TriangleQuality quality;
-  int centres = 0;             ///< data of the implicit function
-  double fit_error = 0.0;      ///< root mean square distance of the depths asked for to the function's surface, metres
-  double depth_error = 0.0;    ///< the largest such distance, metres
+  int centres = 0;  ///< data of the implicit function
+  double fit_error =
+      0.0;  ///< root mean square distance of the depths asked for to the function's surface, metres
+  double depth_error = 0.0;  ///< the largest such distance, metres
   long evaluations = 0;
 };
 
@@ -71,10 +72,11 @@ struct Result {
 ///
 /// Based on: O. Aina, "Generating anatomical substructures for physically-based facial animation", 2011,
 /// section 7.1; G. Turk and J. O'Brien, "Modelling with implicit surfaces that interpolate", 2002;
-/// J. Carr et al., "Reconstruction and representation of 3D objects with radial basis functions", 2001 (greedy
-/// centres).
+/// J. Carr et al., "Reconstruction and representation of 3D objects with radial basis functions", 2001
+/// (greedy centres).
 ///
-/// @throws Error when the skin is empty, landmarks are missing or lie off the skin, or no surface comes about.
+/// @throws Error when the skin is empty, landmarks are missing or lie off the skin, or no surface comes
+/// about.
 Result build(const Inputs& inputs, const Options& options = {});
 
 }  // namespace fascia::smas

@@ -60,11 +60,13 @@ void ring(const SurfaceMesh& m, int v, std::vector<int>* out) {
 struct CollapseCheck {
   std::vector<int> ring_from, ring_to;
 
-  // Whether `from` can be merged into `to`: the mesh stays manifold (link condition), nothing folds or stretches.
+  // Whether `from` can be merged into `to`: the mesh stays manifold (link condition), nothing folds or
+  // stretches.
   bool operator()(const SurfaceMesh& m, int from, int to) {
     ring(m, from, &ring_from), ring(m, to, &ring_to);
     int wings = 0, shared = 0;
-    for (int w : ring_from) shared += std::binary_search(ring_to.begin(), ring_to.end(), w);
+    for (int w : ring_from)
+      shared += std::binary_search(ring_to.begin(), ring_to.end(), w);
     bool sound = true;
     m.around(from, [&](int h) {
       const int u = m.to(h), w = m.apex(h);
@@ -105,8 +107,10 @@ bool collapse_short_edges(double feature_turn, SurfaceMesh* mesh) {
     if (border_a || (!border_b && around_b < around_a)) std::swap(a, b);
     if (m.on_boundary(a) && !(m.twin[h] < 0 && m.on_boundary(b))) continue;
     if (m.normals[a].dot(m.normals[b]) < feature || !m.may_edit(h) || !can_collapse(m, a, b)) continue;
-    for (int v : can_collapse.ring_from) touched[v] = 1;
-    for (int v : can_collapse.ring_to) touched[v] = 1;
+    for (int v : can_collapse.ring_from)
+      touched[v] = 1;
+    for (int v : can_collapse.ring_to)
+      touched[v] = 1;
     m.collapse(h, b);
     any = true;
   }
@@ -120,11 +124,13 @@ std::vector<int> collapse_slivers(double least_angle, SurfaceMesh* mesh) {
   CollapseCheck can_collapse;
   for (int t = 0; t < static_cast<int>(m.triangles.size()); ++t) {
     const Triangle& c = m.triangles[t];
-    if (m.gone(3 * t) || smallest_angle_cosine(m.points[c[0]], m.points[c[1]], m.points[c[2]]) <= limit) continue;
+    if (m.gone(3 * t) || smallest_angle_cosine(m.points[c[0]], m.points[c[1]], m.points[c[2]]) <= limit)
+      continue;
     int shortest = 3 * t;
     for (int h = 3 * t + 1; h < 3 * t + 3; ++h)
       if (m.length(h) < m.length(shortest)) shortest = h;
-    for (const auto& [a, b] : {std::pair(m.from(shortest), m.to(shortest)), std::pair(m.to(shortest), m.from(shortest))}) {
+    for (const auto& [a, b] :
+         {std::pair(m.from(shortest), m.to(shortest)), std::pair(m.to(shortest), m.from(shortest))}) {
       if (m.on_boundary(a) || !m.may_edit(shortest) || !can_collapse(m, a, b)) continue;
       m.collapse(shortest, b);
       break;
@@ -146,8 +152,10 @@ bool flip_if_better(double feature, int h, SurfaceMesh* mesh) {
   const double after = std::max(smallest_angle_cosine(pa, pd, pc), smallest_angle_cosine(pd, pb, pc));
   if (after > before - 5e-4) return false;
   const Vec3 across = m.normals[c] + m.normals[d];
-  if (!is_upright(pa, pd, pc, across + m.normals[a]) || !is_upright(pd, pb, pc, across + m.normals[b])) return false;
-  if (m.normals[c].dot(m.normals[d]) < feature || !m.may_edit(h) || m.find(c, d) >= 0 || m.find(d, c) >= 0) return false;
+  if (!is_upright(pa, pd, pc, across + m.normals[a]) || !is_upright(pd, pb, pc, across + m.normals[b]))
+    return false;
+  if (m.normals[c].dot(m.normals[d]) < feature || !m.may_edit(h) || m.find(c, d) >= 0 || m.find(d, c) >= 0)
+    return false;
   m.flip(h);
   return true;
 }

@@ -4,7 +4,8 @@
 
 namespace fascia::smas {
 
-SurfaceMesh::SurfaceMesh(const TriangleMesh& mesh, const std::vector<Vec3>& vertex_normals, const std::vector<double>& vertex_sizes)
+SurfaceMesh::SurfaceMesh(const TriangleMesh& mesh, const std::vector<Vec3>& vertex_normals,
+                         const std::vector<double>& vertex_sizes)
     : points(mesh.vertices), normals(vertex_normals), sizes(vertex_sizes), triangles(mesh.triangles) {
   const Connectivity links = connectivity(mesh);
   twin.assign(3 * triangles.size(), -1);
@@ -18,7 +19,8 @@ SurfaceMesh::SurfaceMesh(const TriangleMesh& mesh, const std::vector<Vec3>& vert
     ++corners[v];
   }
   fixed.assign(points.size(), 0);
-  for (int v = 0; v < static_cast<int>(points.size()); ++v) fixed[v] = valence(v) != corners[v];
+  for (int v = 0; v < static_cast<int>(points.size()); ++v)
+    fixed[v] = valence(v) != corners[v];
   dead_triangle_.assign(triangles.size(), 0);
   dead_vertex_.assign(points.size(), 0);
 }
@@ -111,7 +113,8 @@ void SurfaceMesh::collapse(int h, int kept) {
   const int g = twin[h], b = kept, a = from(h) == kept ? to(h) : from(h);
   // What will leave b.
   std::vector<int> fan;
-  for (int v : {a, b}) around(v, [&](int k) { fan.push_back(k); });
+  for (int v : {a, b})
+    around(v, [&](int k) { fan.push_back(k); });
   const auto drop = [&](int k) {  // the triangle of k, whose other two sides become one
     const int c = apex(k), inner = twin[next(k)], outer = twin[prev(k)];
     dead_triangle_[k / 3] = 1;
@@ -144,7 +147,8 @@ std::vector<int> SurfaceMesh::compact() {
     fixed[vertices] = fixed[v];
     ++vertices;
   }
-  for (size_t t = 0; t < triangles.size(); ++t) triangle[t] = dead_triangle_[t] ? -1 : count++;
+  for (size_t t = 0; t < triangles.size(); ++t)
+    triangle[t] = dead_triangle_[t] ? -1 : count++;
   const auto moved = [&](int h) { return h < 0 ? -1 : 3 * triangle[h / 3] + h % 3; };
   for (size_t t = 0; t < triangles.size(); ++t) {
     if (dead_triangle_[t]) continue;
@@ -154,8 +158,10 @@ std::vector<int> SurfaceMesh::compact() {
       twin[3 * to + e] = moved(twin[3 * t + e]);
     }
   }
-  points.resize(vertices), normals.resize(vertices), sizes.resize(vertices), leaving.resize(vertices), fixed.resize(vertices);
-  for (int& h : leaving) h = moved(h);
+  points.resize(vertices), normals.resize(vertices), sizes.resize(vertices), leaving.resize(vertices),
+      fixed.resize(vertices);
+  for (int& h : leaving)
+    h = moved(h);
   triangles.resize(count), twin.resize(3 * static_cast<size_t>(count));
   dead_vertex_.assign(points.size(), 0);
   dead_triangle_.assign(triangles.size(), 0);

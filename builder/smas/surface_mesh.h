@@ -6,11 +6,12 @@
 
 namespace fascia::smas {
 
-/// A triangle mesh that is edited in place: half-edges, and at every vertex its normal and the edge length asked
-/// for there.
+/// A triangle mesh that is edited in place: half-edges, and at every vertex its normal and the edge length
+/// asked for there.
 ///
-/// Half-edge h = 3 t + e runs along edge e of triangle t, from its corner e to corner e + 1. The triangles around a
-/// vertex are a fan or a ring; where several fans meet the vertex is `fixed`, and no edit touches it.
+/// Half-edge h = 3 t + e runs along edge e of triangle t, from its corner e to corner e + 1. The triangles
+/// around a vertex are a fan or a ring; where several fans meet the vertex is `fixed`, and no edit touches
+/// it.
 struct SurfaceMesh {
   std::vector<Vec3> points, normals;
   std::vector<double> sizes;

@@ -90,7 +90,8 @@ SurfaceProbe::Hit SurfaceProbe::spin(const EdgeFrame& frame, const Bend& bend, d
     // So near that Newton's remainder is below the tolerance: step on, and keep the gradient.
     if (radius * radius * step * step * sharpest < 0.25 * options_.tolerance) {
       angle += step;
-      hit = {true, Vec3(frame.mid + radius * (frame.o * std::cos(angle) + frame.n * std::sin(angle))), gradient / slope};
+      hit = {true, Vec3(frame.mid + radius * (frame.o * std::cos(angle) + frame.n * std::sin(angle))),
+             gradient / slope};
       return hit;
     }
     angle += std::clamp(step, -0.5, 0.5);
@@ -109,15 +110,17 @@ SurfaceProbe::Hit SurfaceProbe::apex(const Front& front, const EdgeFrame& frame,
     const bool turned = !hit.found || hit.normal.dot(frame.n) < kSameSheet;
     const double turn = turned ? 1.5 : std::acos(std::clamp(hit.normal.dot(frame.n), -1.0, 1.0));
     // Past the shortest edge only as far as it takes to hold on to the sheet.
-    const bool fits = !turned && (turn <= 1.3 * options_.max_normal_turn || step <= options_.shortest * 1.001);
+    const bool fits =
+        !turned && (turn <= 1.3 * options_.max_normal_turn || step <= options_.shortest * 1.001);
     if (fits) {
       const double wanted = turn > 1e-9 ? radius * options_.max_normal_turn / turn : options_.longest;
       *size = std::clamp(std::min(wanted, 1.3 * frame.size), options_.shortest, options_.longest);
       return hit;
     }
     if (turned && step < 0.2 * options_.shortest) break;
-    step = turned ? 0.5 * step
-                  : std::max(options_.shortest, step * std::clamp(options_.max_normal_turn / turn, 0.4, 0.85));
+    step = turned
+               ? 0.5 * step
+               : std::max(options_.shortest, step * std::clamp(options_.max_normal_turn / turn, 0.4, 0.85));
   }
   hit.found = false;
   return hit;

@@ -30,7 +30,8 @@ class SurfaceProbe {
     Vec3 point, normal;
   };
 
-  SurfaceProbe(const ImplicitFunction& function, const ProbeOptions& options) : function_(function), options_(options) {}
+  SurfaceProbe(const ImplicitFunction& function, const ProbeOptions& options)
+      : function_(function), options_(options) {}
 
   /// Newton's x -= f g / |g|^2, with steps of at most `reach`.
   Hit descend(const Vec3& from, double reach);
@@ -38,8 +39,8 @@ class SurfaceProbe {
   /// Where the apex of the triangle on `frame` should lie, by what the normals around foretell: no call.
   Vec3 foretell(const Front& front, const EdgeFrame& frame) const;
 
-  /// The apex of the triangle on `frame`, with shorter steps where the normal turns too far; `size` receives the edge
-  /// length that suits it.
+  /// The apex of the triangle on `frame`, with shorter steps where the normal turns too far; `size` receives
+  /// the edge length that suits it.
   Hit apex(const Front& front, const EdgeFrame& frame, double* size);
 
   long evaluations() const { return evaluations_; }

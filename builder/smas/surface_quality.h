@@ -18,11 +18,12 @@ TriangleQuality triangle_quality(const TriangleMesh& mesh);
 
 /// How `improve_triangles` works.
 struct QualityOptions {
-  int passes = 4;                  ///< Rounds of split, collapse, flip and smooth.
-  double tolerance = 1e-8;         ///< Distance to the surface at which projection stops.
-  double feature_turn = 1.2;       ///< Edges are not flipped or collapsed across larger turns of the normal, radians.
-  bool move_boundary = true;       ///< Even out boundary vertices along the boundary.
-  double boundary_smoothing = 0.3; ///< How far they move across it as well, from 0 to 1.
+  int passes = 4;           ///< Rounds of split, collapse, flip and smooth.
+  double tolerance = 1e-8;  ///< Distance to the surface at which projection stops.
+  double feature_turn =
+      1.2;  ///< Edges are not flipped or collapsed across larger turns of the normal, radians.
+  bool move_boundary = true;        ///< Even out boundary vertices along the boundary.
+  double boundary_smoothing = 0.3;  ///< How far they move across it as well, from 0 to 1.
 };
 
 /// Makes the triangles of a surface mesh near equilateral without leaving the surface: splits edges

@@ -11,7 +11,9 @@ namespace {
 // A vertex nearer than this part of the edge length to where a new one would go is taken instead.
 constexpr double kReuseDistance = 0.7;
 
-double cross2(const Vec2& a, const Vec2& b) { return a[0] * b[1] - a[1] * b[0]; }
+double cross2(const Vec2& a, const Vec2& b) {
+  return a[0] * b[1] - a[1] * b[0];
+}
 
 bool segments_cross(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
   const double s = cross2(b - a, c - a), t = cross2(b - a, d - a);
@@ -33,7 +35,8 @@ bool Surroundings::on_sheet(int v) const {
 }
 
 void Surroundings::gather(const EdgeFrame& frame, double radius) {
-  for (const Near& known : near_) place_[known.vertex] = -1;
+  for (const Near& known : near_)
+    place_[known.vertex] = -1;
   near_.clear();
   place_.resize(front_.mesh.vertices.size(), -1);
   frame_ = &frame;
@@ -50,7 +53,8 @@ bool Surroundings::blocked(const Vec3& p) const {
   const Vec3 u = frame_->pb - frame_->pa, v = p - frame_->pa, w = u.cross(v);
   const double area = w.squaredNorm();
   if (!(area > 0.0)) return true;
-  const Vec3 centre = frame_->pa + (v.squaredNorm() * w.cross(u) + u.squaredNorm() * v.cross(w)) * (0.5 / area);
+  const Vec3 centre =
+      frame_->pa + (v.squaredNorm() * w.cross(u) + u.squaredNorm() * v.cross(w)) * (0.5 / area);
   const double radius = (centre - frame_->pa).squaredNorm() * (1.0 - 1e-9);
   const double reuse = kReuseDistance * std::min(frame_->size, (p - frame_->mid).norm() * 1.3);
   for (const Near& q : near_) {
@@ -72,22 +76,26 @@ const std::vector<int>& Surroundings::partners() {
     if (std::max(far_a, far_b) > radius_ * radius_) return;  // longer edges only breed longer ones
     ranked_.emplace_back(to_a.dot(to_b) / std::max(std::sqrt(far_a * far_b), 1e-300), q);
   };
-  for (const Near& near : near_) consider(near.vertex, near.cosine, near.flat[1]);
+  for (const Near& near : near_)
+    consider(near.vertex, near.cosine, near.flat[1]);
   for (int q : {previous, following})
     if (place_[q] < 0) consider(q, front_.normals[q].dot(frame_->n), flat(front_.mesh.vertices[q])[1]);
   std::sort(ranked_.begin(), ranked_.end());
   ranked_.erase(std::unique(ranked_.begin(), ranked_.end()), ranked_.end());
   partners_.clear();
-  for (const auto& [cosine, q] : ranked_) partners_.push_back(q);
+  for (const auto& [cosine, q] : ranked_)
+    partners_.push_back(q);
   return partners_;
 }
 
 // Whether front edge `edge`, from `start` to `end` in the plane, crosses a new side of triangle (a, b, c).
-bool Surroundings::crosses(int edge, const Vec2& start, const Vec2& end, const Vec2& a, const Vec2& b, const Vec2& c, int apex) const {
+bool Surroundings::crosses(int edge, const Vec2& start, const Vec2& end, const Vec2& a, const Vec2& b,
+                           const Vec2& c, int apex) const {
   const Front::Edge& rival = front_.edges[edge];
   const auto meets = [&](int v) { return v >= 0 && (rival.from == v || rival.to == v); };
   if (meets(apex)) return false;
-  return (!meets(frame_->a) && segments_cross(a, c, start, end)) || (!meets(frame_->b) && segments_cross(b, c, start, end));
+  return (!meets(frame_->a) && segments_cross(a, c, start, end)) ||
+         (!meets(frame_->b) && segments_cross(b, c, start, end));
 }
 
 bool Surroundings::fits(const Vec3& point, const Vec3& normal, int apex) const {

@@ -7,7 +7,8 @@
 
 namespace fascia::smas {
 
-/// Cosine of the smallest angle of triangle (a, b, c), the one opposite the shortest side; 1 when two corners coincide.
+/// Cosine of the smallest angle of triangle (a, b, c), the one opposite the shortest side; 1 when two corners
+/// coincide.
 inline double smallest_angle_cosine(const Vec3& a, const Vec3& b, const Vec3& c) {
   const double x = (b - c).squaredNorm(), y = (c - a).squaredNorm(), z = (a - b).squaredNorm();
   const double least = std::min({x, y, z});

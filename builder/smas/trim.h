@@ -11,11 +11,13 @@ namespace fascia::smas {
 ///
 /// @param snap    part of an edge, from its end, within which the line takes the vertex along, < .5
 /// @param mesh    changed in place; new vertices lie on the old edges
-/// @param normals unit normals, @param sizes edge lengths asked for, @param field: one a vertex, kept up to date
+/// @param normals unit normals, @param sizes edge lengths asked for, @param field: one a vertex, kept up to
+/// date
 void trim(double snap, TriangleMesh* mesh, std::vector<Vec3>* normals, std::vector<double>* sizes,
           std::vector<double>* field);
 
-/// Keeps the triangles with `keep` set and the vertices that they use; vertex data as in `trim`, of which `field` may be anything.
+/// Keeps the triangles with `keep` set and the vertices that they use; vertex data as in `trim`, of which
+/// `field` may be anything.
 void keep_triangles(const std::vector<bool>& keep, TriangleMesh* mesh, std::vector<Vec3>* normals,
                     std::vector<double>* sizes, std::vector<double>* field);
 

@@ -27,7 +27,8 @@ class VertexGrid {
   /// Takes point number `i` out.
   void remove(int i) {
     int* link = &heads_[slot_of(nodes_[i].cell)];
-    while (*link >= 0 && *link != i) link = &nodes_[*link].next;
+    while (*link >= 0 && *link != i)
+      link = &nodes_[*link].next;
     if (*link == i) *link = nodes_[i].next;
     nodes_[i].removed = true;
   }
@@ -47,7 +48,8 @@ class VertexGrid {
         for (cell[2] = low[2]; cell[2] <= high[2]; ++cell[2])
           for (int i = heads_[slot_of(cell)]; i >= 0; i = nodes_[i].next)
             // Two cells can share a slot: take a point only from the cell that it lies in.
-            if ((nodes_[i].point - centre).squaredNorm() <= radius * radius && nodes_[i].cell == cell) found->push_back(i);
+            if ((nodes_[i].point - centre).squaredNorm() <= radius * radius && nodes_[i].cell == cell)
+              found->push_back(i);
   }
 
  private:
@@ -60,7 +62,8 @@ class VertexGrid {
   };
   int64_t cell_of(double x) const { return static_cast<int64_t>(std::floor(x * inverse_cell_)); }
   size_t slot_of(const Cell& cell) const {
-    const uint64_t h = static_cast<uint64_t>(cell[0]) * 73856093ULL ^ static_cast<uint64_t>(cell[1]) * 19349663ULL ^
+    const uint64_t h = static_cast<uint64_t>(cell[0]) * 73856093ULL ^
+                       static_cast<uint64_t>(cell[1]) * 19349663ULL ^
                        static_cast<uint64_t>(cell[2]) * 83492791ULL;
     return static_cast<size_t>(h ^ (h >> 17)) & (heads_.size() - 1);
   }

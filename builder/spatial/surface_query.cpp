@@ -129,7 +129,8 @@ void SurfaceQuery::State::build_normals() const {
 void SurfaceQuery::State::sum_edge_normals(const std::vector<int>& representative) const {
   std::vector<Triangle> joined = mesh.triangles;
   for (Triangle& t : joined)
-    for (int& v : t) v = representative[v];
+    for (int& v : t)
+      v = representative[v];
   const std::vector<HalfEdge> edges = sorted_half_edges(joined, mesh.vertices.size());
   edge_normals.resize(mesh.triangles.size());
   for (size_t begin = 0, end = 0; begin < edges.size(); begin = end) {

@@ -49,8 +49,8 @@ class SurfaceQuery {
   /// The closest point within `range`.
   ClosestPoint closest(const Vec3& point, double range = std::numeric_limits<double>::infinity()) const;
 
-  /// The same without the side it lies on: pseudonormal and signed distance are left as they are. For few queries of a large mesh,
-  /// whose normals are then not needed.
+  /// The same without the side it lies on: pseudonormal and signed distance are left as they are. For few
+  /// queries of a large mesh, whose normals are then not needed.
   ClosestPoint nearest_place(const Vec3& point, double range = std::numeric_limits<double>::infinity()) const;
 
   /// Distance to the surface, negative inside, by the angle-weighted pseudonormal. On an open surface the

@@ -40,8 +40,8 @@ Vec3 to_local(const SplineCoefficients& s, const Vec3& point) {
 constexpr size_t block = 256;
 
 // values = monomials times coefficients at `size` points, a column of the block for each monomial.
-void polynomial_block(const SplineCoefficients& s, const double* x, const double* y, const double* z, size_t size,
-                      double* values, size_t value_stride) {
+void polynomial_block(const SplineCoefficients& s, const double* x, const double* y, const double* z,
+                      size_t size, double* values, size_t value_stride) {
   for (int k = 0; k < s.outputs; ++k)
     std::fill_n(values + k * value_stride, size, 0.0);
   const double* coordinates[3] = {x, y, z};

@@ -18,6 +18,7 @@ int simd_exponent(const Kernel& kernel);
 double evaluate_gradient(const SplineCoefficients& spline, int output, const Vec3& q, Vec3& gradient);
 
 /// The same on the machine's vector unit, where the loops know the kernel; the last digits depend on it.
-double evaluate_gradient_in_vectors(const SplineCoefficients& spline, int output, const Vec3& q, Vec3& gradient);
+double evaluate_gradient_in_vectors(const SplineCoefficients& spline, int output, const Vec3& q,
+                                    Vec3& gradient);
 
 }  // namespace fascia::splines

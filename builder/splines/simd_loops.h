@@ -170,7 +170,8 @@ void gradient_sum_of(const GradientSum& s) {
   for (size_t j = 0; j < s.centres; j += lanes) {
     const Vector dx = x - load(s.x + j), dy = y - load(s.y + j), dz = z - load(s.z + j);
     const Vector squared = dx * dx + dy * dy + dz * dz, r = square_root(squared), w = load(s.weights + j);
-    // phi, phi'/r and the factor of h h^T in the Hessian; at a centre h is 0, and so is all that they multiply.
+    // phi, phi'/r and the factor of h h^T in the Hessian; at a centre h is 0, and so is all that they
+    // multiply.
     Vector phi, g, second = splat(0);
     if constexpr (exponent == 1) {
       phi = r;

@@ -58,8 +58,8 @@ class Spline {
   /// First output and its gradient at `point`, without allocation.
   double value_and_gradient(const Vec3& point, Vec3& gradient) const;
 
-  /// The same on the machine's vector unit, several times faster: the evaluator for implicit surfaces. The last digits
-  /// depend on the unit.
+  /// The same on the machine's vector unit, several times faster: the evaluator for implicit surfaces. The
+  /// last digits depend on the unit.
   double fast_value_and_gradient(const Vec3& point, Vec3& gradient) const;
 
   /// First output alone, without allocation.

@@ -17,7 +17,8 @@ struct Patch {
 /// cheek; firm at the bridge of the nose, the parotid region, temple line and the mandibular ligament
 /// (Mendelson & Wong 2012; Keller's attachment strengths after Rohrich & Pessa 2007).
 std::vector<Patch> patches_of(const TissueInputs& inputs) {
-  const Vec3 glabella = landmark(inputs, "glabella"), nose = landmark(inputs, "subnasale"), tip = landmark(inputs, "pronasale");
+  const Vec3 glabella = landmark(inputs, "glabella"), nose = landmark(inputs, "subnasale"),
+             tip = landmark(inputs, "pronasale");
   const double third = glabella.y() - nose.y();
   std::vector<Patch> patches;
   patches.push_back({glabella + Vec3(0, 0.55, -0.1) * third, 0.6 * third, 0.30, 0.8});
@@ -27,14 +28,17 @@ std::vector<Patch> patches_of(const TissueInputs& inputs) {
     const std::string s = side;
     const Vec3 outer = landmark(inputs, "exocanthion" + s), corner = landmark(inputs, "cheilion" + s);
     const Vec3 ear = landmark(inputs, "tragion" + s), inner = landmark(inputs, "endocanthion" + s);
-    patches.push_back({glabella + Vec3(outer.x() * 0.8, 0.45 * third, -0.25 * third), 0.45 * third, 0.35, 0.8});
-    patches.push_back({0.5 * (0.5 * (inner + outer) + corner) + 0.2 * (ear - corner), 0.3 * third, 0.45, 0.7});
+    patches.push_back(
+        {glabella + Vec3(outer.x() * 0.8, 0.45 * third, -0.25 * third), 0.45 * third, 0.35, 0.8});
+    patches.push_back(
+        {0.5 * (0.5 * (inner + outer) + corner) + 0.2 * (ear - corner), 0.3 * third, 0.45, 0.7});
     patches.push_back({ear + 0.15 * (corner - ear), 0.45 * third, 3.0, 1.2});
     patches.push_back({0.5 * (ear + outer) + Vec3(0, 0.15 * third, 0), 0.25 * third, 1.6, 0.8});
     patches.push_back({corner + Vec3(0.1 * corner.x(), -0.45 * third, -0.2 * third), 0.18 * third, 1.5, 1.0});
-    patches.push_back({corner + 0.12 * (ear - corner), 0.25 * third, 0.6, 2.5});           // modiolus
-    patches.push_back({0.5 * (corner + nose), 0.2 * third, 0.9, 2.0});                      // nasolabial line
-    patches.push_back({glabella + Vec3(0.6 * outer.x(), 0.05 * third, -0.1 * third), 0.3 * third, 0.6, 2.5});  // brow
+    patches.push_back({corner + 0.12 * (ear - corner), 0.25 * third, 0.6, 2.5});  // modiolus
+    patches.push_back({0.5 * (corner + nose), 0.2 * third, 0.9, 2.0});            // nasolabial line
+    patches.push_back(
+        {glabella + Vec3(0.6 * outer.x(), 0.05 * third, -0.1 * third), 0.3 * third, 0.6, 2.5});  // brow
     patches.push_back({0.5 * (corner + ear) + Vec3(0, -0.05 * third, 0), 0.3 * third, 0.6, 0.7});
   }
   return patches;
@@ -47,7 +51,8 @@ struct Hold {
 };
 
 std::vector<Hold> holds_of(const TissueInputs& inputs) {
-  const Vec3 glabella = landmark(inputs, "glabella"), nose = landmark(inputs, "subnasale"), tip = landmark(inputs, "pronasale");
+  const Vec3 glabella = landmark(inputs, "glabella"), nose = landmark(inputs, "subnasale"),
+             tip = landmark(inputs, "pronasale");
   const Vec3 chin = landmark(inputs, "gnathion"), sellion = landmark(inputs, "sellion");
   const Vec3 mouth = 0.5 * (landmark(inputs, "cheilion_left") + landmark(inputs, "cheilion_right"));
   const double third = glabella.y() - nose.y();
@@ -77,7 +82,8 @@ Attachments attachments_of(const TissueInputs& inputs, const Columns& c) {
   const std::vector<Hold> holds = holds_of(inputs);
   const Vestibule vestibule(inputs);
   std::optional<spatial::SurfaceQuery> smas;
-  const bool measured = !inputs.smas.empty() && inputs.smas_bone_attachment.size() == inputs.smas.vertices.size();
+  const bool measured =
+      !inputs.smas.empty() && inputs.smas_bone_attachment.size() == inputs.smas.vertices.size();
   if (measured) smas.emplace(inputs.smas);
   for (size_t v = 0; v < n; ++v) {
     double bone = 0.0, skin = 0.0, sum = 0.0;  // mean of logarithms where patches overlap
@@ -95,19 +101,22 @@ Attachments attachments_of(const TissueInputs& inputs, const Columns& c) {
       const SurfacePoint p = smas->closest(c.smas[v]).surface;
       double firm = 0.0;
       for (int k = 0; k < 3; ++k)
-        firm += p.barycentric[k] * static_cast<double>(inputs.smas_bone_attachment[static_cast<size_t>(
-                                       inputs.smas.triangles[static_cast<size_t>(p.triangle)][static_cast<size_t>(k)])]);
+        firm += p.barycentric[k] *
+                static_cast<double>(inputs.smas_bone_attachment[static_cast<size_t>(
+                    inputs.smas.triangles[static_cast<size_t>(p.triangle)][static_cast<size_t>(k)])]);
       a.bone[v] = std::exp(0.5 * (bone + std::log(0.25 * std::pow(12.0, std::clamp(firm, 0.0, 1.0)))));
     }
     // Lips hang on no bone nearer than 15 mm; lids are held by their plates, not by tethers.
     const double lips = smoothstep(0.005, 0.016, c.opening_distance[static_cast<size_t>(Opening::mouth)][v]);
-    const double lids = smoothstep(0.005, 0.012, std::min(c.opening_distance[static_cast<size_t>(Opening::eye_left)][v],
-                                                          c.opening_distance[static_cast<size_t>(Opening::eye_right)][v]));
+    const double lids = smoothstep(0.005, 0.012,
+                                   std::min(c.opening_distance[static_cast<size_t>(Opening::eye_left)][v],
+                                            c.opening_distance[static_cast<size_t>(Opening::eye_right)][v]));
     const double near = 0.08 + 0.92 * lids * (0.08 + 0.92 * lips);
     a.bone[v] *= near;
     a.normal[v] = near;
     // Mucosa behind, and air: also where a mesh has no lining there.
-    const double air = c.bone[v] ? vestibule.share(c.mesh.vertices[v]) * smoothstep(0.006, 0.010, c.inner_depth[v]) : 1.0;
+    const double air =
+        c.bone[v] ? vestibule.share(c.mesh.vertices[v]) * smoothstep(0.006, 0.010, c.inner_depth[v]) : 1.0;
     a.bone[v] *= 1.0 - 0.65 * air;
     a.normal[v] *= 1.0 - 0.9 * air;
     double hold = 1.0;

@@ -14,8 +14,9 @@ Bones bones_of(const TissueInputs& inputs);
 struct Beneath {
   std::vector<Vec3> normals;                    ///< unit, evened out: the way down is against them
   std::vector<double> smas_depth, inner_depth;  ///< metres
-  std::vector<double> bone;                     ///< 1 where bone lies behind, so that the inner node rests on it
-  std::vector<double> lower_lip;   ///< 0 of the upper lip .. 0.5 at the corner .. 1 of the lower, by the way along the surface
+  std::vector<double> bone;  ///< 1 where bone lies behind, so that the inner node rests on it
+  std::vector<double>
+      lower_lip;  ///< 0 of the upper lip .. 0.5 at the corner .. 1 of the lower, by the way along the surface
   std::vector<double> jaw_weight;  ///< 0 carried by the cranium .. 1 by the mandible
 };
 Beneath find_beneath(const TissueInputs& inputs, const FaceRegion& region, const TissueOptions& options);
@@ -23,20 +24,21 @@ Beneath find_beneath(const TissueInputs& inputs, const FaceRegion& region, const
 /// How long edges are that far from lips and lids, over their length beside them.
 double edge_growth(const TissueOptions& options, double feature_distance);
 
-/// The lips as the jaw's influence needs them: how far each vertex lies from their edge along the surface, and to which
-/// it belongs (Beneath::lower_lip).
+/// The lips as the jaw's influence needs them: how far each vertex lies from their edge along the surface,
+/// and to which it belongs (Beneath::lower_lip).
 struct Lips {
   std::vector<double> distance, lower;
 };
 
-/// Which lip each vertex of `mesh` belongs to: from the skin clearly above and clearly below the mouth, `distance` from
-/// whose edge is given, it is asked which is nearer along the surface. Lips that touch stay apart: only the corner joins them.
-std::vector<double> lower_lip(const TissueInputs& inputs, const TriangleMesh& mesh, const std::vector<bool>& outer,
-                              const std::vector<double>& distance);
+/// Which lip each vertex of `mesh` belongs to: from the skin clearly above and clearly below the mouth,
+/// `distance` from whose edge is given, it is asked which is nearer along the surface. Lips that touch stay
+/// apart: only the corner joins them.
+std::vector<double> lower_lip(const TissueInputs& inputs, const TriangleMesh& mesh,
+                              const std::vector<bool>& outer, const std::vector<double>& distance);
 
-/// How much of the jaw's motion carries each vertex of `mesh`: 1 and 0 where mandible or cranium clearly lies nearer,
-/// 0 on the rim, and between a smooth field over the surface (screened Laplace equation), which does not
-/// cross from lip to lip.
+/// How much of the jaw's motion carries each vertex of `mesh`: 1 and 0 where mandible or cranium clearly lies
+/// nearer, 0 on the rim, and between a smooth field over the surface (screened Laplace equation), which does
+/// not cross from lip to lip.
 std::vector<double> jaw_weights(const TriangleMesh& mesh, const std::vector<bool>& rim, const Bones& bones,
                                 const Lips& lips);
 

@@ -31,8 +31,9 @@ Follow pack(const Row& row, const std::vector<Vec3>& places);
 /// deeper in sockets and nostrils, and everywhere else: fading to rest.
 std::vector<Follow> follow_skin(const TissueInputs& inputs, const FaceRegion& region, const Columns& columns);
 
-/// One binding a part, in the order of `inputs.parts`; `mesh`, `primitive` and the fingerprint are the caller's.
-std::vector<rig::Binding> bind_parts(const TissueInputs& inputs, const FaceRegion& region, const Columns& columns,
-                                     const std::vector<Follow>& skin);
+/// One binding a part, in the order of `inputs.parts`; `mesh`, `primitive` and the fingerprint are the
+/// caller's.
+std::vector<rig::Binding> bind_parts(const TissueInputs& inputs, const FaceRegion& region,
+                                     const Columns& columns, const std::vector<Follow>& skin);
 
 }  // namespace fascia::tissue

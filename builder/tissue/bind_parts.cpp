@@ -73,7 +73,8 @@ struct MovingSkin {
       const Follow& corner = vertices[static_cast<size_t>(place.vertices[k])];
       const double share = place.weights[static_cast<int>(k)];
       for (size_t i = 0; i < Follow::influences; ++i)
-        if (corner.weights[i] > 0.0F && share > 0.0) row[corner.nodes[i]] += share * static_cast<double>(corner.weights[i]);
+        if (corner.weights[i] > 0.0F && share > 0.0)
+          row[corner.nodes[i]] += share * static_cast<double>(corner.weights[i]);
       if (corner.jaw > 0.0F) row[jaw_entry] += share * static_cast<double>(corner.jaw);
     }
     return pack(row, columns);
@@ -82,10 +83,10 @@ struct MovingSkin {
 
 /// The connected pieces of a part: lash cards, strands, or all in one.
 struct Pieces {
-  std::vector<int> vertex_map;   // #part vertices, made with the mesh
-  TriangleMesh mesh;             // welded
-  std::vector<int> piece;        // #welded vertices, -1 of a loose one
-  std::vector<double> size;      // #pieces, metres, across their boxes
+  std::vector<int> vertex_map;  // #part vertices, made with the mesh
+  TriangleMesh mesh;            // welded
+  std::vector<int> piece;       // #welded vertices, -1 of a loose one
+  std::vector<double> size;     // #pieces, metres, across their boxes
   explicit Pieces(const PartMesh& part) : mesh(weld({part.vertices, part.triangles}, 1e-6, &vertex_map)) {
     int count = 0;
     const std::vector<int> piece_of_triangle = components(mesh, &count);
@@ -98,13 +99,16 @@ struct Pieces {
         bounds.lower = bounds.lower.cwiseMin(mesh.vertices[static_cast<size_t>(v)]);
         bounds.upper = bounds.upper.cwiseMax(mesh.vertices[static_cast<size_t>(v)]);
       }
-    for (const Bounds& bounds : box) size.push_back(bounds.size().norm());
+    for (const Bounds& bounds : box)
+      size.push_back(bounds.size().norm());
   }
 };
 
-/// Lashes and brows: each vertex follows the skin at the root that is nearest along its own piece, a small piece at one root. Roots
-/// are what lies at most `root_depth` (metres) farther from the skin than the nearest of the piece.
-void follow_roots(const PartMesh& part, const SkinQuery& outer, const MovingSkin& skin, double root_depth, rig::Binding& binding) {
+/// Lashes and brows: each vertex follows the skin at the root that is nearest along its own piece, a small
+/// piece at one root. Roots are what lies at most `root_depth` (metres) farther from the skin than the
+/// nearest of the piece.
+void follow_roots(const PartMesh& part, const SkinQuery& outer, const MovingSkin& skin, double root_depth,
+                  rig::Binding& binding) {
   constexpr double small = 0.014, reach = 0.02;  // metres
   const Pieces pieces(part);
   std::vector<SkinPlace> place;
@@ -129,14 +133,16 @@ void follow_roots(const PartMesh& part, const SkinQuery& outer, const MovingSkin
   for (size_t v = 0; v < part.vertices.size(); ++v) {
     const auto w = static_cast<size_t>(pieces.vertex_map[v]);
     const int root = way.seed[w];
-    const SkinPlace& at = root >= 0 ? place[static_cast<size_t>(roots[static_cast<size_t>(root)].vertex)] : place[w];
+    const SkinPlace& at =
+        root >= 0 ? place[static_cast<size_t>(roots[static_cast<size_t>(root)].vertex)] : place[w];
     if (at.distance < reach) put(binding, v, skin.at(at));
   }
 }
 
-/// Hair: a strand goes with the skin at its root, so a moustache with the lip and the scalp's hair with nothing. What is larger, a
-/// cap or a whole beard, clings to the skin it lies on and less the farther off.
-void follow_scalp(const PartMesh& part, const SkinQuery& whole, const MovingSkin& skin, rig::Binding& binding) {
+/// Hair: a strand goes with the skin at its root, so a moustache with the lip and the scalp's hair with
+/// nothing. What is larger, a cap or a whole beard, clings to the skin it lies on and less the farther off.
+void follow_scalp(const PartMesh& part, const SkinQuery& whole, const MovingSkin& skin,
+                  rig::Binding& binding) {
   constexpr double strand = 0.06, near = 0.008, far = 0.02;  // metres
   const Pieces pieces(part);
   std::vector<SkinPlace> place;
@@ -182,7 +188,9 @@ std::vector<float> between_the_jaws(const PartMesh& part, const TissueInputs& in
   for (size_t v = 0; v < weights.size(); ++v) {
     const auto w = static_cast<size_t>(vertex_map[v]);
     const double to_upper = upper.distance[w], to_lower = lower.distance[w];
-    const double share = std::isinf(to_upper) ? 1.0 : std::isinf(to_lower) ? 0.0 : to_upper / std::max(to_upper + to_lower, 1e-9);
+    const double share = std::isinf(to_upper)   ? 1.0
+                         : std::isinf(to_lower) ? 0.0
+                                                : to_upper / std::max(to_upper + to_lower, 1e-9);
     const double t = std::clamp((share - 0.25) / 0.5, 0.0, 1.0);
     weights[v] = static_cast<float>(t * t * (3.0 - 2.0 * t));
   }
@@ -191,8 +199,8 @@ std::vector<float> between_the_jaws(const PartMesh& part, const TissueInputs& in
 
 }  // namespace
 
-std::vector<rig::Binding> bind_parts(const TissueInputs& inputs, const FaceRegion& region, const Columns& columns,
-                                     const std::vector<Follow>& skin) {
+std::vector<rig::Binding> bind_parts(const TissueInputs& inputs, const FaceRegion& region,
+                                     const Columns& columns, const std::vector<Follow>& skin) {
   std::vector<rig::Binding> bindings;
   const SkinQuery outer(region.mesh, region.skin_vertex);
   std::optional<SkinQuery> whole;
@@ -200,14 +208,17 @@ std::vector<rig::Binding> bind_parts(const TissueInputs& inputs, const FaceRegio
   for (const PartMesh& part : inputs.parts) {
     rig::Binding binding = empty_binding(part);
     if (part.part == "skin" && part.skin_vertices.size() == part.vertices.size()) {
-      for (size_t v = 0; v < part.vertices.size(); ++v) put(binding, v, skin[static_cast<size_t>(part.skin_vertices[v])]);
+      for (size_t v = 0; v < part.vertices.size(); ++v)
+        put(binding, v, skin[static_cast<size_t>(part.skin_vertices[v])]);
     } else if (part.part == "skin") {
       if (!whole) whole.emplace(inputs.skin);
-      for (size_t v = 0; v < part.vertices.size(); ++v) put(binding, v, moving.at(whole->at(part.vertices[v])));
+      for (size_t v = 0; v < part.vertices.size(); ++v)
+        put(binding, v, moving.at(whole->at(part.vertices[v])));
     } else if (part.part == "teeth_lower" || part.part == "gums_lower" || part.part == "tongue") {
       std::fill(binding.jaw_weights.begin(), binding.jaw_weights.end(), 1.0F);
     } else if (part.part == "eye_left" || part.part == "eye_right") {
-      std::fill(binding.eye.begin(), binding.eye.end(), static_cast<uint8_t>(part.part == "eye_left" ? 1 : 2));
+      std::fill(binding.eye.begin(), binding.eye.end(),
+                static_cast<uint8_t>(part.part == "eye_left" ? 1 : 2));
     } else if (part.part == "lashes" || part.part == "brows") {
       follow_roots(part, outer, moving, part.part == "lashes" ? 0.0008 : 0.003, binding);  // brows lie flat
     } else if (part.part == "hair") {

@@ -20,7 +20,8 @@ TissueResult::Figures figures_of(const rig::TissueLevel& level) {
   figures.fibres = static_cast<int>(level.fibre_channel.size());
   figures.shortest_edge = 1e9;
   std::vector<Vec3> rest;
-  for (const rig::Vec3f& p : level.rest) rest.push_back(p.cast<double>());
+  for (const rig::Vec3f& p : level.rest)
+    rest.push_back(p.cast<double>());
   const uint32_t n = level.columns;
   for (const auto& t : level.triangles) {
     for (size_t e = 0; e < 3; ++e) {
@@ -28,7 +29,8 @@ TissueResult::Figures figures_of(const rig::TissueLevel& level) {
       figures.shortest_edge = std::min(figures.shortest_edge, length);
       figures.longest_edge = std::max(figures.longest_edge, length);
     }
-    if (sim::prism_volume({t[0], t[1], t[2], n + t[0], n + t[1], n + t[2]}, rest.data()) <= 0.0) ++figures.turned_prisms;
+    if (sim::prism_volume({t[0], t[1], t[2], n + t[0], n + t[1], n + t[2]}, rest.data()) <= 0.0)
+      ++figures.turned_prisms;
   }
   return figures;
 }
@@ -52,7 +54,8 @@ TissueResult build(const TissueInputs& inputs, const TissueOptions& options) {
       add_facing(inputs, region, columns, level);
     }
     if (const char* fault = sim::lattice_fault(sim::lattice_of(level)))
-      throw Error("the " + wanted.name + " tissue lattice came out unsound (" + fault + "): check the head's skin around lips and lids");
+      throw Error("the " + wanted.name + " tissue lattice came out unsound (" + fault +
+                  "): check the head's skin around lips and lids");
     const std::vector<Follow> skin = follow_skin(inputs, region, columns);
     result.tissue.bindings.push_back(bind_parts(inputs, region, columns, skin));
     result.figures.push_back(figures_of(level));

@@ -16,11 +16,13 @@ Value blend(const FaceRegion& region, const SurfacePoint& p, const std::vector<V
   Value sum = 0.0 * values[0];
   for (int k = 0; k < 3; ++k)
     sum += p.barycentric[k] *
-           values[static_cast<size_t>(region.mesh.triangles[static_cast<size_t>(p.triangle)][static_cast<size_t>(k)])];
+           values[static_cast<size_t>(
+               region.mesh.triangles[static_cast<size_t>(p.triangle)][static_cast<size_t>(k)])];
   return sum;
 }
 
-std::vector<double> target_lengths(const TissueInputs& inputs, const FaceRegion& region, const LevelOptions& level, const TissueOptions& options) {
+std::vector<double> target_lengths(const TissueInputs& inputs, const FaceRegion& region,
+                                   const LevelOptions& level, const TissueOptions& options) {
   const Vec3 corners[] = {landmark(inputs, "cheilion_left"), landmark(inputs, "cheilion_right")};
   std::vector<double> lengths(region.mesh.vertices.size());
   for (size_t v = 0; v < lengths.size(); ++v) {
@@ -28,15 +30,17 @@ std::vector<double> target_lengths(const TissueInputs& inputs, const FaceRegion&
     // Where lips join, edges as long as elsewhere would bridge them.
     const Vec3& p = region.mesh.vertices[v];
     const double corner = std::min((p - corners[0]).norm(), (p - corners[1]).norm());
-    lengths[v] *= level.corner_ratio + (1.0 - level.corner_ratio) * std::clamp(corner / options.corner_growth - 0.3, 0.0, 1.0);
+    lengths[v] *= level.corner_ratio +
+                  (1.0 - level.corner_ratio) * std::clamp(corner / options.corner_growth - 0.3, 0.0, 1.0);
   }
   const double scale = edge_scale_for(region.mesh, lengths, level.columns);
-  for (double& length : lengths) length *= scale;
+  for (double& length : lengths)
+    length *= scale;
   return lengths;
 }
 
-/// Moves the vertex nearest to each place of the lids' edges onto it, where that turns no triangle: an edge between two rows of
-/// columns would be cut off, and lids that meet would meet beside it.
+/// Moves the vertex nearest to each place of the lids' edges onto it, where that turns no triangle: an edge
+/// between two rows of columns would be cut off, and lids that meet would meet beside it.
 void settle_on_lid_edges(const TissueInputs& inputs, const FaceRegion& region, RemeshResult& remeshed) {
   TriangleMesh& mesh = remeshed.mesh;
   const auto around = triangles_around(mesh);
@@ -55,11 +59,13 @@ void settle_on_lid_edges(const TissueInputs& inputs, const FaceRegion& region, R
       const Vec3 here = mesh.vertices[nearest];
       bool is_sound = true;
       std::vector<std::pair<Vec3, double>> old;
-      for (const int t : around[nearest]) old.emplace_back(triangle_normal(mesh, t), triangle_area(mesh, t));
+      for (const int t : around[nearest])
+        old.emplace_back(triangle_normal(mesh, t), triangle_area(mesh, t));
       mesh.vertices[nearest] = there;
       for (size_t k = 0; k < old.size(); ++k) {
         const int t = around[nearest][k];
-        is_sound = is_sound && triangle_normal(mesh, t).dot(old[k].first) > 0.3 && triangle_area(mesh, t) > 0.3 * old[k].second;
+        is_sound = is_sound && triangle_normal(mesh, t).dot(old[k].first) > 0.3 &&
+                   triangle_area(mesh, t) > 0.3 * old[k].second;
       }
       if (is_sound) {
         moved[nearest] = way;
@@ -95,13 +101,16 @@ void place_layers(Columns& c) {
         depth += c.smas_depth[v] / 3.0;
         inner_depth += (c.inner_depth[v] - c.smas_depth[v]) / 3.0;
       }
-      const double outer = sim::prism_volume({0, 1, 2, 3, 4, 5}, corners), inner = sim::prism_volume({3, 4, 5, 6, 7, 8}, corners);
+      const double outer = sim::prism_volume({0, 1, 2, 3, 4, 5}, corners),
+                   inner = sim::prism_volume({3, 4, 5, 6, 7, 8}, corners);
       const double area = triangle_area(c.mesh, t);
       if (outer > 0.25 * area * depth && inner > 0.05 * area * inner_depth) continue;
       any = true;
       for (const int v : k) {
         shrink[static_cast<size_t>(v)] = true;
-        if (pass > 6) c.normals[static_cast<size_t>(v)] = (c.normals[static_cast<size_t>(v)] + 0.15 * triangle_normal(c.mesh, t)).normalized();
+        if (pass > 6)
+          c.normals[static_cast<size_t>(v)] =
+              (c.normals[static_cast<size_t>(v)] + 0.15 * triangle_normal(c.mesh, t)).normalized();
       }
     }
     if (!any) break;
@@ -116,8 +125,8 @@ void place_layers(Columns& c) {
 
 }  // namespace
 
-Columns make_columns(const TissueInputs& inputs, const FaceRegion& region, const Beneath& beneath, const LevelOptions& level,
-                     const TissueOptions& options) {
+Columns make_columns(const TissueInputs& inputs, const FaceRegion& region, const Beneath& beneath,
+                     const LevelOptions& level, const TissueOptions& options) {
   RemeshResult remeshed = remesh(region.mesh, target_lengths(inputs, region, level, options));
   settle_on_lid_edges(inputs, region, remeshed);
   Columns c;
@@ -125,23 +134,28 @@ Columns make_columns(const TissueInputs& inputs, const FaceRegion& region, const
   c.source = std::move(remeshed.source);
   const auto n = static_cast<size_t>(c.count());
   std::vector<double> seen(region.outer.size());
-  for (size_t v = 0; v < seen.size(); ++v) seen[v] = region.outer[v] ? 1.0 : 0.0;
+  for (size_t v = 0; v < seen.size(); ++v)
+    seen[v] = region.outer[v] ? 1.0 : 0.0;
   c.outer.resize(n);
   c.feature_distance.resize(n);
-  for (auto& list : c.opening_distance) list.assign(n, 1e9);
+  for (auto& list : c.opening_distance)
+    list.assign(n, 1e9);
   for (size_t v = 0; v < n; ++v) {
     c.outer[v] = blend(region, c.source[v], seen) > 0.5;
     c.feature_distance[v] = blend(region, c.source[v], region.feature_distance);
     for (size_t k = 1; k < c.opening_distance.size(); ++k)
-      if (!region.opening_distance[k].empty()) c.opening_distance[k][v] = blend(region, c.source[v], region.opening_distance[k]);
+      if (!region.opening_distance[k].empty())
+        c.opening_distance[k][v] = blend(region, c.source[v], region.opening_distance[k]);
   }
   c.rim.assign(n, false);
   for (const auto& loop : boundary_loops(c.mesh, connectivity(c.mesh)))
-    for (const int v : loop) c.rim[static_cast<size_t>(v)] = c.outer[static_cast<size_t>(v)];
+    for (const int v : loop)
+      c.rim[static_cast<size_t>(v)] = c.outer[static_cast<size_t>(v)];
   c.area = vertex_areas(c.mesh);
   c.normals.resize(n);
   c.bone.resize(n);
-  for (auto* list : {&c.smas_depth, &c.inner_depth, &c.lower_lip, &c.jaw_weight}) list->resize(n);
+  for (auto* list : {&c.smas_depth, &c.inner_depth, &c.lower_lip, &c.jaw_weight})
+    list->resize(n);
   c.smas.resize(n);
   c.inner.resize(n);
   for (size_t v = 0; v < n; ++v) {

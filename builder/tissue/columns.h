@@ -8,23 +8,24 @@ namespace fascia::tissue {
 /// The columns of one level: a remesh of the face region, with a place on the SMAS and one on bone or mucosa
 /// under every vertex.
 struct Columns {
-  TriangleMesh mesh;                 ///< the skin nodes
-  std::vector<SurfacePoint> source;  ///< #columns, on the region's mesh
-  std::vector<Vec3> normals;         ///< #columns, unit, smoothed
-  std::vector<Vec3> smas, inner;     ///< #columns
+  TriangleMesh mesh;                            ///< the skin nodes
+  std::vector<SurfacePoint> source;             ///< #columns, on the region's mesh
+  std::vector<Vec3> normals;                    ///< #columns, unit, smoothed
+  std::vector<Vec3> smas, inner;                ///< #columns
   std::vector<double> smas_depth, inner_depth;  ///< #columns, metres
-  std::vector<double> area;          ///< #columns, square metres
-  std::vector<bool> outer, rim;      ///< seen from outside; on the fixed border
-  std::vector<bool> bone;            ///< bone lies behind, so the inner node rests on it
-  std::vector<double> lower_lip;     ///< 0 of the upper lip .. 0.5 at the corner .. 1 of the lower, by the way along the surface
-  std::vector<double> jaw_weight;    ///< 0 carried by the cranium .. 1 by the mandible
+  std::vector<double> area;                     ///< #columns, square metres
+  std::vector<bool> outer, rim;                 ///< seen from outside; on the fixed border
+  std::vector<bool> bone;                       ///< bone lies behind, so the inner node rests on it
+  std::vector<double>
+      lower_lip;  ///< 0 of the upper lip .. 0.5 at the corner .. 1 of the lower, by the way along the surface
+  std::vector<double> jaw_weight;                       ///< 0 carried by the cranium .. 1 by the mandible
   std::vector<double> feature_distance;                 ///< metres to the nearest lip, lid or nostril edge
   std::array<std::vector<double>, 5> opening_distance;  ///< by Opening
   int count() const { return mesh.vertex_count(); }
 };
 
 /// Makes the columns of `level` from the region and what lies beneath it.
-Columns make_columns(const TissueInputs& inputs, const FaceRegion& region, const Beneath& beneath, const LevelOptions& level,
-                     const TissueOptions& options);
+Columns make_columns(const TissueInputs& inputs, const FaceRegion& region, const Beneath& beneath,
+                     const LevelOptions& level, const TissueOptions& options);
 
 }  // namespace fascia::tissue

@@ -12,7 +12,8 @@ namespace {
 constexpr double field_step = 1.5e-4;  // metres a unit: values reach 19 mm either way
 
 /// Adds the distance field of `bone` over the box of `near`.
-void add_field(const TriangleMesh& bone, uint8_t which, const Bounds& near, double spacing, rig::TissueLevel& level) {
+void add_field(const TriangleMesh& bone, uint8_t which, const Bounds& near, double spacing,
+               rig::TissueLevel& level) {
   const spatial::SurfaceQuery query(bone);
   const Vec3 origin = near.lower - Vec3::Constant(spacing);
   std::array<uint32_t, 3> size{};
@@ -30,7 +31,8 @@ void add_field(const TriangleMesh& bone, uint8_t which, const Bounds& near, doub
       for (uint32_t i = 0; i < size[0]; ++i) {
         const spatial::ClosestPoint hit = query.closest(origin + spacing * Vec3(i, j, k), 130.0 * field_step);
         const double distance = hit.found() ? hit.signed_distance : 1.0;
-        level.contact_field_values.push_back(static_cast<uint8_t>(std::clamp(std::round(128.0 + distance / field_step), 0.0, 255.0)));
+        level.contact_field_values.push_back(
+            static_cast<uint8_t>(std::clamp(std::round(128.0 + distance / field_step), 0.0, 255.0)));
       }
 }
 
@@ -39,7 +41,8 @@ void add_field(const TriangleMesh& bone, uint8_t which, const Bounds& near, doub
 void add_contact(const TissueInputs& inputs, const Columns& c, rig::TissueLevel& level) {
   const auto n = static_cast<size_t>(c.count());
   const auto& mouth = c.opening_distance[static_cast<size_t>(Opening::mouth)];
-  // What may meet bone and teeth: lips' and cheeks' inside with both jaws, the fascia with the bone it glides on.
+  // What may meet bone and teeth: lips' and cheeks' inside with both jaws, the fascia with the bone it glides
+  // on.
   std::array<std::vector<uint32_t>, 2> nodes;
   for (size_t v = 0; v < n; ++v) {
     if (c.rim[v]) continue;
@@ -82,15 +85,18 @@ std::vector<bool> edge_columns(const Columns& c) {
   for (const fascia::Triangle& t : c.mesh.triangles)
     for (const int a : t)
       for (const int b : t)
-        if (c.outer[static_cast<size_t>(a)] != c.outer[static_cast<size_t>(b)]) edge[static_cast<size_t>(a)] = true;
+        if (c.outer[static_cast<size_t>(a)] != c.outer[static_cast<size_t>(b)])
+          edge[static_cast<size_t>(a)] = true;
   return edge;
 }
 
 /// The lids' edges, with the triangles around them.
-void add_lid_facing(const TissueInputs& inputs, const FaceRegion& region, const Columns& c, bool left, rig::TissueLevel& level) {
+void add_lid_facing(const TissueInputs& inputs, const FaceRegion& region, const Columns& c, bool left,
+                    rig::TissueLevel& level) {
   constexpr double depth = 0.010;  // metres along the skin from the opening
   const Fissure fissure(inputs, region, left);
-  const auto& opening = c.opening_distance[static_cast<size_t>(left ? Opening::eye_left : Opening::eye_right)];
+  const auto& opening =
+      c.opening_distance[static_cast<size_t>(left ? Opening::eye_left : Opening::eye_right)];
   const std::vector<bool> edge = edge_columns(c);
   for (size_t t = 0; t < c.mesh.triangles.size(); ++t) {
     int upper = 0;
@@ -109,7 +115,8 @@ void add_lid_facing(const TissueInputs& inputs, const FaceRegion& region, const 
 
 }  // namespace
 
-void add_facing(const TissueInputs& inputs, const FaceRegion& region, const Columns& c, rig::TissueLevel& level) {
+void add_facing(const TissueInputs& inputs, const FaceRegion& region, const Columns& c,
+                rig::TissueLevel& level) {
   for (size_t t = 0; t < c.mesh.triangles.size(); ++t) {
     double lower = 0.0, distance = 0.0;
     for (const int i : c.mesh.triangles[t]) {
@@ -120,7 +127,8 @@ void add_facing(const TissueInputs& inputs, const FaceRegion& region, const Colu
     if (distance > 0.012 || std::abs(lower - 0.5) < 0.06) continue;  // at the corner both lips are one
     face(level, t, lower < 0.5 ? 0 : 1);
   }
-  for (const bool left : {true, false}) add_lid_facing(inputs, region, c, left, level);
+  for (const bool left : {true, false})
+    add_lid_facing(inputs, region, c, left, level);
 }
 
 }  // namespace fascia::tissue

@@ -19,14 +19,15 @@ struct DistanceSeed {
   double distance = 0.0;
 };
 
-/// Dijkstra's distances over the edges of `mesh` up to `range`; `allowed` (empty: all) says which vertices may be
-/// passed. On a fine mesh some 5 % longer than geodesics. Ties go to the earlier seed.
+/// Dijkstra's distances over the edges of `mesh` up to `range`; `allowed` (empty: all) says which vertices
+/// may be passed. On a fine mesh some 5 % longer than geodesics. Ties go to the earlier seed.
 EdgeDistances edge_distances(const TriangleMesh& mesh, const std::vector<DistanceSeed>& seeds,
                              double range = std::numeric_limits<double>::infinity(),
                              const std::vector<bool>& allowed = {});
 
-/// The same over the surface itself, so that it hardly matters how it is cut into triangles: fronts are straight across each
-/// triangle (Kimmel & Sethian 1998, "Computing geodesic paths on manifolds"); where one comes in past an obtuse corner, along the edge.
+/// The same over the surface itself, so that it hardly matters how it is cut into triangles: fronts are
+/// straight across each triangle (Kimmel & Sethian 1998, "Computing geodesic paths on manifolds"); where one
+/// comes in past an obtuse corner, along the edge.
 EdgeDistances surface_distances(const TriangleMesh& mesh, const std::vector<DistanceSeed>& seeds,
                                 double range = std::numeric_limits<double>::infinity(),
                                 const std::vector<bool>& allowed = {});

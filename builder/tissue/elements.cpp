@@ -31,8 +31,9 @@ void add_nodes(const Columns& c, const TissueMaterial& m, rig::TissueLevel& leve
       if (c.rim[v]) level.kinds[layer * n + v] = NodeKind::fixed;
     }
     if (c.rim[v]) continue;
-    level.kinds[2 * n + v] = !c.bone[v] ? NodeKind::mucosa
-                             : c.jaw_weight[v] > 0.0 ? NodeKind::fixed_mandible : NodeKind::fixed_cranium;
+    level.kinds[2 * n + v] = !c.bone[v]              ? NodeKind::mucosa
+                             : c.jaw_weight[v] > 0.0 ? NodeKind::fixed_mandible
+                                                     : NodeKind::fixed_cranium;
   }
 }
 
@@ -41,7 +42,8 @@ double smoothstep(double low, double high, double x) {
   return t * t * (3.0 - 2.0 * t);
 }
 
-/// Skin of the lids is the body's thinnest, some 0.5 mm, and loose: what share of the face's stiffness it has.
+/// Skin of the lids is the body's thinnest, some 0.5 mm, and loose: what share of the face's stiffness it
+/// has.
 double lid_share(const Columns& c, size_t v) {
   const double distance = std::min(c.opening_distance[static_cast<size_t>(Opening::eye_left)][v],
                                    c.opening_distance[static_cast<size_t>(Opening::eye_right)][v]);
@@ -64,19 +66,22 @@ std::vector<Edge> edges_of(const Columns& c) {
   std::map<std::pair<size_t, size_t>, std::vector<size_t>> triangles;
   for (size_t t = 0; t < c.mesh.triangles.size(); ++t)
     for (size_t e = 0; e < 3; ++e) {
-      const auto a = static_cast<size_t>(c.mesh.triangles[t][e]), b = static_cast<size_t>(c.mesh.triangles[t][(e + 1) % 3]);
+      const auto a = static_cast<size_t>(c.mesh.triangles[t][e]),
+                 b = static_cast<size_t>(c.mesh.triangles[t][(e + 1) % 3]);
       triangles[{std::min(a, b), std::max(a, b)}].push_back(t);
     }
   std::vector<Edge> edges;
   for (const auto& [ends, both] : triangles)
-    edges.push_back({ends.first, ends.second, (c.mesh.vertices[ends.first] - c.mesh.vertices[ends.second]).norm(), both});
+    edges.push_back(
+        {ends.first, ends.second, (c.mesh.vertices[ends.first] - c.mesh.vertices[ends.second]).norm(), both});
   return edges;
 }
 
-/// What the crossing springs of one layer do besides carrying its shear, which depends on how long the edges are and is taken
-/// off elsewhere.
+/// What the crossing springs of one layer do besides carrying its shear, which depends on how long the edges
+/// are and is taken off elsewhere.
 struct Crossing {
-  std::vector<double> stretch;  ///< #triangles, newton per metre: as a membrane's Young's modulus times thickness
+  std::vector<double>
+      stretch;  ///< #triangles, newton per metre: as a membrane's Young's modulus times thickness
   std::vector<double> squeeze;  ///< #columns, newton per metre: as a spring straight through the column
 };
 
@@ -85,25 +90,33 @@ struct SpringAdder {
   void operator()(size_t a, size_t b, double stiffness, double limit = 0.4) const {
     level.spring_nodes.push_back({static_cast<uint32_t>(a), static_cast<uint32_t>(b)});
     level.spring_stiffness.push_back(static_cast<float>(stiffness));
-    level.spring_limit_strain.push_back(static_cast<float>(limit));  // retinacula are wavy: straight at some 40 %, then stiff
+    level.spring_limit_strain.push_back(
+        static_cast<float>(limit));  // retinacula are wavy: straight at some 40 %, then stiff
     level.spring_second_stiffness.push_back(static_cast<float>(4.0 * stiffness));
     level.spring_one_sided.push_back(0);
   }
 };
 
-double mean(const std::vector<double>& values, size_t a, size_t b) { return 0.5 * (values[a] + values[b]); }
+double mean(const std::vector<double>& values, size_t a, size_t b) {
+  return 0.5 * (values[a] + values[b]);
+}
 
-/// Two springs across the layer under each edge, which carry its shear: of stiffness k each, inclined by the angle whose cosine is
-/// edge over diagonal. `outer` and `inner` are the layer's first nodes, `is_free` tells whose inner nodes may move.
+/// Two springs across the layer under each edge, which carry its shear: of stiffness k each, inclined by the
+/// angle whose cosine is edge over diagonal. `outer` and `inner` are the layer's first nodes, `is_free` tells
+/// whose inner nodes may move.
 template <class IsFree>
-Crossing add_crossing(const Columns& c, const std::vector<Edge>& edges, const std::vector<double>& thickness, const std::vector<double>& shear,
-                      size_t outer, size_t inner, const IsFree& is_free, rig::TissueLevel& level) {
+Crossing add_crossing(const Columns& c, const std::vector<Edge>& edges, const std::vector<double>& thickness,
+                      const std::vector<double>& shear, size_t outer, size_t inner, const IsFree& is_free,
+                      rig::TissueLevel& level) {
   const SpringAdder spring{level};
-  Crossing crossing{std::vector<double>(c.mesh.triangles.size(), 0.0), std::vector<double>(thickness.size(), 0.0)};
+  Crossing crossing{std::vector<double>(c.mesh.triangles.size(), 0.0),
+                    std::vector<double>(thickness.size(), 0.0)};
   for (const Edge& edge : edges) {
-    const double t = std::max(mean(thickness, edge.a, edge.b), 0.001), e = edge.length, diagonal = std::hypot(e, t);
+    const double t = std::max(mean(thickness, edge.a, edge.b), 0.001), e = edge.length,
+                 diagonal = std::hypot(e, t);
     const double area = (c.area[edge.a] + c.area[edge.b]) / 6.0;  // an edge's share of its two columns
-    const double along = mean(shear, edge.a, edge.b) * area / t;  // of each spring: its stiffness times the cosine squared
+    const double along =
+        mean(shear, edge.a, edge.b) * area / t;  // of each spring: its stiffness times the cosine squared
     // However steep a spring is, it is taut when the layer is sheared by its own thickness.
     const double limit = std::max(0.4, std::hypot(e + t, t) / diagonal - 1.0);
     const double stiffness = along * diagonal * diagonal / (e * e);
@@ -113,16 +126,21 @@ Crossing add_crossing(const Columns& c, const std::vector<Edge>& edges, const st
         spring(outer + a, inner + b, stiffness, limit);
         ++springs;
       }
-    for (const size_t t0 : edge.triangles)  // Young's modulus of a net of equilateral triangles is 2/3 of the sum over its edges
-      crossing.stretch[t0] += springs / 3.0 * along * e * e / (static_cast<double>(edge.triangles.size()) * triangle_area(c.mesh, static_cast<int>(t0)));
-    for (const size_t v : {edge.a, edge.b}) crossing.squeeze[v] += 0.5 * springs * along * t * t / (e * e);
+    for (const size_t t0 : edge.triangles)  // Young's modulus of a net of equilateral triangles is 2/3 of the
+                                            // sum over its edges
+      crossing.stretch[t0] +=
+          springs / 3.0 * along * e * e /
+          (static_cast<double>(edge.triangles.size()) * triangle_area(c.mesh, static_cast<int>(t0)));
+    for (const size_t v : {edge.a, edge.b})
+      crossing.squeeze[v] += 0.5 * springs * along * t * t / (e * e);
   }
   return crossing;
 }
 
-/// Retinacula and fat: one spring straight through each column, two across under each edge; what the crossing ones resist of
-/// thickening is taken off the straight ones. Returns what they resist of stretching.
-std::vector<double> add_retinacula(const Columns& c, const Attachments& attachments, const TissueMaterial& m, rig::TissueLevel& level) {
+/// Retinacula and fat: one spring straight through each column, two across under each edge; what the crossing
+/// ones resist of thickening is taken off the straight ones. Returns what they resist of stretching.
+std::vector<double> add_retinacula(const Columns& c, const Attachments& attachments, const TissueMaterial& m,
+                                   rig::TissueLevel& level) {
   const auto n = static_cast<size_t>(c.count());
   const SpringAdder spring{level};
   const std::vector<Edge> edges = edges_of(c);
@@ -132,7 +150,8 @@ std::vector<double> add_retinacula(const Columns& c, const Attachments& attachme
     deep[v] = c.inner_depth[v] - c.smas_depth[v];
   }
   const auto inner_free = [&](size_t v) { return !c.rim[v] && !c.bone[v]; };
-  const Crossing outer = add_crossing(c, edges, thickness, shear, 0, n, [](size_t) { return true; }, level);
+  const Crossing outer = add_crossing(
+      c, edges, thickness, shear, 0, n, [](size_t) { return true; }, level);
   const Crossing inner = add_crossing(c, edges, deep, deep_shear, n, 2 * n, inner_free, level);
   for (size_t v = 0; v < n; ++v) {
     const auto straight = [&](double modulus, double depth, double carried) {
@@ -146,10 +165,12 @@ std::vector<double> add_retinacula(const Columns& c, const Attachments& attachme
 }
 
 /// Skin and SMAS; `carried` is what the springs between them resist of stretching, each triangle's.
-void add_membranes(const Columns& c, const TissueMaterial& m, const std::vector<double>& carried, rig::TissueLevel& level) {
+void add_membranes(const Columns& c, const TissueMaterial& m, const std::vector<double>& carried,
+                   rig::TissueLevel& level) {
   const auto plate = [&](double modulus, double thickness) {
     const double nu = static_cast<double>(level.poisson_ratio);
-    return static_cast<float>(m.bending_factor * modulus * thickness * thickness * thickness / (12.0 * (1.0 - nu * nu)));
+    return static_cast<float>(m.bending_factor * modulus * thickness * thickness * thickness /
+                              (12.0 * (1.0 - nu * nu)));
   };
   const auto n = static_cast<size_t>(c.count());
   level.skin_bending.assign(n, plate(m.skin_modulus, m.skin_thickness));
@@ -164,14 +185,21 @@ void add_membranes(const Columns& c, const TissueMaterial& m, const std::vector<
       outer = c.outer[v] ? 1.0 : outer;
       bone = c.bone[v] ? bone : 0.0;
     }
-    // Fat is stretched with them: half of it with each. What crossing springs resist of that is not resisted twice.
+    // Fat is stretched with them: half of it with each. What crossing springs resist of that is not resisted
+    // twice.
     const double own = 0.5 * (soft * fat - carried[t]);
-    const auto membrane = [&](double wanted) { return static_cast<float>(std::max(wanted + own, 0.25 * wanted)); };
-    level.triangles.push_back({static_cast<uint32_t>(corners[0]), static_cast<uint32_t>(corners[1]), static_cast<uint32_t>(corners[2])});
+    const auto membrane = [&](double wanted) {
+      return static_cast<float>(std::max(wanted + own, 0.25 * wanted));
+    };
+    level.triangles.push_back({static_cast<uint32_t>(corners[0]), static_cast<uint32_t>(corners[1]),
+                               static_cast<uint32_t>(corners[2])});
     // Mucosa is thinner and softer than skin; it has no SMAS, only submucosa.
-    level.skin_membrane.push_back(membrane(m.skin_modulus * m.skin_thickness * soft * (outer > 0.0 ? 1.0 : 0.35)));
-    level.smas_membrane.push_back(membrane(m.smas_modulus * m.smas_thickness * soft * (outer > 0.0 ? 1.0 : 0.25)));
-    level.volume_stiffness.push_back(static_cast<float>(outer > 0.0 ? m.volume_modulus : 0.2 * m.volume_modulus));
+    level.skin_membrane.push_back(
+        membrane(m.skin_modulus * m.skin_thickness * soft * (outer > 0.0 ? 1.0 : 0.35)));
+    level.smas_membrane.push_back(
+        membrane(m.smas_modulus * m.smas_thickness * soft * (outer > 0.0 ? 1.0 : 0.25)));
+    level.volume_stiffness.push_back(
+        static_cast<float>(outer > 0.0 ? m.volume_modulus : 0.2 * m.volume_modulus));
     level.inner_volume_stiffness.push_back(static_cast<float>(bone > 0.0 ? 0.0 : m.inner_volume_modulus));
   }
   for (size_t v = 0; v < n; ++v) {
@@ -181,8 +209,9 @@ void add_membranes(const Columns& c, const TissueMaterial& m, const std::vector<
   }
 }
 
-/// Between the columns of a lip's or cheek's outer skin and those of its lining lies the same flesh: each lining column hangs
-/// on three outer ones that end before it, some way to its sides however close columns stand.
+/// Between the columns of a lip's or cheek's outer skin and those of its lining lies the same flesh: each
+/// lining column hangs on three outer ones that end before it, some way to its sides however close columns
+/// stand.
 void add_lip_body(const Columns& c, const TissueMaterial& m, rig::TissueLevel& level) {
   constexpr double aside = 0.0025, reach = 0.009;  // metres
   const auto n = static_cast<size_t>(c.count());
@@ -193,22 +222,28 @@ void add_lip_body(const Columns& c, const TissueMaterial& m, rig::TissueLevel& l
     std::vector<size_t> near;
     for (size_t w = 0; w < n; ++w) {
       if (!c.outer[w] || c.rim[w] || c.bone[w] || std::abs(c.lower_lip[w] - c.lower_lip[v]) > 0.3) continue;
-      if ((c.inner[w] - c.inner[v]).norm() < reach && (c.mesh.vertices[w] - c.mesh.vertices[v]).dot(c.normals[v]) < 0.0) near.push_back(w);
+      if ((c.inner[w] - c.inner[v]).norm() < reach &&
+          (c.mesh.vertices[w] - c.mesh.vertices[v]).dot(c.normals[v]) < 0.0)
+        near.push_back(w);
     }
     if (near.empty()) continue;
     const Vec3 across = c.normals[v].cross(Vec3::UnitY()).normalized(), up = across.cross(c.normals[v]);
     std::map<size_t, double> share;
     for (const double angle : {0.5, 2.5944, 4.6888}) {  // thirds of a turn
       const Vec3 aim = c.inner[v] + aside * (std::cos(angle) * across + std::sin(angle) * up);
-      const auto nearer = [&](size_t a, size_t b) { return (c.inner[a] - aim).squaredNorm() < (c.inner[b] - aim).squaredNorm(); };
+      const auto nearer = [&](size_t a, size_t b) {
+        return (c.inner[a] - aim).squaredNorm() < (c.inner[b] - aim).squaredNorm();
+      };
       share[*std::min_element(near.begin(), near.end(), nearer)] += 1.0 / 3.0;
     }
     for (const auto& [w, part] : share)
-      spring(2 * n + v, 2 * n + w, part * m.fat_modulus * c.area[v] / std::max((c.inner[w] - c.inner[v]).norm(), 0.001));
+      spring(2 * n + v, 2 * n + w,
+             part * m.fat_modulus * c.area[v] / std::max((c.inner[w] - c.inner[v]).norm(), 0.001));
   }
 }
 
-void add_tethers(const Columns& c, const Attachments& attachments, const TissueMaterial& m, rig::TissueLevel& level) {
+void add_tethers(const Columns& c, const Attachments& attachments, const TissueMaterial& m,
+                 rig::TissueLevel& level) {
   const auto n = static_cast<size_t>(c.count());
   for (size_t v = 0; v < n; ++v) {
     if (c.rim[v]) continue;
@@ -218,16 +253,21 @@ void add_tethers(const Columns& c, const Attachments& attachments, const TissueM
     const double across = c.area[v] / std::clamp(depth, 0.0025, 0.005);
     level.tether_nodes.push_back(static_cast<uint32_t>(n + v));
     level.tether_normals.push_back(c.normals[v].cast<float>());
-    level.tether_normal_stiffness.push_back(static_cast<float>(m.glide_normal * across * attachments.normal[v]));
-    level.tether_tangential_stiffness.push_back(static_cast<float>(m.glide_shear * layer * attachments.bone[v]));
+    level.tether_normal_stiffness.push_back(
+        static_cast<float>(m.glide_normal * across * attachments.normal[v]));
+    level.tether_tangential_stiffness.push_back(
+        static_cast<float>(m.glide_shear * layer * attachments.bone[v]));
   }
   // Behind the lips the lining turns over onto the gums and is bound down there: lips hang from this fold.
   for (const auto& loop : boundary_loops(c.mesh, connectivity(c.mesh)))
     for (size_t k = 0; k < loop.size(); ++k) {
       const auto v = static_cast<size_t>(loop[k]);
       if (c.rim[v] || c.opening_distance[static_cast<size_t>(Opening::mouth)][v] > 0.03) continue;
-      const auto place = [&](size_t i) -> const Vec3& { return c.mesh.vertices[static_cast<size_t>(loop[i % loop.size()])]; };
-      const double length = 0.5 * ((place(k + 1) - place(k)).norm() + (place(k + loop.size() - 1) - place(k)).norm());
+      const auto place = [&](size_t i) -> const Vec3& {
+        return c.mesh.vertices[static_cast<size_t>(loop[i % loop.size()])];
+      };
+      const double length =
+          0.5 * ((place(k + 1) - place(k)).norm() + (place(k + loop.size() - 1) - place(k)).norm());
       level.tether_nodes.push_back(static_cast<uint32_t>(v));
       level.tether_normals.push_back(c.normals[v].cast<float>());
       level.tether_normal_stiffness.push_back(static_cast<float>(m.gum_hold * length));
@@ -237,8 +277,8 @@ void add_tethers(const Columns& c, const Attachments& attachments, const TissueM
 
 }  // namespace
 
-rig::TissueLevel make_level(const TissueInputs& inputs, const TissueOptions& options, const LevelOptions& wanted,
-                            const Columns& columns) {
+rig::TissueLevel make_level(const TissueInputs& inputs, const TissueOptions& options,
+                            const LevelOptions& wanted, const Columns& columns) {
   rig::TissueLevel level;
   level.name = wanted.name;
   const Attachments attachments = attachments_of(inputs, columns);

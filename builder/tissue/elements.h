@@ -4,11 +4,13 @@
 
 namespace fascia::tissue {
 
-/// Nodes, layers, springs and tethers of a level from its columns: everything that does not depend on channels.
-rig::TissueLevel make_level(const TissueInputs& inputs, const TissueOptions& options, const LevelOptions& level,
-                            const Columns& columns);
+/// Nodes, layers, springs and tethers of a level from its columns: everything that does not depend on
+/// channels.
+rig::TissueLevel make_level(const TissueInputs& inputs, const TissueOptions& options,
+                            const LevelOptions& level, const Columns& columns);
 
-/// How firmly each column's SMAS is held by what lies behind it, along the plane it glides on (`bone`) and across it
+/// How firmly each column's SMAS is held by what lies behind it, along the plane it glides on (`bone`) and
+/// across it
 /// (`normal`), and by the skin: 1 the mean of a face, 0 free.
 struct Attachments {
   std::vector<double> bone, normal, skin;

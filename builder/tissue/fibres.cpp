@@ -11,14 +11,17 @@ namespace {
 constexpr double deep_course = 0.010;  // metres from the fascia, beyond which a fibre no longer goes with it
 
 /// `points` thinned so that steps are at least `spacing` long; both ends stay.
-std::vector<size_t> thinned(const std::vector<rig::Vec3f>& points, size_t first, size_t last, double spacing) {
+std::vector<size_t> thinned(const std::vector<rig::Vec3f>& points, size_t first, size_t last,
+                            double spacing) {
   std::vector<size_t> kept = {first};
   double run = 0.0;
   for (size_t p = first + 1; p < last; ++p) {
     run += static_cast<double>((points[p] - points[p - 1]).norm());
     if (run >= spacing || p + 1 == last) {
-      if (p + 1 == last && run < 0.4 * spacing && kept.size() > 2) kept.back() = p;
-      else kept.push_back(p);
+      if (p + 1 == last && run < 0.4 * spacing && kept.size() > 2)
+        kept.back() = p;
+      else
+        kept.push_back(p);
       run = 0.0;
     }
   }
@@ -28,8 +31,9 @@ std::vector<size_t> thinned(const std::vector<rig::Vec3f>& points, size_t first,
 /// Whether a fibre from bone ends across the midline, where its fellow of the other side begins.
 bool meets_fellow(const rig::Muscle& muscle, size_t first, size_t last) {
   const rig::Vec3f way = muscle.points[last - 1] - muscle.points[last - 2];
-  return (muscle.origin == rig::FibreEnd::cranium || muscle.origin == rig::FibreEnd::mandible) && last > first + 2 &&
-         std::abs(muscle.points[last - 1].x()) < 0.006F && std::abs(way.x()) > 0.5F * way.norm();
+  return (muscle.origin == rig::FibreEnd::cranium || muscle.origin == rig::FibreEnd::mandible) &&
+         last > first + 2 && std::abs(muscle.points[last - 1].x()) < 0.006F &&
+         std::abs(way.x()) > 0.5F * way.norm();
 }
 
 /// Whether a fibre comes from behind the globe to a lid, as the levator's do.
@@ -40,7 +44,9 @@ bool is_from_orbit(const TissueInputs& inputs, const rig::Muscle& muscle, size_t
          (end - eye.centre).norm() < eye.radius + 0.006F;
 }
 
-bool is_bony(rig::FibreEnd end) { return end == rig::FibreEnd::cranium || end == rig::FibreEnd::mandible; }
+bool is_bony(rig::FibreEnd end) {
+  return end == rig::FibreEnd::cranium || end == rig::FibreEnd::mandible;
+}
 
 /// A layer of the lattice, to find what a fibre's points go with.
 struct LayerSurface {
@@ -50,29 +56,36 @@ struct LayerSurface {
   LayerSurface(const std::vector<Vec3>& places, const Columns& c, const Has& has) {
     mesh.vertices = places;
     for (const fascia::Triangle& t : c.mesh.triangles)
-      if (std::all_of(t.begin(), t.end(), [&](int v) { return has(static_cast<size_t>(v)); })) mesh.triangles.push_back(t);
+      if (std::all_of(t.begin(), t.end(), [&](int v) { return has(static_cast<size_t>(v)); }))
+        mesh.triangles.push_back(t);
     if (!mesh.triangles.empty()) query.emplace(mesh);
   }
 };
 
-/// What fibres are laid on: the SMAS under the outer skin, the lining of the lips, and the SMAS layer of the lids with their lining,
-/// where the tarsal plates are.
+/// What fibres are laid on: the SMAS under the outer skin, the lining of the lips, and the SMAS layer of the
+/// lids with their lining, where the tarsal plates are.
 struct Surfaces {
   LayerSurface outer, lips, lids;
   explicit Surfaces(const Columns& c)
       : outer(c.smas, c, [&](size_t v) { return c.outer[v]; }),
-        lips(c.mesh.vertices, c, [&](size_t v) { return !c.outer[v] && c.opening_distance[static_cast<size_t>(Opening::mouth)][v] < 0.03; }),
+        lips(c.mesh.vertices, c,
+             [&](size_t v) {
+               return !c.outer[v] && c.opening_distance[static_cast<size_t>(Opening::mouth)][v] < 0.03;
+             }),
         lids(c.smas, c, [&](size_t v) {
           return std::min(c.opening_distance[static_cast<size_t>(Opening::eye_left)][v],
                           c.opening_distance[static_cast<size_t>(Opening::eye_right)][v]) < 0.010;
         }) {}
 };
 
-/// Adds one point of a fibre that goes with the place nearest to it on `surface`, whose nodes begin at `layer`.
-void add_point(const LayerSurface& surface, uint32_t layer, const rig::Vec3f& point, rig::FibreEnd end, double taper, rig::TissueLevel& level) {
+/// Adds one point of a fibre that goes with the place nearest to it on `surface`, whose nodes begin at
+/// `layer`.
+void add_point(const LayerSurface& surface, uint32_t layer, const rig::Vec3f& point, rig::FibreEnd end,
+               double taper, rig::TissueLevel& level) {
   const SurfacePoint place = surface.query->closest(point.cast<double>()).surface;
   const fascia::Triangle& t = surface.mesh.triangles[static_cast<size_t>(place.triangle)];
-  level.fibre_nodes.push_back({layer + static_cast<uint32_t>(t[0]), layer + static_cast<uint32_t>(t[1]), layer + static_cast<uint32_t>(t[2])});
+  level.fibre_nodes.push_back({layer + static_cast<uint32_t>(t[0]), layer + static_cast<uint32_t>(t[1]),
+                               layer + static_cast<uint32_t>(t[2])});
   level.fibre_weights.push_back(place.barycentric.cast<float>());
   level.fibre_rest.push_back(point);
   level.fibre_anchor.push_back(end);
@@ -80,28 +93,36 @@ void add_point(const LayerSurface& surface, uint32_t layer, const rig::Vec3f& po
 }
 
 /// A fibre of a compressor runs through the lip from its skin to its lining.
-void lay_through(const rig::Muscle& muscle, const std::vector<size_t>& kept, const Surfaces& surfaces, rig::TissueLevel& level) {
+void lay_through(const rig::Muscle& muscle, const std::vector<size_t>& kept, const Surfaces& surfaces,
+                 rig::TissueLevel& level) {
   add_point(surfaces.outer, 0, muscle.points[kept.front()], rig::FibreEnd::skin, 1.0, level);
   add_point(surfaces.lips, 0, muscle.points[kept.back()], rig::FibreEnd::skin, 1.0, level);
 }
 
-/// A fibre from the orbit goes over the globe as over a pulley and ends on the tarsal plate, which takes its pull whole.
-void lay_from_orbit(const rig::Muscle& muscle, const std::vector<size_t>& kept, uint32_t smas, const Surfaces& surfaces, rig::TissueLevel& level) {
+/// A fibre from the orbit goes over the globe as over a pulley and ends on the tarsal plate, which takes its
+/// pull whole.
+void lay_from_orbit(const rig::Muscle& muscle, const std::vector<size_t>& kept, uint32_t smas,
+                    const Surfaces& surfaces, rig::TissueLevel& level) {
   for (const size_t k : kept)
-    add_point(surfaces.lids, smas, muscle.points[k], k == kept.back() ? rig::FibreEnd::smas : muscle.origin, 1.0, level);
+    add_point(surfaces.lids, smas, muscle.points[k], k == kept.back() ? rig::FibreEnd::smas : muscle.origin,
+              1.0, level);
 }
 
 /// A fibre along the fascia. `spread`: metres over which its pull comes in at a free end.
-void lay_along(const rig::Muscle& muscle, const std::vector<size_t>& kept, const std::vector<double>& along, double spread, bool meets_fellow,
-               uint32_t smas, const Surfaces& surfaces, rig::TissueLevel& level) {
+void lay_along(const rig::Muscle& muscle, const std::vector<size_t>& kept, const std::vector<double>& along,
+               double spread, bool meets_fellow, uint32_t smas, const Surfaces& surfaces,
+               rig::TissueLevel& level) {
   const double length = along.back();
   bool is_deep = is_bony(muscle.origin);
   for (size_t k = 0; k < kept.size(); ++k) {
     const rig::Vec3f& point = muscle.points[kept[k]];
     const bool is_last = k + 1 == kept.size();
     // Where it still runs far beneath the fascia its sheath holds it by the bone.
-    is_deep = is_deep && !is_last && surfaces.outer.query->closest(point.cast<double>()).distance > deep_course;
-    const rig::FibreEnd end = k == 0 || is_deep ? muscle.origin : is_last ? muscle.insertion : rig::FibreEnd::smas;
+    is_deep =
+        is_deep && !is_last && surfaces.outer.query->closest(point.cast<double>()).distance > deep_course;
+    const rig::FibreEnd end = k == 0 || is_deep ? muscle.origin
+                              : is_last         ? muscle.insertion
+                                                : rig::FibreEnd::smas;
     // A free end takes up the pull over a few millimetres, so that no node is drawn out alone.
     const double middle = is_last ? length : 0.5 * (along[k] + along[k + 1]);
     double taper = 1.0;
@@ -120,7 +141,8 @@ int channel_index(const std::vector<rig::Channel>& channels, const std::string& 
   return -1;
 }
 
-void add_fibres(const TissueInputs& inputs, const TissueOptions& options, const Columns& c, rig::TissueLevel& level) {
+void add_fibres(const TissueInputs& inputs, const TissueOptions& options, const Columns& c,
+                rig::TissueLevel& level) {
   level.fibre_offsets.assign(1, 0);
   const Surfaces surfaces(c);
   if (!surfaces.outer.query) return;
@@ -129,7 +151,8 @@ void add_fibres(const TissueInputs& inputs, const TissueOptions& options, const 
     const rig::Muscle& muscle = inputs.muscles[m];
     const int channel = channel_index(inputs.channels, muscle.name);
     if (channel < 0 || muscle.fibre_offsets.size() < 2) continue;
-    if (is_bony(muscle.origin) && is_bony(muscle.insertion)) continue;  // moves the jaw, not the fascia it lies under
+    if (is_bony(muscle.origin) && is_bony(muscle.insertion))
+      continue;  // moves the jaw, not the fascia it lies under
     const size_t fibres = muscle.fibre_offsets.size() - 1;
     for (size_t f = 0; f < fibres; ++f) {
       const size_t first = muscle.fibre_offsets[f], last = muscle.fibre_offsets[f + 1];
@@ -137,29 +160,38 @@ void add_fibres(const TissueInputs& inputs, const TissueOptions& options, const 
       const std::vector<size_t> kept = thinned(muscle.points, first, last, 0.004);
       std::vector<double> along(kept.size(), 0.0);
       for (size_t k = 1; k < kept.size(); ++k)
-        along[k] = along[k - 1] + static_cast<double>((muscle.points[kept[k]] - muscle.points[kept[k - 1]]).norm());
+        along[k] =
+            along[k - 1] + static_cast<double>((muscle.points[kept[k]] - muscle.points[kept[k - 1]]).norm());
       const double length = along.back();
       if (!(length > 1e-4)) continue;
       // A ring that hangs on one bone gives its pull to the skin all along its way.
-      const bool hung_ring = muscle.kind == "sphincter_ring" && is_bony(muscle.origin) != is_bony(muscle.insertion);
-      const double spread = hung_ring ? 0.9 * length : std::min(options.material.insertion_spread, 0.35 * length);
-      if (muscle.kind == "compressor" && surfaces.lips.query) lay_through(muscle, kept, surfaces, level);
-      else if (surfaces.lids.query && is_from_orbit(inputs, muscle, first, last)) lay_from_orbit(muscle, kept, smas, surfaces, level);
-      else lay_along(muscle, kept, along, spread, meets_fellow(muscle, first, last), smas, surfaces, level);
+      const bool hung_ring =
+          muscle.kind == "sphincter_ring" && is_bony(muscle.origin) != is_bony(muscle.insertion);
+      const double spread =
+          hung_ring ? 0.9 * length : std::min(options.material.insertion_spread, 0.35 * length);
+      if (muscle.kind == "compressor" && surfaces.lips.query)
+        lay_through(muscle, kept, surfaces, level);
+      else if (surfaces.lids.query && is_from_orbit(inputs, muscle, first, last))
+        lay_from_orbit(muscle, kept, smas, surfaces, level);
+      else
+        lay_along(muscle, kept, along, spread, meets_fellow(muscle, first, last), smas, surfaces, level);
       level.fibre_offsets.push_back(static_cast<uint32_t>(level.fibre_nodes.size()));
       level.fibre_muscle.push_back(static_cast<uint32_t>(m));
       level.fibre_channel.push_back(static_cast<uint32_t>(channel));
       level.fibre_strength.push_back(muscle.strength / static_cast<float>(fibres));
-      level.fibre_shortest.push_back(static_cast<float>(
-          std::clamp(1.0 - options.material.fibre_shortest_factor * static_cast<double>(muscle.peak_shortening), 0.3, 0.95)));
+      level.fibre_shortest.push_back(static_cast<float>(std::clamp(
+          1.0 - options.material.fibre_shortest_factor * static_cast<double>(muscle.peak_shortening), 0.3,
+          0.95)));
     }
   }
 }
 
-void add_pressures(const TissueInputs& inputs, const TissueOptions& options, const Columns& c, rig::TissueLevel& level) {
+void add_pressures(const TissueInputs& inputs, const TissueOptions& options, const Columns& c,
+                   rig::TissueLevel& level) {
   const Vestibule vestibule(inputs);
   for (const double side : {1.0, -1.0}) {
-    const int channel = channel_index(inputs.channels, side > 0 ? "buccal_pressure_left" : "buccal_pressure_right");
+    const int channel =
+        channel_index(inputs.channels, side > 0 ? "buccal_pressure_left" : "buccal_pressure_right");
     if (channel < 0) continue;
     for (size_t t = 0; t < c.mesh.triangles.size(); ++t) {
       Vec3 centre = Vec3::Zero();

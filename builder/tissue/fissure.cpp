@@ -35,21 +35,26 @@ double Fissure::elevation(const Vec3& p) const {
   return std::atan2(arm.dot(up), arm.dot(front));
 }
 
-double Fissure::place(const Vec3& p) const { return ((p - centre).dot(lateral) - right_) / (left_ - right_); }
+double Fissure::place(const Vec3& p) const {
+  return ((p - centre).dot(lateral) - right_) / (left_ - right_);
+}
 
 double Fissure::middle(double place) const {
   return right_elevation_ + std::clamp(place, 0.0, 1.0) * (left_elevation_ - right_elevation_);
 }
 
 void Fissure::find_gaps(const FaceRegion& region, bool left) {
-  // A lid reaches over the globe to the lowest place of the upper one, the highest of the lower: not where the lining begins.
-  const auto& distance = region.opening_distance[static_cast<size_t>(left ? Opening::eye_left : Opening::eye_right)];
+  // A lid reaches over the globe to the lowest place of the upper one, the highest of the lower: not where
+  // the lining begins.
+  const auto& distance =
+      region.opening_distance[static_cast<size_t>(left ? Opening::eye_left : Opening::eye_right)];
   std::vector<double> upper(steps, 4.0), lower(steps, -4.0);
   std::vector<SurfacePoint> upper_places(steps), lower_places(steps);
   constexpr double last = steps - 1;
   const auto look_along = [&](size_t t, size_t first, size_t second) {
     const fascia::Triangle& corners = region.mesh.triangles[t];
-    const Vec3 &a = region.mesh.vertices[static_cast<size_t>(corners[first])], &b = region.mesh.vertices[static_cast<size_t>(corners[second])];
+    const Vec3 &a = region.mesh.vertices[static_cast<size_t>(corners[first])],
+               &b = region.mesh.vertices[static_cast<size_t>(corners[second])];
     const double from = place(a) * last, to = place(b) * last;
     if (!(from < to)) return;
     for (double k = std::max(0.0, std::ceil(from)); k <= std::min(last, to); k += 1.0) {
@@ -68,8 +73,10 @@ void Fissure::find_gaps(const FaceRegion& region, bool left) {
   };
   for (size_t t = 0; t < region.mesh.triangles.size(); ++t)
     for (size_t e = 0; e < 3; ++e) {
-      const auto a = static_cast<size_t>(region.mesh.triangles[t][e]), b = static_cast<size_t>(region.mesh.triangles[t][(e + 1) % 3]);
-      if (a >= distance.size() || b >= distance.size() || !(distance[a] < edge) || !(distance[b] < edge)) continue;
+      const auto a = static_cast<size_t>(region.mesh.triangles[t][e]),
+                 b = static_cast<size_t>(region.mesh.triangles[t][(e + 1) % 3]);
+      if (a >= distance.size() || b >= distance.size() || !(distance[a] < edge) || !(distance[b] < edge))
+        continue;
       look_along(t, e, (e + 1) % 3);
       look_along(t, (e + 1) % 3, e);
     }
@@ -83,12 +90,14 @@ void Fissure::find_gaps(const FaceRegion& region, bool left) {
   for (size_t k = 1, known = 0; k < steps; ++k) {
     if (gaps_[k] < 0.0) continue;
     for (size_t i = known + 1; i < k; ++i)
-      gaps_[i] = gaps_[known] + (gaps_[k] - gaps_[known]) * static_cast<double>(i - known) / static_cast<double>(k - known);
+      gaps_[i] = gaps_[known] +
+                 (gaps_[k] - gaps_[known]) * static_cast<double>(i - known) / static_cast<double>(k - known);
     known = k;
   }
   for (int pass = 0; pass < 2; ++pass) {
     std::vector<double> next = gaps_;
-    for (size_t k = 1; k + 1 < steps; ++k) next[k] = 0.25 * (gaps_[k - 1] + 2.0 * gaps_[k] + gaps_[k + 1]);
+    for (size_t k = 1; k + 1 < steps; ++k)
+      next[k] = 0.25 * (gaps_[k - 1] + 2.0 * gaps_[k] + gaps_[k + 1]);
     gaps_ = std::move(next);
   }
 }

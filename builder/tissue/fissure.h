@@ -6,15 +6,16 @@
 
 namespace fascia::tissue {
 
-/// The opening between an eye's lids in axes of its own: how high a place lies as an angle about the globe, and where it lies
-/// between the canthi.
+/// The opening between an eye's lids in axes of its own: how high a place lies as an angle about the globe,
+/// and where it lies between the canthi.
 class Fissure {
  public:
   /// From the lids' landmarks and the skin's own edge in `region`.
   Fissure(const TissueInputs& inputs, const FaceRegion& region, bool left);
 
-  Vec3 centre, lateral, front, up;  ///< lateral: from canthus to canthus, to the subject's left; front: out of the fissure
-  double radius = 0.0;              ///< of the globe, metres
+  Vec3 centre, lateral, front,
+      up;  ///< lateral: from canthus to canthus, to the subject's left; front: out of the fissure
+  double radius = 0.0;  ///< of the globe, metres
 
   /// Angle above the front, radians.
   double elevation(const Vec3& p) const;
@@ -34,7 +35,7 @@ class Fissure {
   double right_ = 0.0, left_ = 0.0;                      ///< the canthi along `lateral`
   double right_elevation_ = 0.0, left_elevation_ = 0.0;  ///< the canthi
   std::vector<SurfacePoint> edges_;
-  std::vector<double> gaps_;                             ///< in even steps from canthus to canthus
+  std::vector<double> gaps_;  ///< in even steps from canthus to canthus
 };
 
 }  // namespace fascia::tissue

@@ -25,7 +25,8 @@ std::vector<Row> rows_of_region(const FaceRegion& region, const Columns& c) {
   std::vector<DistanceSeed> seeds;
   for (size_t k = 0; k < c.source.size(); ++k)
     for (const int corner : region.mesh.triangles[static_cast<size_t>(c.source[k].triangle)])
-      seeds.push_back({corner, (region.mesh.vertices[static_cast<size_t>(corner)] - c.mesh.vertices[k]).norm()});
+      seeds.push_back(
+          {corner, (region.mesh.vertices[static_cast<size_t>(corner)] - c.mesh.vertices[k]).norm()});
   const EdgeDistances nearest = edge_distances(region.mesh, seeds);
   const auto around = triangles_around(c.mesh);
   const auto neighbours = vertex_neighbours(c.mesh);
@@ -36,7 +37,8 @@ std::vector<Row> rows_of_region(const FaceRegion& region, const Columns& c) {
     const auto column = static_cast<size_t>(nearest.seed[v] / 3);
     std::vector<int> candidates = around[column];
     for (const int n : neighbours[column])
-      candidates.insert(candidates.end(), around[static_cast<size_t>(n)].begin(), around[static_cast<size_t>(n)].end());
+      candidates.insert(candidates.end(), around[static_cast<size_t>(n)].begin(),
+                        around[static_cast<size_t>(n)].end());
     std::sort(candidates.begin(), candidates.end());
     candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
     double best = 1e300;
@@ -68,19 +70,24 @@ void smooth(const TriangleMesh& mesh, const Columns& c, int passes, std::vector<
       if (count == 0.0) continue;
       // Where the skin is coarser than the columns there is nothing to smooth, only detail to lose.
       double edge = 0.0, column = 0.0;
-      for (const int n : neighbours[v]) edge += (mesh.vertices[static_cast<size_t>(n)] - mesh.vertices[v]).norm() / count;
-      for (const auto& [node, weight] : rows[v]) column += weight * std::sqrt(c.area[node]);
+      for (const int n : neighbours[v])
+        edge += (mesh.vertices[static_cast<size_t>(n)] - mesh.vertices[v]).norm() / count;
+      for (const auto& [node, weight] : rows[v])
+        column += weight * std::sqrt(c.area[node]);
       const double share = 0.5 * (1.0 - smoothstep(0.5, 1.0, edge / std::max(column, 1e-6)));
-      for (const auto& [node, weight] : rows[v]) next[v][node] += (1.0 - share) * weight;
+      for (const auto& [node, weight] : rows[v])
+        next[v][node] += (1.0 - share) * weight;
       if (share > 0.0)
         for (const int n : neighbours[v])
-          for (const auto& [node, weight] : rows[static_cast<size_t>(n)]) next[v][node] += share / count * weight;
+          for (const auto& [node, weight] : rows[static_cast<size_t>(n)])
+            next[v][node] += share / count * weight;
     }
     rows = std::move(next);
   }
 }
 
-/// How far the rows are evened out at each vertex, metres: at the corners of the mouth and the edges of the lids.
+/// How far the rows are evened out at each vertex, metres: at the corners of the mouth and the edges of the
+/// lids.
 std::vector<double> easing(const TissueInputs& inputs, const FaceRegion& region) {
   const Vec3 corners[] = {landmark(inputs, "cheilion_left"), landmark(inputs, "cheilion_right")};
   std::vector<double> lengths(region.mesh.vertices.size());
@@ -89,17 +96,20 @@ std::vector<double> easing(const TissueInputs& inputs, const FaceRegion& region)
     const double corner = std::min((p - corners[0]).norm(), (p - corners[1]).norm());
     const double lid = std::min(region.opening_distance[static_cast<size_t>(Opening::eye_left)][v],
                                 region.opening_distance[static_cast<size_t>(Opening::eye_right)][v]);
-    lengths[v] = std::max(0.0015 * (1.0 - smoothstep(0.010, 0.018, corner)), 0.0007 * (1.0 - smoothstep(0.003, 0.008, lid)));
+    lengths[v] = std::max(0.0015 * (1.0 - smoothstep(0.010, 0.018, corner)),
+                          0.0007 * (1.0 - smoothstep(0.003, 0.008, lid)));
   }
   return lengths;
 }
 
-/// Evens out rows along the surface over `reach` (metres, #vertices): at the corners of the mouth a few tenths of a millimetre of skin
-/// span what opens by centimetres, and across the lattice's few triangles there the skin would turn over at every crease.
+/// Evens out rows along the surface over `reach` (metres, #vertices): at the corners of the mouth a few
+/// tenths of a millimetre of skin span what opens by centimetres, and across the lattice's few triangles
+/// there the skin would turn over at every crease.
 void ease(const TriangleMesh& mesh, const std::vector<double>& reach, std::vector<Row>& rows) {
   std::vector<bool> keep(mesh.triangles.size());
   for (size_t t = 0; t < keep.size(); ++t)
-    keep[t] = std::any_of(mesh.triangles[t].begin(), mesh.triangles[t].end(), [&](int v) { return reach[static_cast<size_t>(v)] > 0.0; });
+    keep[t] = std::any_of(mesh.triangles[t].begin(), mesh.triangles[t].end(),
+                          [&](int v) { return reach[static_cast<size_t>(v)] > 0.0; });
   std::vector<int> patch_vertex;
   const TriangleMesh patch = submesh(mesh, keep, &patch_vertex);
   if (patch.empty()) return;
@@ -111,16 +121,20 @@ void ease(const TriangleMesh& mesh, const std::vector<double>& reach, std::vecto
     const auto at = static_cast<size_t>(patch_vertex[v]);
     vertex[at] = v;
     lengths[at] = reach[v];
-    for (const auto& entry : rows[v]) column.emplace(entry.first, 0);
+    for (const auto& entry : rows[v])
+      column.emplace(entry.first, 0);
   }
   Eigen::Index count = 0;
-  for (auto& entry : column) entry.second = count++;
+  for (auto& entry : column)
+    entry.second = count++;
   Eigen::MatrixXd weights = Eigen::MatrixXd::Zero(patch.vertex_count(), count);
   for (size_t at = 0; at < vertex.size(); ++at)
-    for (const auto& [node, weight] : rows[vertex[at]]) weights(static_cast<Eigen::Index>(at), column.at(node)) = weight;
+    for (const auto& [node, weight] : rows[vertex[at]])
+      weights(static_cast<Eigen::Index>(at), column.at(node)) = weight;
   SurfaceSmoother(patch, lengths).smooth(weights);
   for (size_t at = 0; at < vertex.size(); ++at) {
-    const auto even = weights.row(static_cast<Eigen::Index>(at)).unaryExpr([](double w) { return w > 1e-4 ? w : 0.0; });
+    const auto even =
+        weights.row(static_cast<Eigen::Index>(at)).unaryExpr([](double w) { return w > 1e-4 ? w : 0.0; });
     const double kept = even.sum(), whole = weights.row(static_cast<Eigen::Index>(at)).sum();
     Row row;
     for (const auto& [node, k] : column)
@@ -130,36 +144,44 @@ void ease(const TriangleMesh& mesh, const std::vector<double>& reach, std::vecto
 }
 
 void add(const Row& from, double share, Row& to) {
-  for (const auto& [node, weight] : from) to[node] += share * weight;
+  for (const auto& [node, weight] : from)
+    to[node] += share * weight;
 }
 
-/// Shifts the first weights of a row that lost its others so that it stands where it stood, in multiples of themselves:
-/// neighbours whose rows were cut at different entries keep moving alike.
-void keep_place(const std::vector<std::pair<double, uint32_t>>& entries, size_t kept, const std::vector<Vec3>& places, std::vector<double>& weights) {
+/// Shifts the first weights of a row that lost its others so that it stands where it stood, in multiples of
+/// themselves: neighbours whose rows were cut at different entries keep moving alike.
+void keep_place(const std::vector<std::pair<double, uint32_t>>& entries, size_t kept,
+                const std::vector<Vec3>& places, std::vector<double>& weights) {
   Eigen::Matrix4d moments = Eigen::Matrix4d::Zero();
   Eigen::Vector4d lost = Eigen::Vector4d::Zero();
   const Vec3 origin = places[entries[0].second];
   for (size_t k = 0; k < entries.size(); ++k) {
     Eigen::Vector4d at;
     at << 1.0, (places[entries[k].second] - origin) / 0.002;
-    if (k < kept) moments += weights[k] * at * at.transpose();
-    else lost -= entries[k].first * at;
+    if (k < kept)
+      moments += weights[k] * at * at.transpose();
+    else
+      lost -= entries[k].first * at;
   }
-  moments += 1e-3 * Eigen::Vector4d(1e-6, 1.0, 1.0, 1.0).asDiagonal().toDenseMatrix();  // columns in one plane say nothing off it
+  moments += 1e-3 * Eigen::Vector4d(1e-6, 1.0, 1.0, 1.0)
+                        .asDiagonal()
+                        .toDenseMatrix();  // columns in one plane say nothing off it
   const Eigen::Vector4d share = moments.ldlt().solve(lost);
   double sum = 0.0, wanted = 0.0;
-  for (const auto& entry : entries) wanted -= entry.first;
+  for (const auto& entry : entries)
+    wanted -= entry.first;
   for (size_t k = 0; k < kept; ++k) {
     Eigen::Vector4d at;
     at << 1.0, (places[entries[k].second] - origin) / 0.002;
     weights[k] *= std::max(0.0, 1.0 + share.dot(at));
     sum += weights[k];
   }
-  for (double& weight : weights) weight *= wanted / std::max(sum, 1e-12);
+  for (double& weight : weights)
+    weight *= wanted / std::max(sum, 1e-12);
 }
 
-/// How much of the lattice's motion each vertex of the region takes: none in the lower band of the neck and all around the face,
-/// where what is not simulated begins or another mesh may join on.
+/// How much of the lattice's motion each vertex of the region takes: none in the lower band of the neck and
+/// all around the face, where what is not simulated begins or another mesh may join on.
 std::vector<double> share_from_rim(const FaceRegion& region) {
   constexpr double still = 0.004, full = 0.014;  // metres from the rim
   std::vector<DistanceSeed> rim;
@@ -167,20 +189,23 @@ std::vector<double> share_from_rim(const FaceRegion& region) {
     for (const int v : loop)
       if (region.outer[static_cast<size_t>(v)]) rim.push_back({v});
   std::vector<double> share = surface_distances(region.mesh, rim, 2.0 * full).distance;
-  for (double& value : share) value = smoothstep(still, full, value);
+  for (double& value : share)
+    value = smoothstep(still, full, value);
   return share;
 }
 
-/// What lies deeper in the mouth than the simulated lining: the walls of the vestibule go with the cheek or lip in front of
-/// them, the rest with palate or jaw by its height, and nothing moves far down the throat.
+/// What lies deeper in the mouth than the simulated lining: the walls of the vestibule go with the cheek or
+/// lip in front of them, the rest with palate or jaw by its height, and nothing moves far down the throat.
 class DeepMouth {
  public:
   DeepMouth(const TissueInputs& inputs, const FaceRegion& region, const std::vector<Row>& rows)
-      : rows_(rows), normals_(vertex_normals(inputs.skin)),
+      : rows_(rows),
+        normals_(vertex_normals(inputs.skin)),
         height_(0.5 * (landmark(inputs, "cheilion_left").y() + landmark(inputs, "cheilion_right").y())) {
     outer_.vertices = region.mesh.vertices;
     for (const fascia::Triangle& t : region.mesh.triangles)
-      if (region.outer[static_cast<size_t>(t[0])] && region.outer[static_cast<size_t>(t[1])] && region.outer[static_cast<size_t>(t[2])])
+      if (region.outer[static_cast<size_t>(t[0])] && region.outer[static_cast<size_t>(t[1])] &&
+          region.outer[static_cast<size_t>(t[2])])
         outer_.triangles.push_back(t);
     query_.emplace(outer_);
   }
@@ -192,9 +217,11 @@ class DeepMouth {
     const double wall = hit ? 1.0 - smoothstep(0.009, 0.018, hit->distance) : 0.0;
     if (wall > 0.0)
       for (int k = 0; k < 3; ++k)
-        add(rows_[static_cast<size_t>(outer_.triangles[static_cast<size_t>(hit->surface.triangle)][static_cast<size_t>(k)])],
+        add(rows_[static_cast<size_t>(
+                outer_.triangles[static_cast<size_t>(hit->surface.triangle)][static_cast<size_t>(k)])],
             wall * hit->surface.barycentric[k], row);
-    const double jaw = (1.0 - smoothstep(-0.008, 0.008, p.y() - height_)) * (1.0 - smoothstep(0.02, 0.065, distance));
+    const double jaw =
+        (1.0 - smoothstep(-0.008, 0.008, p.y() - height_)) * (1.0 - smoothstep(0.02, 0.065, distance));
     if (jaw > 0.0) row[jaw_entry] += (1.0 - wall) * jaw;
     return row;
   }
@@ -208,18 +235,21 @@ class DeepMouth {
 };
 
 /// Evens out the rows of `deep` vertices over the skin's edges; the others stand.
-void smooth_deep(const std::vector<std::vector<int>>& neighbours, const std::vector<bool>& deep, int passes, std::vector<Row>& rows) {
+void smooth_deep(const std::vector<std::vector<int>>& neighbours, const std::vector<bool>& deep, int passes,
+                 std::vector<Row>& rows) {
   for (int pass = 0; pass < passes; ++pass) {
     std::vector<std::pair<size_t, Row>> changed;
     for (size_t v = 0; v < rows.size(); ++v) {
       if (!deep[v] || neighbours[v].empty()) continue;
       Row next;
       add(rows[v], 0.5, next);
-      for (const int n : neighbours[v]) add(rows[static_cast<size_t>(n)], 0.5 / static_cast<double>(neighbours[v].size()), next);
+      for (const int n : neighbours[v])
+        add(rows[static_cast<size_t>(n)], 0.5 / static_cast<double>(neighbours[v].size()), next);
       std::erase_if(next, [](const auto& entry) { return entry.second < 1e-4; });
       changed.emplace_back(v, std::move(next));
     }
-    for (auto& [v, row] : changed) rows[v] = std::move(row);
+    for (auto& [v, row] : changed)
+      rows[v] = std::move(row);
   }
 }
 
@@ -229,13 +259,16 @@ Follow pack(const Row& row, const std::vector<Vec3>& places) {
   std::vector<std::pair<double, uint32_t>> order;
   Follow follow;
   for (const auto& [node, weight] : row) {
-    if (node == jaw_entry) follow.jaw = static_cast<float>(weight);
-    else order.emplace_back(-weight, node);
+    if (node == jaw_entry)
+      follow.jaw = static_cast<float>(weight);
+    else
+      order.emplace_back(-weight, node);
   }
   std::sort(order.begin(), order.end());
   const size_t kept = std::min(order.size(), Follow::influences);
   std::vector<double> weights;
-  for (size_t k = 0; k < kept; ++k) weights.push_back(-order[k].first);
+  for (size_t k = 0; k < kept; ++k)
+    weights.push_back(-order[k].first);
   if (kept < order.size()) keep_place(order, kept, places, weights);
   for (size_t k = 0; k < kept; ++k) {
     follow.nodes[k] = order[k].second;
@@ -258,7 +291,8 @@ std::vector<Follow> follow_skin(const TissueInputs& inputs, const FaceRegion& re
   }
   // Deeper than the simulated lining: carried on from its edge.
   std::vector<bool> deep(skin.size()), deep_mouth(skin.size());
-  for (size_t v = 0; v < deep.size(); ++v) deep[v] = region.region_vertex[v] < 0 && region.opening[v] != Opening::none;
+  for (size_t v = 0; v < deep.size(); ++v)
+    deep[v] = region.region_vertex[v] < 0 && region.opening[v] != Opening::none;
   const EdgeDistances beyond = edge_distances(inputs.skin, edge, 0.15, deep);
   const DeepMouth mouth(inputs, region, rows);
   for (size_t v = 0; v < skin.size(); ++v) {
@@ -270,7 +304,8 @@ std::vector<Follow> follow_skin(const TissueInputs& inputs, const FaceRegion& re
   }
   smooth_deep(vertex_neighbours(inputs.skin), deep_mouth, 10, skin);
   std::vector<Follow> follow(skin.size());
-  for (size_t v = 0; v < skin.size(); ++v) follow[v] = pack(skin[v], c.mesh.vertices);
+  for (size_t v = 0; v < skin.size(); ++v)
+    follow[v] = pack(skin[v], c.mesh.vertices);
   return follow;
 }
 

@@ -17,14 +17,17 @@ double smoothstep(double low, double high, double x) {
 
 }  // namespace
 
-std::vector<double> lower_lip(const TissueInputs& inputs, const TriangleMesh& mesh, const std::vector<bool>& outer,
-                              const std::vector<double>& distance) {
-  const Vec3 left = landmark(inputs, "cheilion_left"), right = landmark(inputs, "cheilion_right"), centre = 0.5 * (left + right);
+std::vector<double> lower_lip(const TissueInputs& inputs, const TriangleMesh& mesh,
+                              const std::vector<bool>& outer, const std::vector<double>& distance) {
+  const Vec3 left = landmark(inputs, "cheilion_left"), right = landmark(inputs, "cheilion_right"),
+             centre = 0.5 * (left + right);
   const double half = 0.5 * (left - right).norm();
   std::array<std::vector<DistanceSeed>, 2> seeds;
   for (size_t v = 0; v < mesh.vertices.size(); ++v) {
     const Vec3 p = mesh.vertices[v] - centre;
-    if (!outer[v] || distance[v] < 0.004 || distance[v] > 0.016 || std::abs(p.x()) > 0.7 * half || std::abs(p.y()) < 0.006) continue;
+    if (!outer[v] || distance[v] < 0.004 || distance[v] > 0.016 || std::abs(p.x()) > 0.7 * half ||
+        std::abs(p.y()) < 0.006)
+      continue;
     seeds[p.y() < 0.0].push_back({static_cast<int>(v)});
   }
   std::vector<double> lower(mesh.vertices.size(), 0.5);
@@ -36,7 +39,8 @@ std::vector<double> lower_lip(const TissueInputs& inputs, const TriangleMesh& me
   return lower;
 }
 
-std::vector<double> jaw_weights(const TriangleMesh& mesh, const std::vector<bool>& rim, const Bones& bones, const Lips& lips) {
+std::vector<double> jaw_weights(const TriangleMesh& mesh, const std::vector<bool>& rim, const Bones& bones,
+                                const Lips& lips) {
   constexpr double spread = 0.008;  // metres over which the field goes from one bone to the other
   const spatial::SurfaceQuery cranium(bones.cranium), mandible(bones.mandible);
   const int n = mesh.vertex_count();
@@ -48,12 +52,14 @@ std::vector<double> jaw_weights(const TriangleMesh& mesh, const std::vector<bool
     const double share = area[static_cast<size_t>(v)];
     const double to_cranium = cranium.closest(p).distance, to_mandible = mandible.closest(p).distance;
     const double near = std::min(to_cranium, to_mandible), far = std::max(to_cranium, to_mandible);
-    const double sure = smoothstep(1.25, 2.2, far / std::max(near, 1e-4)) * (1.0 - smoothstep(0.018, 0.035, near));
+    const double sure =
+        smoothstep(1.25, 2.2, far / std::max(near, 1e-4)) * (1.0 - smoothstep(0.018, 0.035, near));
     double weight = share * (0.002 + sure), goal = to_mandible < to_cranium ? sure / (sure + 0.002) : 0.0;
-    // Bones are no guide between the lips, where both rows of teeth are near; which lip it is, is. From the corner, which
-    // goes half the way, the share changes along the whole lip.
+    // Bones are no guide between the lips, where both rows of teeth are near; which lip it is, is. From the
+    // corner, which goes half the way, the share changes along the whole lip.
     const double lip = share * (1.0 - smoothstep(0.012, 0.020, lips.distance[static_cast<size_t>(v)]));
-    goal = (weight * goal + lip * smoothstep(0.10, 0.90, lips.lower[static_cast<size_t>(v)])) / (weight + lip);
+    goal =
+        (weight * goal + lip * smoothstep(0.10, 0.90, lips.lower[static_cast<size_t>(v)])) / (weight + lip);
     weight += lip;
     if (rim[static_cast<size_t>(v)]) {
       weight = 1e3 * share + 1e-6;
@@ -63,12 +69,15 @@ std::vector<double> jaw_weights(const TriangleMesh& mesh, const std::vector<bool
     right[v] = weight * goal;
   }
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(matrix);
-  if (solver.info() != Eigen::Success) throw Error("the jaw's influence on the skin cannot be solved: the face region is degenerate");
+  if (solver.info() != Eigen::Success)
+    throw Error("the jaw's influence on the skin cannot be solved: the face region is degenerate");
   const Eigen::VectorXd field = solver.solve(right);
   std::vector<double> weights(static_cast<size_t>(n));
   for (int v = 0; v < n; ++v) {
     const double value = std::clamp(field[v], 0.0, 1.0);
-    weights[static_cast<size_t>(v)] = rim[static_cast<size_t>(v)] || value < 1e-4 ? 0.0 : value > 0.999 ? 1.0 : value;
+    weights[static_cast<size_t>(v)] = rim[static_cast<size_t>(v)] || value < 1e-4 ? 0.0
+                                      : value > 0.999                             ? 1.0
+                                                                                  : value;
   }
   return weights;
 }

@@ -11,12 +11,12 @@ namespace fascia::tissue {
 /// Each vertex's third of the area of the triangles around it, square metres.
 std::vector<double> vertex_areas(const TriangleMesh& mesh);
 
-/// The cotangent Laplacian of `mesh`, positive semidefinite, each edge's weight times the product of its ends' `lengths` (metres).
-/// Cotangents are kept between -1 and 10: slivers weigh no more than that.
+/// The cotangent Laplacian of `mesh`, positive semidefinite, each edge's weight times the product of its
+/// ends' `lengths` (metres). Cotangents are kept between -1 and 10: slivers weigh no more than that.
 Eigen::SparseMatrix<double> laplacian(const TriangleMesh& mesh, const std::vector<double>& lengths);
 
-/// Evens out functions on a surface over about `lengths` (#vertices, metres) by one implicit step of diffusion: what comes
-/// out depends on the surface and hardly on its triangles.
+/// Evens out functions on a surface over about `lengths` (#vertices, metres) by one implicit step of
+/// diffusion: what comes out depends on the surface and hardly on its triangles.
 class SurfaceSmoother {
  public:
   SurfaceSmoother(const TriangleMesh& mesh, const std::vector<double>& lengths);

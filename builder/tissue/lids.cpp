@@ -13,14 +13,14 @@ double smoothstep(double low, double high, double x) {
   return t * t * (3.0 - 2.0 * t);
 }
 
-// Shares of the fissure's height that a lid is driven at full value; what the skin's resistance takes is added, towards the
-// inner canthus most. Where lids meet they stop each other.
+// Shares of the fissure's height that a lid is driven at full value; what the skin's resistance takes is
+// added, towards the inner canthus most. Where lids meet they stop each other.
 constexpr double closing = 1.06, raising = 0.28;
 constexpr double canthal = 0.10;       // radians
 constexpr double opening_wide = 0.32;  // of closing: the levator lifts the lid some 3 mm above rest
 
-void carry(rig::TissueLevel& level, int channel, size_t node, const Fissure& f, const Vec3& axis, double angle, double stiffness,
-           double reverse) {
+void carry(rig::TissueLevel& level, int channel, size_t node, const Fissure& f, const Vec3& axis,
+           double angle, double stiffness, double reverse) {
   level.carrier_channel.push_back(static_cast<uint32_t>(channel));
   level.carrier_node.push_back(static_cast<uint32_t>(node));
   level.carrier_origin.push_back(f.centre.cast<float>());
@@ -31,7 +31,8 @@ void carry(rig::TissueLevel& level, int channel, size_t node, const Fissure& f, 
   level.carrier_drive.push_back(static_cast<float>(stiffness));
 }
 
-/// How far the eye of a side reaches from its centre: the cornea's apex, or its radius where the head has no eyeball.
+/// How far the eye of a side reaches from its centre: the cornea's apex, or its radius where the head has no
+/// eyeball.
 double apex_of(const TissueInputs& inputs, bool left, const Fissure& f) {
   double apex = f.radius;
   for (const PartMesh& part : inputs.parts)
@@ -43,8 +44,9 @@ double apex_of(const TissueInputs& inputs, bool left, const Fissure& f) {
   return apex;
 }
 
-/// What skin between columns near an opening needs over a ball of `radius`: several times the height of a chord as long as they
-/// stand apart, for triangles span more than that, and what contact and the evening out of skin give way.
+/// What skin between columns near an opening needs over a ball of `radius`: several times the height of a
+/// chord as long as they stand apart, for triangles span more than that, and what contact and the evening out
+/// of skin give way.
 double chord_room(const Columns& c, const std::vector<double>& opening, double radius) {
   double area = 0.0;
   int count = 0;
@@ -57,10 +59,12 @@ double chord_room(const Columns& c, const std::vector<double>& opening, double r
 }
 
 /// An eye's lids: nodes near the fissure, and what each channel does to them.
-void add_eye(const TissueInputs& inputs, const TissueOptions& options, const FaceRegion& region, const Columns& c, bool left, rig::TissueLevel& level) {
+void add_eye(const TissueInputs& inputs, const TissueOptions& options, const FaceRegion& region,
+             const Columns& c, bool left, rig::TissueLevel& level) {
   const Fissure f(inputs, region, left);
   const std::string side = left ? "_left" : "_right";
-  const auto& opening = c.opening_distance[static_cast<size_t>(left ? Opening::eye_left : Opening::eye_right)];
+  const auto& opening =
+      c.opening_distance[static_cast<size_t>(left ? Opening::eye_left : Opening::eye_right)];
   const auto n = static_cast<size_t>(c.count());
   const int close = channel_index(inputs.channels, "lid_upper" + side);
   const int raise = channel_index(inputs.channels, "lid_lower" + side);
@@ -82,13 +86,15 @@ void add_eye(const TissueInputs& inputs, const TissueOptions& options, const Fac
     const Vec3& p = c.mesh.vertices[v];
     const double place = f.place(p), distance = opening[v];
     const bool is_upper = f.is_upper(p);
-    // The plate goes as one, full at the edge and in the lining; none beyond the canthi. Above it the skin folds in at
-    // the crease, where the levator's aponeurosis holds it.
+    // The plate goes as one, full at the edge and in the lining; none beyond the canthi. Above it the skin
+    // folds in at the crease, where the levator's aponeurosis holds it.
     const double across = smoothstep(-0.18, 0.02, place) * (1.0 - smoothstep(0.98, 1.18, place));
-    const double fade = (c.outer[v] ? 1.0 - smoothstep(0.004, is_upper ? 0.012 : 0.013, distance) : 1.0) * across;
+    const double fade =
+        (c.outer[v] ? 1.0 - smoothstep(0.004, is_upper ? 0.012 : 0.013, distance) : 1.0) * across;
     // Skin that the lid takes down unfolds from the crease, so that it goes less far than the edge.
     const double unfolding = (c.outer[v] ? 1.0 - smoothstep(0.0015, 0.010, distance) : 1.0) * across;
-    const double held = std::max(fade, c.outer[v] && is_upper ? across * (1.0 - smoothstep(0.010, 0.015, distance)) : 0.0);
+    const double held =
+        std::max(fade, c.outer[v] && is_upper ? across * (1.0 - smoothstep(0.010, 0.015, distance)) : 0.0);
     const auto last = static_cast<uint32_t>(level.globe_centre.size() - 1);
     for (const size_t node : {v, n + v})
       for (uint32_t globe = has_cornea ? last - 1 : last; globe <= last; ++globe) {
@@ -104,10 +110,14 @@ void add_eye(const TissueInputs& inputs, const TissueOptions& options, const Fac
       const auto turn = [&](int channel, const Vec3& axis, double angle, double reverse) {
         if (channel >= 0) carry(level, channel, node, f, axis, angle, stiffness, reverse);
       };
-      const double coarse = std::max(0.0, std::sqrt(c.area[v]) - 0.002);  // metres: few columns give way to their neighbours more
-      const double lid = (closing + 60.0 * coarse) * gap + canthal * std::max(0.0, (left ? -1.0 : 1.0) * (2.0 * place - 1.0));
-      if (is_upper) turn(close, f.lateral, lid * unfolding, -opening_wide * lid * fade);
-      else turn(raise, f.lateral, -raising * gap * fade, raising * gap * fade);
+      const double coarse = std::max(
+          0.0, std::sqrt(c.area[v]) - 0.002);  // metres: few columns give way to their neighbours more
+      const double lid = (closing + 60.0 * coarse) * gap +
+                         canthal * std::max(0.0, (left ? -1.0 : 1.0) * (2.0 * place - 1.0));
+      if (is_upper)
+        turn(close, f.lateral, lid * unfolding, -opening_wide * lid * fade);
+      else
+        turn(raise, f.lateral, -raising * gap * fade, raising * gap * fade);
       const double follows = (is_upper ? 0.75 : 0.4) * fade;
       turn(pitch, f.lateral, -follows, follows);
       // Horner's part of the pretarsal muscle draws the plates, the lower one most, towards the nose.
@@ -123,8 +133,10 @@ void add_eye(const TissueInputs& inputs, const TissueOptions& options, const Fac
 
 }  // namespace
 
-void add_lids(const TissueInputs& inputs, const TissueOptions& options, const FaceRegion& region, const Columns& columns, rig::TissueLevel& level) {
-  for (const bool left : {true, false}) add_eye(inputs, options, region, columns, left, level);
+void add_lids(const TissueInputs& inputs, const TissueOptions& options, const FaceRegion& region,
+              const Columns& columns, rig::TissueLevel& level) {
+  for (const bool left : {true, false})
+    add_eye(inputs, options, region, columns, left, level);
 }
 
 }  // namespace fascia::tissue

@@ -15,8 +15,8 @@ double smoothstep(double low, double high, double x) {
 
 }  // namespace
 
-void add_lip_rolls(const TissueInputs& inputs, const TissueOptions& options, const FaceRegion& region, const Beneath& beneath, const Columns& c,
-                   rig::TissueLevel& level) {
+void add_lip_rolls(const TissueInputs& inputs, const TissueOptions& options, const FaceRegion& region,
+                   const Beneath& beneath, const Columns& c, rig::TissueLevel& level) {
   const Vec3 left = landmark(inputs, "cheilion_left"), right = landmark(inputs, "cheilion_right");
   const Vec3 centre = 0.5 * (left + right);
   const double half = 0.5 * (left - right).norm();
@@ -26,20 +26,25 @@ void add_lip_rolls(const TissueInputs& inputs, const TissueOptions& options, con
   // Height and depth of each lip's edge.
   std::array<Margin, 2> edges;
   for (const MarginPlace& p : margin_places(region, Opening::mouth))
-    edges[beneath.lower_lip[static_cast<size_t>(p.vertex)] < 0.5].add(place_of(p.position), p.position.tail<2>());
+    edges[beneath.lower_lip[static_cast<size_t>(p.vertex)] < 0.5].add(place_of(p.position),
+                                                                      p.position.tail<2>());
   for (const bool upper : {true, false}) {
     const Margin& edge = edges[upper];
     if (edge.empty()) continue;
     for (size_t v = 0; v < n; ++v) {
       const Vec3& p = c.mesh.vertices[v];
       if (c.rim[v] || distance[v] > 0.014 || (c.lower_lip[v] < 0.5) != upper) continue;
-      // The lip's body lies above (below) and behind its edge: the vermilion turns about that, the white lip stays.
+      // The lip's body lies above (below) and behind its edge: the vermilion turns about that, the white lip
+      // stays.
       const Eigen::Vector2d at = edge.at(place_of(p));
       const Vec3 origin(p.x(), at.x() + (upper ? 0.006 : -0.006), at.y() - 0.006);
-      const double fade = (1.0 - smoothstep(0.005, 0.014, distance[v])) * (1.0 - smoothstep(0.55, 1.0, std::abs(p.x() - centre.x()) / half));
+      const double fade = (1.0 - smoothstep(0.005, 0.014, distance[v])) *
+                          (1.0 - smoothstep(0.55, 1.0, std::abs(p.x() - centre.x()) / half));
       for (const bool is_left : {true, false}) {
         const double side = smoothstep(-0.005, 0.005, is_left ? p.x() - centre.x() : centre.x() - p.x());
-        const int channel = channel_index(inputs.channels, std::string("lip_roll_") + (upper ? "upper" : "lower") + (is_left ? "_left" : "_right"));
+        const int channel =
+            channel_index(inputs.channels, std::string("lip_roll_") + (upper ? "upper" : "lower") +
+                                               (is_left ? "_left" : "_right"));
         if (channel < 0 || side * fade < 0.02) continue;
         for (const size_t node : {v, n + v}) {
           level.carrier_channel.push_back(static_cast<uint32_t>(channel));
@@ -49,7 +54,8 @@ void add_lip_rolls(const TissueInputs& inputs, const TissueOptions& options, con
           level.carrier_angle.push_back(upper ? 0.9F : -0.9F);
           level.carrier_reverse.push_back(upper ? -0.7F : 0.7F);
           level.carrier_stiffness.push_back(0.0F);  // lips are moved, never held
-          level.carrier_drive.push_back(static_cast<float>(options.material.lip_drive * c.area[v] * fade * side));
+          level.carrier_drive.push_back(
+              static_cast<float>(options.material.lip_drive * c.area[v] * fade * side));
         }
       }
     }

@@ -13,7 +13,8 @@ struct MarginPlace {
 /// The edge around `opening`, sampled along the region's edges: the same for every level of detail.
 std::vector<MarginPlace> margin_places(const FaceRegion& region, Opening opening);
 
-/// What is known along an edge, read as a smooth function of the place across the opening, 0 at its right corner to 1 at its left.
+/// What is known along an edge, read as a smooth function of the place across the opening, 0 at its right
+/// corner to 1 at its left.
 class Margin {
  public:
   void add(double place, const Eigen::Vector2d& value) { samples_.emplace_back(place, value); }

@@ -18,7 +18,8 @@ double margin_at(const TissueInputs& inputs, const Vec3& p) {
   const Vec3 chin = landmark(inputs, "gnathion");
   const double third = glabella.y() - nose.y();
   const auto hairline = inputs.landmarks.find("trichion");
-  const double top = (hairline != inputs.landmarks.end() ? hairline->second.y() : glabella.y() + third) + 0.15 * third;
+  const double top =
+      (hairline != inputs.landmarks.end() ? hairline->second.y() : glabella.y() + third) + 0.15 * third;
   const double bottom = chin.y() - 0.9 * third;
   // In front of the ear; below the jaw's angle the neck turns away, so the limit goes back a little.
   const double below = std::clamp((ear.y() - 0.7 * third - p.y()) / third, 0.0, 1.0);
@@ -30,11 +31,13 @@ double margin_at(const TissueInputs& inputs, const Vec3& p) {
 std::vector<bool> seen_from_outside(const TissueInputs& inputs, const std::vector<double>& margin) {
   TriangleMesh blocking = inputs.skin;
   for (const PartMesh& part : inputs.parts) {
-    if (part.part == "skin" || part.part == "lashes" || part.part == "brows" || part.part == "hair" || part.part == "other")
+    if (part.part == "skin" || part.part == "lashes" || part.part == "brows" || part.part == "hair" ||
+        part.part == "other")
       continue;
     const int first = blocking.vertex_count();
     blocking.vertices.insert(blocking.vertices.end(), part.vertices.begin(), part.vertices.end());
-    for (const fascia::Triangle& t : part.triangles) blocking.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    for (const fascia::Triangle& t : part.triangles)
+      blocking.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
   }
   const spatial::SurfaceQuery query(blocking);
   const std::vector<Vec3> normals = vertex_normals(inputs.skin);
@@ -45,7 +48,8 @@ std::vector<bool> seen_from_outside(const TissueInputs& inputs, const std::vecto
     const Vec3& p = inputs.skin.vertices[v];
     bool in_socket = false;  // seen through an open fissure of a head without eyeballs, yet inside
     for (const rig::Eye& eye : eyes)
-      in_socket = in_socket || (p - eye.centre.cast<double>()).norm() < 1.01 * static_cast<double>(eye.radius);
+      in_socket =
+          in_socket || (p - eye.centre.cast<double>()).norm() < 1.01 * static_cast<double>(eye.radius);
     if (in_socket) continue;
     const Vec3 start = p + 2e-4 * normals[v];
     for (int turn = -3; turn <= 3 && !seen[v]; ++turn)
@@ -66,7 +70,8 @@ void calm(const TriangleMesh& mesh, std::vector<bool>& flags) {
     std::vector<bool> next = flags;
     for (size_t v = 0; v < flags.size(); ++v) {
       int set = 0;
-      for (const int n : neighbours[v]) set += flags[static_cast<size_t>(n)] ? 1 : 0;
+      for (const int n : neighbours[v])
+        set += flags[static_cast<size_t>(n)] ? 1 : 0;
       const auto count = static_cast<int>(neighbours[v].size());
       if (4 * set > 3 * count) next[v] = true;
       if (4 * set < count) next[v] = false;
@@ -75,16 +80,17 @@ void calm(const TriangleMesh& mesh, std::vector<bool>& flags) {
   }
 }
 
-/// The opening whose edge `p` lies at. The mouth is a line from corner to corner: nostrils may lie nearer to its middle than the
-/// corners do.
+/// The opening whose edge `p` lies at. The mouth is a line from corner to corner: nostrils may lie nearer to
+/// its middle than the corners do.
 Opening opening_at(const TissueInputs& inputs, const Vec3& p) {
   const Vec3 corner = landmark(inputs, "cheilion_right"), across = landmark(inputs, "cheilion_left") - corner;
   const Vec3 mouth = corner + std::clamp((p - corner).dot(across) / across.squaredNorm(), 0.0, 1.0) * across;
   const double half_width = 0.5 * across.norm();
   const rig::Eye left = eye_of(inputs, true), right = eye_of(inputs, false);
   const Vec3 nose = 0.5 * (landmark(inputs, "subnasale") + landmark(inputs, "pronasale"));
-  const double scores[] = {(p - mouth).norm() / half_width, (p - left.centre.cast<double>()).norm() / (1.6 * left.radius),
-                           (p - right.centre.cast<double>()).norm() / (1.6 * right.radius), (p - nose).norm() / half_width};
+  const double scores[] = {
+      (p - mouth).norm() / half_width, (p - left.centre.cast<double>()).norm() / (1.6 * left.radius),
+      (p - right.centre.cast<double>()).norm() / (1.6 * right.radius), (p - nose).norm() / half_width};
   const auto best = std::min_element(std::begin(scores), std::end(scores)) - std::begin(scores);
   return scores[best] < 2.5 ? static_cast<Opening>(best + 1) : Opening::none;
 }
@@ -114,7 +120,8 @@ Vestibule::Vestibule(const TissueInputs& inputs) {
 
 double Vestibule::share(const Vec3& p) const {
   const double up = p.y() - mouth_.y(), height = up > 0.0 ? up / top_ : up / bottom_;
-  // The masseter's front edge lies a little before the middle of the way from the corner of the mouth to the ear.
+  // The masseter's front edge lies a little before the middle of the way from the corner of the mouth to the
+  // ear.
   const size_t side = p.x() > mouth_.x();
   const double back = (p - corners_[side]).dot(to_ears_[side]) / to_ears_[side].squaredNorm();
   return falling(0.36, 0.50, back) * falling(0.55, 1.15, height);
@@ -145,22 +152,27 @@ rig::Eye eye_of(const TissueInputs& inputs, bool left) {
 FaceRegion find_region(const TissueInputs& inputs, const TissueOptions& options) {
   const TriangleMesh& skin = inputs.skin;
   std::vector<double> margin(skin.vertices.size());
-  for (size_t v = 0; v < margin.size(); ++v) margin[v] = margin_at(inputs, skin.vertices[v]);
+  for (size_t v = 0; v < margin.size(); ++v)
+    margin[v] = margin_at(inputs, skin.vertices[v]);
   std::vector<bool> outer = seen_from_outside(inputs, margin);
   calm(skin, outer);
 
   std::vector<bool> within(skin.vertices.size());
-  for (size_t v = 0; v < within.size(); ++v) within[v] = margin[v] > 0.0;
+  for (size_t v = 0; v < within.size(); ++v)
+    within[v] = margin[v] > 0.0;
   // The outer face: what hangs together with the tip of the nose.
   const Vec3 tip = landmark(inputs, "pronasale");
   int start = -1;
   for (size_t v = 0; v < within.size(); ++v)
     if (within[v] && outer[v] &&
-        (start < 0 || (skin.vertices[v] - tip).norm() < (skin.vertices[static_cast<size_t>(start)] - tip).norm()))
+        (start < 0 ||
+         (skin.vertices[v] - tip).norm() < (skin.vertices[static_cast<size_t>(start)] - tip).norm()))
       start = static_cast<int>(v);
-  if (start < 0) throw Error("no skin lies between the ears, hairline and chin: check the head's axes and landmarks");
+  if (start < 0)
+    throw Error("no skin lies between the ears, hairline and chin: check the head's axes and landmarks");
   std::vector<bool> passable(within.size());
-  for (size_t v = 0; v < within.size(); ++v) passable[v] = within[v] && outer[v];
+  for (size_t v = 0; v < within.size(); ++v)
+    passable[v] = within[v] && outer[v];
   const EdgeDistances face = edge_distances(skin, {{start}}, 1e9, passable);
 
   FaceRegion region;
@@ -172,7 +184,8 @@ FaceRegion find_region(const TissueInputs& inputs, const TissueOptions& options)
   region.opening.assign(within.size(), Opening::none);
   for (size_t v = 0; v < within.size(); ++v)
     if (inward.seed[v] >= 0 && face.seed[v] < 0)
-      region.opening[v] = opening_at(inputs, skin.vertices[static_cast<size_t>(seeds[static_cast<size_t>(inward.seed[v])].vertex)]);
+      region.opening[v] = opening_at(
+          inputs, skin.vertices[static_cast<size_t>(seeds[static_cast<size_t>(inward.seed[v])].vertex)]);
 
   std::vector<bool> keep(skin.triangles.size());
   for (size_t t = 0; t < keep.size(); ++t) {
@@ -186,10 +199,12 @@ FaceRegion find_region(const TissueInputs& inputs, const TissueOptions& options)
   const std::vector<int> piece = components(region.mesh, &pieces);
   if (pieces > 1) {
     std::vector<int> sizes(static_cast<size_t>(pieces));
-    for (const int p : piece) ++sizes[static_cast<size_t>(p)];
+    for (const int p : piece)
+      ++sizes[static_cast<size_t>(p)];
     const auto largest = static_cast<int>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
     std::vector<bool> main_piece(piece.size());
-    for (size_t t = 0; t < piece.size(); ++t) main_piece[t] = piece[t] == largest;
+    for (size_t t = 0; t < piece.size(); ++t)
+      main_piece[t] = piece[t] == largest;
     std::vector<int> inner_map;
     region.mesh = submesh(region.mesh, main_piece, &inner_map);
     for (int& index : region.region_vertex)
@@ -197,10 +212,12 @@ FaceRegion find_region(const TissueInputs& inputs, const TissueOptions& options)
   }
   region.skin_vertex.assign(region.mesh.vertices.size(), -1);
   for (size_t v = 0; v < region.region_vertex.size(); ++v)
-    if (region.region_vertex[v] >= 0) region.skin_vertex[static_cast<size_t>(region.region_vertex[v])] = static_cast<int>(v);
+    if (region.region_vertex[v] >= 0)
+      region.skin_vertex[static_cast<size_t>(region.region_vertex[v])] = static_cast<int>(v);
 
   region.outer.resize(region.mesh.vertices.size());
-  for (size_t v = 0; v < region.outer.size(); ++v) region.outer[v] = face.seed[static_cast<size_t>(region.skin_vertex[v])] >= 0;
+  for (size_t v = 0; v < region.outer.size(); ++v)
+    region.outer[v] = face.seed[static_cast<size_t>(region.skin_vertex[v])] >= 0;
   const auto neighbours = vertex_neighbours(region.mesh);
   std::vector<DistanceSeed> edges;
   std::array<std::vector<DistanceSeed>, 5> edges_of;
@@ -212,7 +229,8 @@ FaceRegion find_region(const TissueInputs& inputs, const TissueOptions& options)
         edges_of[static_cast<size_t>(region.opening[beyond])].push_back({static_cast<int>(v)});
         break;
       }
-  if (edges.empty()) throw Error("the skin has neither a mouth nor eyes that open: cut the lips and lids before building");
+  if (edges.empty())
+    throw Error("the skin has neither a mouth nor eyes that open: cut the lips and lids before building");
   region.feature_distance = surface_distances(region.mesh, edges).distance;
   for (size_t k = 1; k < edges_of.size(); ++k)
     region.opening_distance[k] = surface_distances(region.mesh, edges_of[k]).distance;

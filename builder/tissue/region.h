@@ -12,20 +12,23 @@ enum class Opening : uint8_t { none = 0, mouth = 1, eye_left = 2, eye_right = 3,
 /// The part of the skin that is simulated: from the hairline to the upper neck, ear to ear, and a
 /// little way over lips, lids and nostrils into the head.
 struct FaceRegion {
-  TriangleMesh mesh;                  ///< the region alone
-  std::vector<int> skin_vertex;       ///< #region vertices, index in the skin
-  std::vector<int> region_vertex;     ///< #skin vertices, index in the region or -1
-  std::vector<bool> outer;            ///< #region vertices: seen from outside (lining is not)
-  std::vector<double> feature_distance;  ///< #region vertices, metres along the skin to the nearest lip, lid or nostril edge
+  TriangleMesh mesh;               ///< the region alone
+  std::vector<int> skin_vertex;    ///< #region vertices, index in the skin
+  std::vector<int> region_vertex;  ///< #skin vertices, index in the region or -1
+  std::vector<bool> outer;         ///< #region vertices: seen from outside (lining is not)
+  std::vector<double>
+      feature_distance;  ///< #region vertices, metres along the skin to the nearest lip, lid or nostril edge
   std::array<std::vector<double>, 5> opening_distance;  ///< the same, to each Opening's edge alone
-  std::vector<Opening> opening;       ///< #skin vertices: the opening a vertex inside the head belongs to
-  std::vector<double> depth;          ///< #skin vertices: metres inward from the edge; 0 outside, infinity out of reach
+  std::vector<Opening> opening;  ///< #skin vertices: the opening a vertex inside the head belongs to
+  std::vector<double>
+      depth;  ///< #skin vertices: metres inward from the edge; 0 outside, infinity out of reach
 };
 
 /// Finds the region. Throws Error when a landmark it needs is missing or no skin lies in it.
 FaceRegion find_region(const TissueInputs& inputs, const TissueOptions& options);
 
-/// The vestibule of the mouth: one space behind lips and cheeks, from fold to fold, back to the masseter's front edge.
+/// The vestibule of the mouth: one space behind lips and cheeks, from fold to fold, back to the masseter's
+/// front edge.
 class Vestibule {
  public:
   explicit Vestibule(const TissueInputs& inputs);

@@ -64,7 +64,8 @@ class Sculptor {
   double wanted(int v) const {
     const SurfacePoint& p = places_[at(v)];
     double sum = 0.0;
-    for (int k = 0; k < 3; ++k) sum += p.barycentric[k] * lengths_[at(source_.triangles[at(p.triangle)][at(k)])];
+    for (int k = 0; k < 3; ++k)
+      sum += p.barycentric[k] * lengths_[at(source_.triangles[at(p.triangle)][at(k)])];
     return sum;
   }
   double wanted(int a, int b) const { return 0.5 * (wanted(a) + wanted(b)); }
@@ -94,7 +95,8 @@ class Sculptor {
     std::vector<std::pair<int, int>> out;
     for (const Face& f : faces_)
       if (f[0] >= 0)
-        for (size_t k = 0; k < 3; ++k) out.emplace_back(std::min(f[k], f[(k + 1) % 3]), std::max(f[k], f[(k + 1) % 3]));
+        for (size_t k = 0; k < 3; ++k)
+          out.emplace_back(std::min(f[k], f[(k + 1) % 3]), std::max(f[k], f[(k + 1) % 3]));
     std::sort(out.begin(), out.end());
     out.erase(std::unique(out.begin(), out.end()), out.end());
     return out;
@@ -129,7 +131,8 @@ class Sculptor {
         places_.emplace_back();
         around_.emplace_back();
         const Vec3 half = 0.5 * (points_[at(a)] + points_[at(b)]);
-        if (both.size() == 1) {  // keep the border's own line: project only within the source's border triangle
+        if (both.size() ==
+            1) {  // keep the border's own line: project only within the source's border triangle
           places_[at(middle)] = walk_to(source_, source_around_, half, places_[at(a)].triangle);
           points_[at(middle)] = position(source_, places_[at(middle)]);
         } else {
@@ -166,10 +169,12 @@ class Sculptor {
         Vec3 p[3];
         for (size_t k = 0; k < 3; ++k) {
           p[k] = face[k] == v ? target : points_[at(face[k])];
-          if (face[k] != v && (points_[at(face[k])] - target).norm() > 4.0 / 3.0 * wanted(kept, face[k])) return false;
+          if (face[k] != v && (points_[at(face[k])] - target).norm() > 4.0 / 3.0 * wanted(kept, face[k]))
+            return false;
         }
         const Vec3 after = (p[1] - p[0]).cross(p[2] - p[0]);
-        if (after.dot(before) < 0.3 * after.norm() * before.norm() || after.norm() < 1e-3 * before.norm()) return false;
+        if (after.dot(before) < 0.3 * after.norm() * before.norm() || after.norm() < 1e-3 * before.norm())
+          return false;
       }
     }
     return true;
@@ -191,7 +196,8 @@ class Sculptor {
         if (!may_collapse(a, b, target, both)) continue;
         any = true;
         for (const int f : both) {
-          for (const int c : faces_[at(f)]) detach(f, c);
+          for (const int c : faces_[at(f)])
+            detach(f, c);
           faces_[at(f)] = {-1, -1, -1};
         }
         for (const int f : around_[at(a)]) {
@@ -217,16 +223,20 @@ class Sculptor {
         const std::vector<int> both = shared(a, b);
         if (both.size() != 2) continue;
         const int c = corner_against(both[0], a, b), d = corner_against(both[1], a, b);
-        if (c == d || angle_at(c, a, b) + angle_at(d, a, b) <= 3.1416 + 0.05 || !shared(c, d).empty()) continue;
+        if (c == d || angle_at(c, a, b) + angle_at(d, a, b) <= 3.1416 + 0.05 || !shared(c, d).empty())
+          continue;
         const Vec3 n0 = normal(faces_[at(both[0])]), n1 = normal(faces_[at(both[1])]);
         // New faces keep the old ones' direction: in face both[0] the edge runs a -> b or b -> a.
         const Face& f0 = faces_[at(both[0])];
         size_t k = 0;
-        while (f0[k] != a) ++k;
+        while (f0[k] != a)
+          ++k;
         const bool forward = f0[(k + 1) % 3] == b;
-        const Face first = forward ? Face{a, d, c} : Face{a, c, d}, second = forward ? Face{b, c, d} : Face{b, d, c};
+        const Face first = forward ? Face{a, d, c} : Face{a, c, d},
+                   second = forward ? Face{b, c, d} : Face{b, d, c};
         const Vec3 mean = n0.normalized() + n1.normalized(), m0 = normal(first), m1 = normal(second);
-        if (m0.dot(mean) <= 0.5 * m0.norm() * mean.norm() || m1.dot(mean) <= 0.5 * m1.norm() * mean.norm()) continue;
+        if (m0.dot(mean) <= 0.5 * m0.norm() * mean.norm() || m1.dot(mean) <= 0.5 * m1.norm() * mean.norm())
+          continue;
         any = true;
         detach(both[0], b);
         detach(both[1], a);
@@ -261,7 +271,8 @@ class Sculptor {
       const Vec3 old_point = points_[v];
       const SurfacePoint old_place = places_[v];
       std::vector<Vec3> before;
-      for (const int f : around_[v]) before.push_back(normal(faces_[at(f)]));
+      for (const int f : around_[v])
+        before.push_back(normal(faces_[at(f)]));
       put(i, points_[v] + 0.7 * move, places_[v].triangle);
       for (size_t k = 0; k < before.size(); ++k) {
         const Vec3 after = normal(faces_[at(around_[v][k])]);
@@ -288,11 +299,13 @@ class Sculptor {
 std::vector<std::vector<int>> triangles_around(const TriangleMesh& mesh) {
   std::vector<std::vector<int>> around(mesh.vertices.size());
   for (size_t t = 0; t < mesh.triangles.size(); ++t)
-    for (const int c : mesh.triangles[t]) around[static_cast<size_t>(c)].push_back(static_cast<int>(t));
+    for (const int c : mesh.triangles[t])
+      around[static_cast<size_t>(c)].push_back(static_cast<int>(t));
   return around;
 }
 
-SurfacePoint walk_to(const TriangleMesh& mesh, const std::vector<std::vector<int>>& around, const Vec3& point, int start) {
+SurfacePoint walk_to(const TriangleMesh& mesh, const std::vector<std::vector<int>>& around, const Vec3& point,
+                     int start) {
   const auto foot = [&](int t) {
     const fascia::Triangle& c = mesh.triangles[static_cast<size_t>(t)];
     const auto corner = [&](size_t k) -> const Vec3& { return mesh.vertices[static_cast<size_t>(c[k])]; };
@@ -321,15 +334,18 @@ double edge_scale_for(const TriangleMesh& source, const std::vector<double>& edg
   double count = 0.0;
   for (int t = 0; t < source.triangle_count(); ++t) {
     double mean = 0.0;
-    for (const int c : source.triangles[static_cast<size_t>(t)]) mean += edge_length[static_cast<size_t>(c)] / 3.0;
+    for (const int c : source.triangles[static_cast<size_t>(t)])
+      mean += edge_length[static_cast<size_t>(c)] / 3.0;
     count += triangle_area(source, t) / (0.8660254 * mean * mean);
   }
   return std::sqrt(count / vertices);
 }
 
-RemeshResult remesh(const TriangleMesh& source, const std::vector<double>& edge_length, const RemeshOptions& options) {
+RemeshResult remesh(const TriangleMesh& source, const std::vector<double>& edge_length,
+                    const RemeshOptions& options) {
   Sculptor sculptor(source, edge_length);
-  for (int pass = 0; pass < options.passes; ++pass) sculptor.pass(pass + 1 == options.passes);
+  for (int pass = 0; pass < options.passes; ++pass)
+    sculptor.pass(pass + 1 == options.passes);
   return sculptor.result();
 }
 

@@ -15,7 +15,8 @@ namespace fascia::rig {
 /// glTF forbids infinity in accessors: the file's largest finite float stands for it, both ways.
 template <class T>
 struct Element {
-  using Scalar = typename std::conditional_t<std::is_enum_v<T>, std::underlying_type<T>, std::type_identity<T>>::type;
+  using Scalar =
+      typename std::conditional_t<std::is_enum_v<T>, std::underlying_type<T>, std::type_identity<T>>::type;
   static constexpr std::size_t components = 1;
   static bool finite(T value) { return std::isfinite(value); }
   static void open_bounds(T& value) {

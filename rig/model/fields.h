@@ -248,7 +248,8 @@ void named_set_fields(V& v, T& set, std::size_t channels) {
 
 template <class V, class T>
 void actuation_fields(V& v, T& actuation) {
-  v.array("channels", actuation.channels, [](auto& o, auto& channel, std::size_t) { channel_fields(o, channel); });
+  v.array("channels", actuation.channels,
+          [](auto& o, auto& channel, std::size_t) { channel_fields(o, channel); });
   const std::size_t channels = actuation.channels.size();
   v.array("sets", actuation.sets,
           [channels](auto& o, auto& set, std::size_t) { named_set_fields(o, set, channels); });

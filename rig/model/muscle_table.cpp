@@ -12,7 +12,8 @@ void append(std::vector<T>& to, const std::vector<T>& from) {
 
 template <class T>
 std::vector<T> slice(const std::vector<T>& list, std::size_t first, std::size_t last) {
-  return {list.begin() + static_cast<std::ptrdiff_t>(first), list.begin() + static_cast<std::ptrdiff_t>(last)};
+  return {list.begin() + static_cast<std::ptrdiff_t>(first),
+          list.begin() + static_cast<std::ptrdiff_t>(last)};
 }
 
 Muscle head_of(const Muscle& muscle) {

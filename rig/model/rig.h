@@ -31,12 +31,13 @@ struct Landmark {
 
 /// The temporomandibular joint in closed form: where the mandible goes for given jaw channels.
 struct JawJoint {
-  Vec3f origin = Vec3f::Zero();   ///< middle between the condyle centres
+  Vec3f origin = Vec3f::Zero();    ///< middle between the condyle centres
   Vec3f lateral = Vec3f::UnitX();  ///< unit hinge axis, to the subject's left
   Vec3f forward = Vec3f::UnitZ();  ///< unit, along the condylar path's projection
   Vec3f up = Vec3f::UnitY();
-  float open_angle = 0.436F;    ///< radians of rotation at jaw_open = 1
-  Vec3f open_glide = Vec3f(0, -0.006F, 0.008F);  ///< (lateral, up, forward) metres of condylar glide at jaw_open = 1
+  float open_angle = 0.436F;  ///< radians of rotation at jaw_open = 1
+  Vec3f open_glide =
+      Vec3f(0, -0.006F, 0.008F);  ///< (lateral, up, forward) metres of condylar glide at jaw_open = 1
   float forward_glide = 0.008F;   ///< metres at jaw_forward = 1, along and down the condylar path
   float forward_drop = 0.003F;    ///< metres downward at jaw_forward = 1
   float lateral_angle = 0.14F;    ///< radians about `up` at jaw_lateral = 1 (to the subject's left)
@@ -46,8 +47,8 @@ struct JawJoint {
 /// An eyeball and how it turns.
 struct Eye {
   Vec3f centre = Vec3f::Zero();
-  float radius = 0.0F;              ///< metres; 0 when the head has no eye on this side
-  Vec3f gaze = Vec3f::UnitZ();      ///< unit, at rest
+  float radius = 0.0F;          ///< metres; 0 when the head has no eye on this side
+  Vec3f gaze = Vec3f::UnitZ();  ///< unit, at rest
 };
 
 struct Skull {
@@ -67,10 +68,10 @@ struct Ligament {
 
 struct Smas {
   Surface surface;
-  std::vector<float> depth_to_skin;     ///< #vertices, metres
-  std::vector<float> depth_to_bone;     ///< #vertices, metres; negative where no bone lies behind
-  std::vector<float> skin_attachment;   ///< #vertices, 0 gliding .. 1 firmly attached
-  std::vector<float> bone_attachment;   ///< #vertices, 0 gliding .. 1 firmly attached
+  std::vector<float> depth_to_skin;    ///< #vertices, metres
+  std::vector<float> depth_to_bone;    ///< #vertices, metres; negative where no bone lies behind
+  std::vector<float> skin_attachment;  ///< #vertices, 0 gliding .. 1 firmly attached
+  std::vector<float> bone_attachment;  ///< #vertices, 0 gliding .. 1 firmly attached
   std::vector<Ligament> ligaments;
 };
 
@@ -82,20 +83,20 @@ enum class FibreEnd : uint8_t { smas = 0, skin = 1, cranium = 2, mandible = 3 };
 /// Fibre `f` has the points `fibre_offsets[f] .. fibre_offsets[f+1]`. Each point's place is its SMAS
 /// triangle's point at `barycentrics` plus `offsets` metres along the triangle's unit normal.
 struct Muscle {
-  std::string name;   ///< with side, such as zygomaticus_major_left
-  std::string group;  ///< the whole it is a part of, such as orbicularis_oculi_left
-  std::string kind;   ///< strap, sheet, fan, sphincter_ring or compressor
-  std::vector<uint32_t> fibre_offsets;            ///< #fibres + 1
-  std::vector<Vec3f> points;                      ///< #points, rest place
-  std::vector<uint32_t> triangles;                ///< #points, SMAS triangle
-  std::vector<Vec3f> barycentrics;                ///< #points
-  std::vector<float> offsets;                     ///< #points, metres
+  std::string name;                     ///< with side, such as zygomaticus_major_left
+  std::string group;                    ///< the whole it is a part of, such as orbicularis_oculi_left
+  std::string kind;                     ///< strap, sheet, fan, sphincter_ring or compressor
+  std::vector<uint32_t> fibre_offsets;  ///< #fibres + 1
+  std::vector<Vec3f> points;            ///< #points, rest place
+  std::vector<uint32_t> triangles;      ///< #points, SMAS triangle
+  std::vector<Vec3f> barycentrics;      ///< #points
+  std::vector<float> offsets;           ///< #points, metres
   FibreEnd origin = FibreEnd::cranium;
   FibreEnd insertion = FibreEnd::smas;
   std::vector<Vec3f> origin_region;     ///< closed polygon
   std::vector<Vec3f> insertion_region;  ///< closed polygon
-  float strength = 1.0F;         ///< newtons at full activation, shared by the fibres
-  float peak_shortening = 0.2F;  ///< share of the rest length at full activation
+  float strength = 1.0F;                ///< newtons at full activation, shared by the fibres
+  float peak_shortening = 0.2F;         ///< share of the rest length at full activation
 };
 
 /// Layers of lattice nodes.
@@ -103,13 +104,13 @@ enum class Layer : uint8_t { skin = 0, smas = 1, inner = 2 };
 
 /// How a lattice node is held.
 enum class NodeKind : uint8_t {
-  free = 0,             ///< moves under the energies only
-  fixed = 1,            ///< follows the head rigidly: the rim of the simulated region
-  fixed_cranium = 2,    ///< on the cranium
-  fixed_mandible = 3,   ///< goes with the mandible by its jaw weight (1 on the bone itself)
-  gliding_cranium = 4,  ///< slides over the cranium
-  gliding_mandible = 5, ///< slides over the mandible
-  mucosa = 6            ///< free inner surface: no bone behind, contact only
+  free = 0,              ///< moves under the energies only
+  fixed = 1,             ///< follows the head rigidly: the rim of the simulated region
+  fixed_cranium = 2,     ///< on the cranium
+  fixed_mandible = 3,    ///< goes with the mandible by its jaw weight (1 on the bone itself)
+  gliding_cranium = 4,   ///< slides over the cranium
+  gliding_mandible = 5,  ///< slides over the mandible
+  mucosa = 6             ///< free inner surface: no bone behind, contact only
 };
 
 /// The lattice to simulate at one level of detail.
@@ -119,11 +120,11 @@ enum class NodeKind : uint8_t {
 struct TissueLevel {
   std::string name;  ///< low, medium or high
   uint32_t columns = 0;
-  std::vector<Vec3f> rest;             ///< #nodes = 3 * columns
-  std::vector<NodeKind> kinds;         ///< #nodes
-  std::vector<float> masses;           ///< #nodes, kilogram
-  std::vector<float> jaw_weights;      ///< #nodes, 0 the node's bone is the cranium .. 1 the mandible
-  std::vector<Triangle> triangles;     ///< #prisms, columns, counter-clockwise from outside
+  std::vector<Vec3f> rest;          ///< #nodes = 3 * columns
+  std::vector<NodeKind> kinds;      ///< #nodes
+  std::vector<float> masses;        ///< #nodes, kilogram
+  std::vector<float> jaw_weights;   ///< #nodes, 0 the node's bone is the cranium .. 1 the mandible
+  std::vector<Triangle> triangles;  ///< #prisms, columns, counter-clockwise from outside
 
   /// Springs along layer edges and across layers: pairs of nodes.
   std::vector<std::array<uint32_t, 2>> spring_nodes;
@@ -147,16 +148,17 @@ struct TissueLevel {
 
   /// Fibres for this level. Fibre `f` has the points `fibre_offsets[f] .. fibre_offsets[f+1]`; each
   /// point is a blend of three nodes, or of a bone where `fibre_anchor` says so.
-  std::vector<uint32_t> fibre_muscle;                       ///< #fibres, index of the rig's muscle
-  std::vector<uint32_t> fibre_channel;                      ///< #fibres, index of the actuation channel that contracts it
-  std::vector<uint32_t> fibre_offsets;                      ///< #fibres + 1
-  std::vector<std::array<uint32_t, 3>> fibre_nodes;         ///< #points
-  std::vector<Vec3f> fibre_weights;                         ///< #points
-  std::vector<Vec3f> fibre_rest;                            ///< #points, rest place
-  std::vector<FibreEnd> fibre_anchor;                       ///< #points; cranium / mandible: fixed to that bone
-  std::vector<float> fibre_taper;     ///< #points, share of the tension that the segment to the next point bears
+  std::vector<uint32_t> fibre_muscle;   ///< #fibres, index of the rig's muscle
+  std::vector<uint32_t> fibre_channel;  ///< #fibres, index of the actuation channel that contracts it
+  std::vector<uint32_t> fibre_offsets;  ///< #fibres + 1
+  std::vector<std::array<uint32_t, 3>> fibre_nodes;  ///< #points
+  std::vector<Vec3f> fibre_weights;                  ///< #points
+  std::vector<Vec3f> fibre_rest;                     ///< #points, rest place
+  std::vector<FibreEnd> fibre_anchor;                ///< #points; cranium / mandible: fixed to that bone
+  std::vector<float> fibre_taper;  ///< #points, share of the tension that the segment to the next point bears
   std::vector<float> fibre_strength;  ///< #fibres, newton at full activation and rest length
-  std::vector<float> fibre_shortest;  ///< #fibres, share of the rest length at which the pull has fallen to nothing
+  std::vector<float>
+      fibre_shortest;  ///< #fibres, share of the rest length at which the pull has fallen to nothing
 
   /// Carriers: nodes that an actuator turns about an axis (lids about the globe, lips about their roll).
   std::vector<uint32_t> carrier_channel, carrier_node;
@@ -175,10 +177,11 @@ struct TissueLevel {
   std::vector<float> globe_radius;
   std::vector<uint32_t> globe_contact_node, globe_contact_globe;  ///< pairs
 
-  /// Distance fields of the bones with their teeth, each a grid that stands still in its bone's frame; the values of a
-  /// field follow those of the one before, x fastest. Distance in metres = (value - 128) * step, negative inside.
-  std::vector<uint8_t> contact_field_bone;  ///< #fields, 0 cranium, 1 mandible
-  std::vector<Vec3f> contact_field_origin;  ///< #fields, place of the first value
+  /// Distance fields of the bones with their teeth, each a grid that stands still in its bone's frame; the
+  /// values of a field follow those of the one before, x fastest. Distance in metres = (value - 128) * step,
+  /// negative inside.
+  std::vector<uint8_t> contact_field_bone;                       ///< #fields, 0 cranium, 1 mandible
+  std::vector<Vec3f> contact_field_origin;                       ///< #fields, place of the first value
   std::vector<float> contact_field_spacing, contact_field_step;  ///< #fields, metres
   std::vector<std::array<uint32_t, 3>> contact_field_size;       ///< #fields, values along x, y, z
   std::vector<uint8_t> contact_field_values;
@@ -197,13 +200,13 @@ struct Binding {
   uint32_t mesh = 0, primitive = 0;  ///< in the glTF file
   std::string part;                  ///< skin, eye_left, teeth_lower, ...
   uint32_t vertex_count = 0;
-  uint64_t position_hash = 0;  ///< fingerprint of the primitive's POSITION bytes
+  uint64_t position_hash = 0;        ///< fingerprint of the primitive's POSITION bytes
   Mat4f to_rig = Mat4f::Identity();  ///< from the primitive's own coordinates to the rig's metres
-  uint32_t influences = 4;     ///< nodes a vertex
-  std::vector<uint32_t> nodes;     ///< #vertices * influences
-  std::vector<float> weights;      ///< #vertices * influences
-  std::vector<float> jaw_weights;  ///< #vertices
-  std::vector<uint8_t> eye;        ///< #vertices: 0 none, 1 left, 2 right
+  uint32_t influences = 4;           ///< nodes a vertex
+  std::vector<uint32_t> nodes;       ///< #vertices * influences
+  std::vector<float> weights;        ///< #vertices * influences
+  std::vector<float> jaw_weights;    ///< #vertices
+  std::vector<uint8_t> eye;          ///< #vertices: 0 none, 1 left, 2 right
 };
 
 /// One level of detail with the bindings made for it.

@@ -8,31 +8,41 @@
 namespace fascia::rig {
 namespace {
 
-bool ignore_image(tinygltf::Image*, const int, std::string*, std::string*, int, int, const unsigned char*, int,
-                  void*) {
+bool ignore_image(tinygltf::Image*, const int, std::string*, std::string*, int, int, const unsigned char*,
+                  int, void*) {
   return true;
 }
 
 std::size_t size_of_component(int type) {
   switch (type) {
     case TINYGLTF_COMPONENT_TYPE_BYTE:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return 1;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+      return 1;
     case TINYGLTF_COMPONENT_TYPE_SHORT:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return 2;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+      return 2;
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-    case TINYGLTF_COMPONENT_TYPE_FLOAT: return 4;
-    default: return 0;
+    case TINYGLTF_COMPONENT_TYPE_FLOAT:
+      return 4;
+    default:
+      return 0;
   }
 }
 
 std::size_t components_of(int type) {
   switch (type) {
-    case TINYGLTF_TYPE_SCALAR: return 1;
-    case TINYGLTF_TYPE_VEC2: return 2;
-    case TINYGLTF_TYPE_VEC3: return 3;
-    case TINYGLTF_TYPE_VEC4: return 4;
-    case TINYGLTF_TYPE_MAT4: return 16;
-    default: return 0;
+    case TINYGLTF_TYPE_SCALAR:
+      return 1;
+    case TINYGLTF_TYPE_VEC2:
+      return 2;
+    case TINYGLTF_TYPE_VEC3:
+      return 3;
+    case TINYGLTF_TYPE_VEC4:
+      return 4;
+    case TINYGLTF_TYPE_MAT4:
+      return 16;
+    default:
+      return 0;
   }
 }
 
@@ -107,10 +117,12 @@ std::vector<uint8_t> packed_elements(const tinygltf::Model& model, int index, co
   if (index_size == 0 || sparse.count < 0 || changes > view.count || sparse.indices.byteOffset < 0 ||
       sparse.values.byteOffset < 0)
     throw Error(path + ": accessor " + std::to_string(index) + " has a malformed sparse part");
-  const uint8_t* indices = view_bytes(model, sparse.indices.bufferView,
-                                      static_cast<std::size_t>(sparse.indices.byteOffset), changes * index_size, path);
-  const uint8_t* values = view_bytes(model, sparse.values.bufferView,
-                                     static_cast<std::size_t>(sparse.values.byteOffset), changes * size, path);
+  const uint8_t* indices =
+      view_bytes(model, sparse.indices.bufferView, static_cast<std::size_t>(sparse.indices.byteOffset),
+                 changes * index_size, path);
+  const uint8_t* values =
+      view_bytes(model, sparse.values.bufferView, static_cast<std::size_t>(sparse.values.byteOffset),
+                 changes * size, path);
   for (std::size_t i = 0; i < changes; ++i) {
     const std::size_t target = load_unsigned(indices + i * index_size, index_size);
     if (target >= view.count) throw Error(path + ": a sparse index passes the accessor's end");
@@ -137,23 +149,27 @@ uint64_t hash_words(const uint8_t* bytes, std::size_t size) {
 std::vector<uint32_t> decode_indices(const tinygltf::Model& model, int index, std::size_t vertex_count,
                                      const std::string& path) {
   const AccessorView view = accessor_view(model, index, path);
-  const bool is_index = view.components == 1 && (view.component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
-                                                 view.component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
-                                                 view.component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT);
-  if (!is_index || view.data == nullptr) throw Error(path + ": the index accessor is not a list of whole numbers");
+  const bool is_index =
+      view.components == 1 && (view.component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
+                               view.component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
+                               view.component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT);
+  if (!is_index || view.data == nullptr)
+    throw Error(path + ": the index accessor is not a list of whole numbers");
   std::vector<uint32_t> indices(view.count);
   for (std::size_t i = 0; i < view.count; ++i) {
     indices[i] = load_unsigned(view.data + i * view.stride, view.component_size());
     if (indices[i] >= vertex_count)
-      throw Error(path + ": index " + std::to_string(indices[i]) + " passes the " + std::to_string(vertex_count) +
-                  " vertices");
+      throw Error(path + ": index " + std::to_string(indices[i]) + " passes the " +
+                  std::to_string(vertex_count) + " vertices");
   }
   return indices;
 }
 
 }  // namespace
 
-std::size_t AccessorView::component_size() const { return size_of_component(component_type); }
+std::size_t AccessorView::component_size() const {
+  return size_of_component(component_type);
+}
 
 tinygltf::Model load_gltf(std::span<const uint8_t> glb, const std::string& name) {
   glb_chunks(glb, name);
@@ -163,7 +179,9 @@ tinygltf::Model load_gltf(std::span<const uint8_t> glb, const std::string& name)
   tinygltf::FsCallbacks no_files{};
   no_files.FileExists = [](const std::string&, void*) { return false; };
   no_files.ExpandFilePath = [](const std::string& path, void*) { return path; };
-  no_files.ReadWholeFile = [](std::vector<unsigned char>*, std::string*, const std::string&, void*) { return false; };
+  no_files.ReadWholeFile = [](std::vector<unsigned char>*, std::string*, const std::string&, void*) {
+    return false;
+  };
   no_files.WriteWholeFile = [](std::string*, const std::string&, const std::vector<unsigned char>&, void*) {
     return false;
   };
@@ -172,7 +190,8 @@ tinygltf::Model load_gltf(std::span<const uint8_t> glb, const std::string& name)
   std::string error, warning;
   bool read = false;
   try {
-    read = loader.LoadBinaryFromMemory(&model, &error, &warning, glb.data(), static_cast<unsigned int>(glb.size()));
+    read = loader.LoadBinaryFromMemory(&model, &error, &warning, glb.data(),
+                                       static_cast<unsigned int>(glb.size()));
   } catch (const std::exception& exception) {
     error = exception.what();
   }

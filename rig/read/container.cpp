@@ -24,14 +24,17 @@ void put_word(std::vector<uint8_t>& bytes, uint32_t value) {
 
 }  // namespace
 
-bool is_glb(std::span<const uint8_t> bytes) { return bytes.size() >= 4 && word(bytes, 0) == magic; }
+bool is_glb(std::span<const uint8_t> bytes) {
+  return bytes.size() >= 4 && word(bytes, 0) == magic;
+}
 
 GlbChunks glb_chunks(std::span<const uint8_t> bytes, const std::string& name) {
   if (!is_glb(bytes)) throw Error(name + ": not a binary glTF (.glb) file");
   if (bytes.size() < header_size + chunk_header_size)
     throw Error(name + ": the file is cut short: it ends within the GLB header");
   if (word(bytes, 4) != 2)
-    throw Error(name + ": glTF version " + std::to_string(word(bytes, 4)) + " is not supported; export glTF 2.0");
+    throw Error(name + ": glTF version " + std::to_string(word(bytes, 4)) +
+                " is not supported; export glTF 2.0");
   if (word(bytes, 8) > bytes.size())
     throw Error(name + ": the file is cut short: " + std::to_string(bytes.size()) + " bytes of " +
                 std::to_string(word(bytes, 8)));

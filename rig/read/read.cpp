@@ -13,7 +13,8 @@ namespace fascia::rig {
 namespace {
 
 /// Root object of extension `name`. Throws when it is not there or of a version this build does not know.
-const tinygltf::Value& root_object(const tinygltf::Model& model, const std::string& name, const std::string& file) {
+const tinygltf::Value& root_object(const tinygltf::Model& model, const std::string& name,
+                                   const std::string& file) {
   const auto found = model.extensions.find(name);
   if (found == model.extensions.end())
     throw Error(file + ": no " + name + " extension: this is not a Fascia rig; make one with `fascia build`");
@@ -22,8 +23,9 @@ const tinygltf::Value& root_object(const tinygltf::Model& model, const std::stri
     throw Error(file + ": " + name + "/specVersion: missing");
   const auto version = object.Get("specVersion").Get<std::string>();
   if (version != spec_version)
-    throw VersionError(file + ": " + name + "/specVersion: version " + version + " is not known to this build, which reads " +
-                spec_version + "; update Fascia or build the rig again");
+    throw VersionError(file + ": " + name + "/specVersion: version " + version +
+                       " is not known to this build, which reads " + spec_version +
+                       "; update Fascia or build the rig again");
   return object;
 }
 
@@ -40,8 +42,8 @@ void check_unique(const std::vector<Channel>& channels, const std::string& path)
 }
 
 /// Index of buffer view `name` of `object`, as bytes; nothing when it is left out.
-std::vector<uint8_t> stored_bytes(const tinygltf::Model& model, const tinygltf::Value& object, const char* name,
-                                  const std::string& path) {
+std::vector<uint8_t> stored_bytes(const tinygltf::Model& model, const tinygltf::Value& object,
+                                  const char* name, const std::string& path) {
   if (!object.Has(name)) return {};
   const int index = object.Get(name).IsInt() ? object.Get(name).Get<int>() : -1;
   if (index < 0 || static_cast<std::size_t>(index) >= model.bufferViews.size())
@@ -54,12 +56,14 @@ std::vector<uint8_t> stored_bytes(const tinygltf::Model& model, const tinygltf::
   return {data, data + view.byteLength};
 }
 
-SourceRecord source_record(const tinygltf::Model& model, const tinygltf::Value& tissue, const std::string& path) {
+SourceRecord source_record(const tinygltf::Model& model, const tinygltf::Value& tissue,
+                           const std::string& path) {
   SourceRecord record;
   if (!tissue.Has("source")) return record;
   const tinygltf::Value& source = tissue.Get("source");
   if (!source.IsObject()) throw Error(path + ": not an object");
-  if (source.Has("format") && source.Get("format").IsString()) record.format = source.Get("format").Get<std::string>();
+  if (source.Has("format") && source.Get("format").IsString())
+    record.format = source.Get("format").Get<std::string>();
   const std::vector<uint8_t> notes = stored_bytes(model, source, "notes", path);
   record.json.assign(notes.begin(), notes.end());
   record.bytes = stored_bytes(model, source, "file", path);
@@ -98,25 +102,29 @@ std::vector<Vec3f> vec3_attribute(const tinygltf::Model& model, int accessor, st
 Primitive bound_primitive(const tinygltf::Model& model, const Binding& binding, const std::string& path) {
   if (binding.mesh >= model.meshes.size() ||
       binding.primitive >= model.meshes[binding.mesh].primitives.size())
-    throw Error(path + ": mesh " + std::to_string(binding.mesh) + " primitive " + std::to_string(binding.primitive) +
-                " is not in the file");
+    throw Error(path + ": mesh " + std::to_string(binding.mesh) + " primitive " +
+                std::to_string(binding.primitive) + " is not in the file");
   const tinygltf::Mesh& mesh = model.meshes[binding.mesh];
   const tinygltf::Primitive& primitive = mesh.primitives[binding.primitive];
   const auto position = primitive.attributes.find("POSITION");
   if (position == primitive.attributes.end()) throw Error(path + ": the primitive has no POSITION");
-  if (accessor_view(model, position->second, path).components != 3) throw Error(path + ": POSITION is not a VEC3");
+  if (accessor_view(model, position->second, path).components != 3)
+    throw Error(path + ": POSITION is not a VEC3");
   Primitive result;
   result.mesh = binding.mesh;
   result.primitive = binding.primitive;
   result.name = mesh.name;
   result.positions = vec3_attribute(model, position->second, any, path);
   const std::string remedy =
-      "; another tool has changed the mesh since the rig was built: build the rig again from the changed head";
+      "; another tool has changed the mesh since the rig was built: build the rig again from the changed "
+      "head";
   if (result.positions.size() != binding.vertex_count)
     throw MismatchError(path + ": mesh \"" + mesh.name + "\" has " + std::to_string(result.positions.size()) +
-                " vertices where the rig was built for " + std::to_string(binding.vertex_count) + remedy);
+                        " vertices where the rig was built for " + std::to_string(binding.vertex_count) +
+                        remedy);
   if (attribute_hash(model, position->second, path) != binding.position_hash)
-    throw MismatchError(path + ": the positions of mesh \"" + mesh.name + "\" are not those the rig was built for" + remedy);
+    throw MismatchError(path + ": the positions of mesh \"" + mesh.name +
+                        "\" are not those the rig was built for" + remedy);
   result.triangles = decode_triangles(model, primitive, result.positions.size(), path);
   const auto normal = primitive.attributes.find("NORMAL");
   if (normal != primitive.attributes.end() && accessor_view(model, normal->second, path).components == 3)

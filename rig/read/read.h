@@ -43,8 +43,8 @@ struct Primitive {
 /// A rig file, read: the rig, the file's own JSON and binary chunk, and the geometry it binds.
 struct RigFile {
   Rig rig;
-  std::string json;           ///< JSON chunk as it is in the file
-  std::vector<uint8_t> bin;   ///< binary chunk, as long as buffer 0 says
+  std::string json;          ///< JSON chunk as it is in the file
+  std::vector<uint8_t> bin;  ///< binary chunk, as long as buffer 0 says
   SourceRecord source;
   std::vector<Primitive> primitives;  ///< in the order in which the levels' bindings first name them
 

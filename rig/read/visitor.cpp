@@ -16,7 +16,8 @@ void Reader::hash(const char* name, uint64_t& value) {
 void Reader::numbers(const char* name, float* to, std::size_t count) {
   if (!has(name)) return;
   const tinygltf::Value& values = object_.Get(name);
-  if (!values.IsArray() || values.ArrayLen() != count) fail(name, "not " + std::to_string(count) + " numbers");
+  if (!values.IsArray() || values.ArrayLen() != count)
+    fail(name, "not " + std::to_string(count) + " numbers");
   for (std::size_t i = 0; i < count; ++i)
     to[i] = checked_number<float>(values.Get(i), name);
 }
@@ -34,7 +35,8 @@ void Reader::texts(const char* name, std::vector<std::string>& values) {
 
 AccessorView Reader::accessor(const char* name, std::size_t components, std::size_t length) {
   if (!has(name)) {
-    if (length != 0 && length != any) fail(name, "missing, though " + std::to_string(length) + " elements are due");
+    if (length != 0 && length != any)
+      fail(name, "missing, though " + std::to_string(length) + " elements are due");
     return {};
   }
   const int index = checked_number<int>(object_.Get(name), name);

@@ -76,9 +76,11 @@ class Reader {
   template <class T>
   void list(const char* name, std::vector<T>& values, std::size_t length) {
     floats(name, values, length);
-    if (all_finite(reinterpret_cast<const float*>(values.data()), values.size() * Element<T>::components)) return;
+    if (all_finite(reinterpret_cast<const float*>(values.data()), values.size() * Element<T>::components))
+      return;
     for (std::size_t i = 0; i < values.size(); ++i)
-      if (!Element<T>::finite(values[i])) fail(name, "element " + std::to_string(i) + " is not a finite number");
+      if (!Element<T>::finite(values[i]))
+        fail(name, "element " + std::to_string(i) + " is not a finite number");
   }
 
   template <class T>
@@ -92,11 +94,16 @@ class Reader {
   void index(const char* name, std::vector<T>& values, std::size_t length, std::size_t limit) {
     const AccessorView view = accessor(name, Element<T>::components, length);
     switch (view.count == 0 ? 0 : view.component_type) {
-      case 0: return;
-      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return whole_numbers<uint8_t>(name, view, values, limit);
-      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return whole_numbers<uint16_t>(name, view, values, limit);
-      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: return whole_numbers<uint32_t>(name, view, values, limit);
-      default: fail(name, "its accessor does not hold unsigned whole numbers");
+      case 0:
+        return;
+      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+        return whole_numbers<uint8_t>(name, view, values, limit);
+      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+        return whole_numbers<uint16_t>(name, view, values, limit);
+      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+        return whole_numbers<uint32_t>(name, view, values, limit);
+      default:
+        fail(name, "its accessor does not hold unsigned whole numbers");
     }
   }
 
@@ -141,7 +148,9 @@ class Reader {
 
   bool has(const char* name) const { return object_.IsObject() && object_.Has(name); }
   std::string at(const std::string& name) const { return path_ + "/" + name; }
-  [[noreturn]] void fail(const std::string& name, const std::string& what) const { throw Error(at(name) + ": " + what); }
+  [[noreturn]] void fail(const std::string& name, const std::string& what) const {
+    throw Error(at(name) + ": " + what);
+  }
 
  private:
   template <class T>
@@ -211,7 +220,8 @@ class Reader {
       }
     }
     if (greatest >= limit)
-      fail(name, "value " + std::to_string(greatest) + " is out of range: " + std::to_string(limit) + " is the limit");
+      fail(name, "value " + std::to_string(greatest) + " is out of range: " + std::to_string(limit) +
+                     " is the limit");
   }
 
   const tinygltf::Model& model_;

@@ -68,7 +68,8 @@ std::vector<uint8_t> buffer_bytes(const GltfSource& source, const Json& buffer, 
   std::vector<uint8_t> bytes;
   if (!buffer.contains("uri")) {
     if (index != 0)
-      throw Error(name + " has no data of its own (EXT_meshopt_compression?); decompress the file, "
+      throw Error(name +
+                  " has no data of its own (EXT_meshopt_compression?); decompress the file, "
                   "for instance with `gltf-transform copy`, and try again");
     bytes = source.bin;
   } else {
@@ -77,12 +78,14 @@ std::vector<uint8_t> buffer_bytes(const GltfSource& source, const Json& buffer, 
       bytes = std::move(data->first);
     } else {
       auto file = source.resolve ? source.resolve(percent_decoded(uri)) : std::nullopt;
-      if (!file) throw Error(name + ": the file " + uri + " it names cannot be read; put it beside the glTF file");
+      if (!file)
+        throw Error(name + ": the file " + uri + " it names cannot be read; put it beside the glTF file");
       bytes = std::move(*file);
     }
   }
   if (bytes.size() < length)
-    throw Error(name + " is cut short: " + std::to_string(bytes.size()) + " bytes of " + std::to_string(length));
+    throw Error(name + " is cut short: " + std::to_string(bytes.size()) + " bytes of " +
+                std::to_string(length));
   bytes.resize(length);
   return bytes;
 }
@@ -101,7 +104,8 @@ std::vector<uint8_t> join_buffers(const GltfSource& source, Json& root) {
   if (root.contains("bufferViews"))
     for (Json& view : root["bufferViews"]) {
       const auto buffer = view.at("buffer").get<std::size_t>();
-      if (buffer >= begins.size()) throw Error("a buffer view names buffer " + std::to_string(buffer) + ", which does not exist");
+      if (buffer >= begins.size())
+        throw Error("a buffer view names buffer " + std::to_string(buffer) + ", which does not exist");
       if (buffer == 0) continue;
       view["byteOffset"] = view.value("byteOffset", std::size_t{0}) + begins[buffer];
       view["buffer"] = 0;

@@ -83,7 +83,8 @@ class Writer {
   void list(const char* name, const std::vector<T>& values, std::size_t length) {
     check_length(name, values.size(), length);
     for (std::size_t i = 0; i < values.size(); ++i)
-      if (!Element<T>::finite(values[i])) fail(name, "element " + std::to_string(i) + " is not a finite number");
+      if (!Element<T>::finite(values[i]))
+        fail(name, "element " + std::to_string(i) + " is not a finite number");
     if (values.empty()) return;
     const auto* numbers = reinterpret_cast<const float*>(values.data());
     constexpr std::size_t n = Element<T>::components;
@@ -106,7 +107,8 @@ class Writer {
     const std::vector<uint32_t> numbers(from, from + values.size() * n);
     const uint32_t greatest = *std::max_element(numbers.begin(), numbers.end());
     if (greatest >= limit)
-      fail(name, "value " + std::to_string(greatest) + " is out of range: " + std::to_string(limit) + " is the limit");
+      fail(name, "value " + std::to_string(greatest) + " is out of range: " + std::to_string(limit) +
+                     " is the limit");
     json[name] = appendix_.add_whole(numbers, n);
   }
 
@@ -146,7 +148,9 @@ class Writer {
 
  private:
   std::string at(const std::string& name) const { return path_ + "/" + name; }
-  [[noreturn]] void fail(const std::string& name, const std::string& what) const { throw Error(at(name) + ": " + what); }
+  [[noreturn]] void fail(const std::string& name, const std::string& what) const {
+    throw Error(at(name) + ": " + what);
+  }
   void check_length(const char* name, std::size_t length, std::size_t due) const {
     if (due != any && length != due)
       fail(name, std::to_string(length) + " elements where " + std::to_string(due) + " are due");

@@ -29,7 +29,8 @@ tinygltf::Model model_of(const GltfSource& source) {
   return load_gltf(glb_bytes(source.json, source.bin), "head");
 }
 
-Fingerprint fingerprint_of(const tinygltf::Model& model, uint32_t mesh, uint32_t primitive, const std::string& path) {
+Fingerprint fingerprint_of(const tinygltf::Model& model, uint32_t mesh, uint32_t primitive,
+                           const std::string& path) {
   if (mesh >= model.meshes.size() || primitive >= model.meshes[mesh].primitives.size())
     throw Error(path + ": mesh " + std::to_string(mesh) + " primitive " + std::to_string(primitive) +
                 " is not in the file");
@@ -49,8 +50,8 @@ Tissue fingerprinted(Tissue tissue, const tinygltf::Model& model) {
           tissue_extension + "/levels/" + std::to_string(level) + "/bindings/" + std::to_string(b);
       const Fingerprint print = fingerprint_of(model, binding.mesh, binding.primitive, path);
       if (binding.vertex_count != 0 && binding.vertex_count != print.vertex_count)
-        throw Error(path + ": bound for " + std::to_string(binding.vertex_count) + " vertices, but the mesh has " +
-                    std::to_string(print.vertex_count));
+        throw Error(path + ": bound for " + std::to_string(binding.vertex_count) +
+                    " vertices, but the mesh has " + std::to_string(print.vertex_count));
       binding.vertex_count = print.vertex_count;
       binding.position_hash = print.position_hash;
     }
@@ -73,8 +74,8 @@ Json source_object(const Json& root, const GltfSource& source, Appendix& appendi
 
 Json tissue_object(const Rig& rig, const Tissue& tissue, Appendix& appendix) {
   if (tissue.bindings.size() != tissue.levels.size())
-    throw Error(tissue_extension + "/levels: " + std::to_string(tissue.levels.size()) + " levels, but bindings for " +
-                std::to_string(tissue.bindings.size()));
+    throw Error(tissue_extension + "/levels: " + std::to_string(tissue.levels.size()) +
+                " levels, but bindings for " + std::to_string(tissue.bindings.size()));
   Writer writer(appendix, tissue_extension);
   writer.json["specVersion"] = spec_version;
   writer.matrix("inputToMetres", rig.input_to_metres);
@@ -121,7 +122,8 @@ void cut(Json& root, const char* name, std::size_t length) {
 
 /// Removes what only the rig in `root` used, as far as nothing else came behind it.
 void cut_appendix(Json& root, const Json& source, std::vector<uint8_t>& bin) {
-  for (const char* key : {"accessors", "bufferViews", "buffers", "byteLength", "endAccessors", "endBufferViews"})
+  for (const char* key :
+       {"accessors", "bufferViews", "buffers", "byteLength", "endAccessors", "endBufferViews"})
     if (!source.contains(key) || !source[key].is_number_unsigned()) return;
   if (length_of(root, "accessors") != source["endAccessors"] ||
       length_of(root, "bufferViews") != source["endBufferViews"] || source["byteLength"] > bin.size())
@@ -154,8 +156,10 @@ std::vector<uint8_t> recorded_bytes(const Json& root, const Json& source, const 
   if (!source.contains(name)) return {};
   const Json& view = root.at("bufferViews").at(source[name].get<std::size_t>());
   const std::size_t begin = view.value("byteOffset", std::size_t{0}), length = view.at("byteLength");
-  if (begin > bin.size() || length > bin.size() - begin) throw Error(tissue_extension + "/source: beyond the file");
-  return {bin.begin() + static_cast<std::ptrdiff_t>(begin), bin.begin() + static_cast<std::ptrdiff_t>(begin + length)};
+  if (begin > bin.size() || length > bin.size() - begin)
+    throw Error(tissue_extension + "/source: beyond the file");
+  return {bin.begin() + static_cast<std::ptrdiff_t>(begin),
+          bin.begin() + static_cast<std::ptrdiff_t>(begin + length)};
 }
 
 }  // namespace
@@ -183,8 +187,8 @@ std::vector<uint8_t> write(const GltfSource& source, const Rig& rig) {
     muscle_table_fields(writer, table, rig.smas.surface.triangles.size());
   });
   added[tissue_extension] = tissue_object(rig, tissue, appendix);
-  added[actuation_extension] =
-      extension_object(actuation_extension, appendix, [&](Writer& writer) { actuation_fields(writer, rig.actuation); });
+  added[actuation_extension] = extension_object(
+      actuation_extension, appendix, [&](Writer& writer) { actuation_fields(writer, rig.actuation); });
   add_values(added[actuation_extension]);
 
   source_record["endAccessors"] = length_of(root, "accessors");

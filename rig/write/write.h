@@ -28,7 +28,8 @@ GltfSource glb_source(std::span<const uint8_t> bytes, const std::string& name = 
 
 /// The source made self-contained: every buffer, by URI or data URI, joined into the one binary chunk (its
 /// bytes first), images taken in where they resolve. Everything else stays as it came. Throws fascia::Error
-/// when the JSON is malformed, a buffer is missing, or a buffer is compressed in a way that has no plain copy.
+/// when the JSON is malformed, a buffer is missing, or a buffer is compressed in a way that has no plain
+/// copy.
 GltfSource embed(const GltfSource& source);
 
 /// Fingerprint of a primitive: what `read` checks (rig/spec/FASCIA_tissue says how it is computed).

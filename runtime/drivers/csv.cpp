@@ -37,7 +37,8 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
 
 std::vector<std::string_view> cells(std::string_view line) {
   // A file with semicolons has decimal commas nowhere else in it: take whichever separates.
-  const char separator = line.find(',') == std::string_view::npos && line.find(';') != std::string_view::npos ? ';' : ',';
+  const char separator =
+      line.find(',') == std::string_view::npos && line.find(';') != std::string_view::npos ? ';' : ',';
   std::vector<std::string_view> parts = split(line, separator);
   for (std::string_view& part : parts)
     part = trimmed(part);
@@ -66,11 +67,13 @@ Timecode timecode(std::string_view text, std::size_t row) {
   std::string plain(text);
   std::replace(plain.begin(), plain.end(), ';', ':');  // drop-frame files
   const auto parts = split(plain, ':');
-  if (parts.size() != 4) throw Error(where(row, "Timecode") + "\"" + plain + "\" is not hours:minutes:seconds:frame");
+  if (parts.size() != 4)
+    throw Error(where(row, "Timecode") + "\"" + plain + "\" is not hours:minutes:seconds:frame");
   double fields[4] = {};
   for (std::size_t i = 0; i < 4; ++i) {
     const auto field = number(parts[i]);
-    if (!field || *field < 0) throw Error(where(row, "Timecode") + "\"" + plain + "\" is not hours:minutes:seconds:frame");
+    if (!field || *field < 0)
+      throw Error(where(row, "Timecode") + "\"" + plain + "\" is not hours:minutes:seconds:frame");
     fields[i] = *field;
   }
   return {3600 * fields[0] + 60 * fields[1] + fields[2], fields[3]};
@@ -126,7 +129,8 @@ std::vector<double> live_link_times(const Table& table, std::size_t time_column)
 std::vector<double> plain_times(const Table& table, std::size_t time_column) {
   std::vector<double> times;
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
-    const auto time = time_column < table.rows[row].size() ? number(table.rows[row][time_column]) : std::nullopt;
+    const auto time =
+        time_column < table.rows[row].size() ? number(table.rows[row][time_column]) : std::nullopt;
     if (!time) throw Error(where(table.lines[row], "time") + "not a number");
     times.push_back(*time);
   }
@@ -140,10 +144,13 @@ Curves read_csv_curves(std::string_view text) {
   const auto time = column(table, "time"), code = column(table, "Timecode");
   const auto count = column(table, "BlendShapeCount");
   if (!time && !code)
-    throw Error("curves: neither JSON, glTF nor a CSV file with a `time` (seconds) or `Timecode` column in its first line");
+    throw Error(
+        "curves: neither JSON, glTF nor a CSV file with a `time` (seconds) or `Timecode` column in its first "
+        "line");
   if (table.rows.empty()) throw Error("curves: the CSV file has no rows");
   const std::size_t time_column = time ? *time : *code;
-  const std::vector<double> times = time ? plain_times(table, time_column) : live_link_times(table, time_column);
+  const std::vector<double> times =
+      time ? plain_times(table, time_column) : live_link_times(table, time_column);
   for (std::size_t row = 1; row < times.size(); ++row)
     if (!(times[row] > times[row - 1]))
       throw Error(where(table.lines[row], table.header[time_column]) + "times must rise from row to row");
@@ -157,7 +164,8 @@ Curves read_csv_curves(std::string_view text) {
       if (c >= table.rows[row].size() || table.rows[row][c].empty()) continue;
       const auto value = number(table.rows[row][c]);
       if (!value)
-        throw Error(where(table.lines[row], curve.name) + "\"" + std::string(table.rows[row][c]) + "\" is not a number");
+        throw Error(where(table.lines[row], curve.name) + "\"" + std::string(table.rows[row][c]) +
+                    "\" is not a number");
       curve.times.push_back(times[row]);
       curve.values.push_back(static_cast<float>(*value));
     }

@@ -17,8 +17,8 @@ enum class Interpolation : uint8_t {
 /// One named value over time.
 struct Curve {
   std::string name;
-  std::vector<double> times;   ///< seconds, rising
-  std::vector<float> values;   ///< #times
+  std::vector<double> times;  ///< seconds, rising
+  std::vector<float> values;  ///< #times
   Interpolation interpolation = Interpolation::linear;
   std::vector<float> tangents_in, tangents_out;  ///< #times or none, per second
 
@@ -33,8 +33,8 @@ struct Curves {
   double duration() const;
 };
 
-/// Reads curves from the bytes of a file, whose kind is found from its content: a GLB, JSON, Live Link Face CSV
-/// or CSV. Throws fascia::Error that says what is wrong and in which row or channel.
+/// Reads curves from the bytes of a file, whose kind is found from its content: a GLB, JSON, Live Link Face
+/// CSV or CSV. Throws fascia::Error that says what is wrong and in which row or channel.
 Curves read_curves(std::span<const uint8_t> bytes);
 
 /// CSV with a `time` column in seconds and one column a name; empty cells are left out. Live Link Face files

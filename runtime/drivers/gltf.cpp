@@ -45,9 +45,11 @@ Curve sampled(const tinygltf::Model& model, const Json& sampler, const std::stri
   const std::string kind = sampler.value("interpolation", "LINEAR");
   const std::size_t per_key = kind == "CUBICSPLINE" ? 3 : 1;
   if (times.empty() || values.size() != times.size() * per_key)
-    throw Error(path + ": " + std::to_string(values.size()) + " values for " + std::to_string(times.size()) + " times");
+    throw Error(path + ": " + std::to_string(values.size()) + " values for " + std::to_string(times.size()) +
+                " times");
   for (std::size_t i = 0; i < times.size(); ++i)
-    if (!std::isfinite(times[i]) || (i > 0 && !(times[i] > times[i - 1]))) throw Error(path + ": times must rise");
+    if (!std::isfinite(times[i]) || (i > 0 && !(times[i] > times[i - 1])))
+      throw Error(path + ": times must rise");
   for (const float value : values)
     if (!std::isfinite(value)) throw Error(path + ": a value is not finite");
   if (kind == "STEP") curve.interpolation = Interpolation::step;
@@ -89,7 +91,8 @@ Curves read_gltf_curves(std::span<const uint8_t> bytes) {
   } catch (const Json::exception& error) {
     throw Error(std::string("curves: malformed glTF animation: ") + error.what());
   }
-  if (result.curves.empty()) throw Error("curves: no animation in the glTF file points at a FASCIA_actuation channel");
+  if (result.curves.empty())
+    throw Error("curves: no animation in the glTF file points at a FASCIA_actuation channel");
   return result;
 }
 

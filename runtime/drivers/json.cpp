@@ -52,9 +52,11 @@ Curve keyed_curve(const std::string& name, const Json& object) {
   for (const double value : numbers(object["values"], name, "values"))
     curve.values.push_back(static_cast<float>(value));
   if (curve.times.size() != curve.values.size())
-    fail(name, std::to_string(curve.times.size()) + " times but " + std::to_string(curve.values.size()) + " values");
+    fail(name, std::to_string(curve.times.size()) + " times but " + std::to_string(curve.values.size()) +
+                   " values");
   for (std::size_t i = 1; i < curve.times.size(); ++i)
-    if (!(curve.times[i] > curve.times[i - 1])) fail(name, "times must rise; entry " + std::to_string(i) + " does not");
+    if (!(curve.times[i] > curve.times[i - 1]))
+      fail(name, "times must rise; entry " + std::to_string(i) + " does not");
   curve.interpolation = interpolation_of(name, object);
   return curve;
 }
@@ -72,7 +74,8 @@ Curves read_json_curves(std::string_view text) {
   Curves result;
   if (root.contains("channels")) {
     const Json fps = root.value("fps", Json());
-    if (!fps.is_number() || !(fps.get<double>() > 0)) throw Error("curves: \"fps\" is missing or not above 0");
+    if (!fps.is_number() || !(fps.get<double>() > 0))
+      throw Error("curves: \"fps\" is missing or not above 0");
     if (!root["channels"].is_object()) throw Error("curves: \"channels\" is not an object");
     for (const auto& [name, values] : root["channels"].items())
       result.curves.push_back(sampled_curve(name, values, fps.get<double>()));

@@ -83,7 +83,8 @@ int main(int argc, char** argv) {
   if (fascia_face_positions(face, 0, &positions) != FASCIA_OK) return fail("positions");
   rest = malloc(positions.count * 3 * sizeof *rest);
   if (rest == NULL) return 1;
-  for (i = 0; i < positions.count * 3; ++i) rest[i] = positions.data[i];
+  for (i = 0; i < positions.count * 3; ++i)
+    rest[i] = positions.data[i];
 
   if (!smile(face)) return fail("smile");
   for (frame = 0; frame < 60; ++frame)

@@ -49,7 +49,8 @@ Arguments arguments_of(int argc, char** argv) {
     else
       names.push_back(word);
   }
-  if (names.size() != 2 || !(arguments.fps > 0)) throw std::invalid_argument("a rig, a curve file and a rate above 0");
+  if (names.size() != 2 || !(arguments.fps > 0))
+    throw std::invalid_argument("a rig, a curve file and a rate above 0");
   arguments.rig = names[0];
   arguments.curves = names[1];
   return arguments;
@@ -75,7 +76,8 @@ void write_obj(const fascia_asset* asset, fascia_face* face, uint32_t meshes, co
     std::fprintf(file, "o %s\n", mesh.part);
     for (uint32_t v = 0; v < positions.count; ++v)
       std::fprintf(file, "v %.7g %.7g %.7g\n", static_cast<double>(positions.data[3 * v]),
-                   static_cast<double>(positions.data[3 * v + 1]), static_cast<double>(positions.data[3 * v + 2]));
+                   static_cast<double>(positions.data[3 * v + 1]),
+                   static_cast<double>(positions.data[3 * v + 2]));
     for (uint32_t t = 0; t < mesh.triangle_count; ++t)
       std::fprintf(file, "f %u %u %u\n", first + mesh.triangles[3 * t], first + mesh.triangles[3 * t + 1],
                    first + mesh.triangles[3 * t + 2]);
@@ -115,8 +117,9 @@ int play(const Arguments& arguments) {
   fascia_curves_info length = {};
   length.struct_size = sizeof length;
   check(fascia_curves_get_info(curves, &length), "curves");
-  const int frames =
-      arguments.frames >= 0 ? arguments.frames : static_cast<int>(std::floor(length.duration * arguments.fps)) + 1;
+  const int frames = arguments.frames >= 0
+                         ? arguments.frames
+                         : static_cast<int>(std::floor(length.duration * arguments.fps)) + 1;
 
   std::vector<std::vector<float>> rest;
   for (uint32_t m = 0; m < info.mesh_count; ++m) {
@@ -132,9 +135,10 @@ int play(const Arguments& arguments) {
     for (uint32_t m = 0; m < info.mesh_count; ++m) {
       const fascia_vectors positions = positions_of(face, m);
       for (std::size_t i = 0; i < rest[m].size(); i += 3)
-        farthest = std::max(farthest, std::hypot(static_cast<double>(positions.data[i]) - rest[m][i],
-                                                 static_cast<double>(positions.data[i + 1]) - rest[m][i + 1],
-                                                 static_cast<double>(positions.data[i + 2]) - rest[m][i + 2]));
+        farthest =
+            std::max(farthest, std::hypot(static_cast<double>(positions.data[i]) - rest[m][i],
+                                          static_cast<double>(positions.data[i + 1]) - rest[m][i + 1],
+                                          static_cast<double>(positions.data[i + 2]) - rest[m][i + 2]));
     }
     if (!arguments.output.empty()) {
       char name[32];
@@ -143,8 +147,9 @@ int play(const Arguments& arguments) {
     }
   }
   const bool metres = options.space == FASCIA_SPACE_METRES;
-  std::printf("%d frames, %.3f ms each, farthest vertex %.4g %s\n", frames, frames > 0 ? 1000 * seconds / frames : 0.0,
-              metres ? 1000 * farthest : farthest, metres ? "mm" : "of the file's units");
+  std::printf("%d frames, %.3f ms each, farthest vertex %.4g %s\n", frames,
+              frames > 0 ? 1000 * seconds / frames : 0.0, metres ? 1000 * farthest : farthest,
+              metres ? "mm" : "of the file's units");
   fascia_face_release(face);
   fascia_curves_release(curves);
   fascia_asset_release(asset);
@@ -157,8 +162,9 @@ int main(int argc, char** argv) {
   try {
     return play(arguments_of(argc, argv));
   } catch (const std::invalid_argument& error) {
-    std::fprintf(stderr, "%s\nusage: sample_player RIG.glb CURVES.(csv|json|glb) [--frames N] [--fps F] [-o FOLDER]\n",
-                 error.what());
+    std::fprintf(
+        stderr, "%s\nusage: sample_player RIG.glb CURVES.(csv|json|glb) [--frames N] [--fps F] [-o FOLDER]\n",
+        error.what());
     return 2;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());

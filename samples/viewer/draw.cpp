@@ -58,7 +58,9 @@ GLuint compiled(GLenum kind, const char* text) {
   return shader;
 }
 
-Matrix identity() { return {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}; }
+Matrix identity() {
+  return {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+}
 
 Matrix perspective(float height, float aspect, float near, float far) {
   Matrix m = {};
@@ -72,7 +74,8 @@ Matrix perspective(float height, float aspect, float near, float far) {
 }
 
 Matrix view_of(const Orbit& orbit) {
-  const float cy = std::cos(orbit.yaw), sy = std::sin(orbit.yaw), cp = std::cos(orbit.pitch), sp = std::sin(orbit.pitch);
+  const float cy = std::cos(orbit.yaw), sy = std::sin(orbit.yaw), cp = std::cos(orbit.pitch),
+              sp = std::sin(orbit.pitch);
   // Rows: the camera's right, up and backward axes.
   const float rows[3][3] = {{cy, 0, -sy}, {-sy * sp, cp, -cy * sp}, {sy * cp, sp, cy * cp}};
   Matrix m = identity();
@@ -124,7 +127,8 @@ Drawing::Part Drawing::make_part(const uint32_t* indices, std::size_t count) {
     glEnableVertexAttribArray(attribute);
   }
   glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, part.indices);
-  glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(count * sizeof(uint32_t)), indices, GL_STATIC_DRAW);
+  glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(count * sizeof(uint32_t)), indices,
+               GL_STATIC_DRAW);
   return part;
 }
 

@@ -155,7 +155,8 @@ int main(int argc, char** argv) {
     return run(arguments_of(argc, argv));
   } catch (const std::invalid_argument& error) {
     std::fprintf(stderr,
-                 "%s\nusage: sample_viewer RIG.glb [--curves FILE] [--set NAME=VALUE]... [--layers skin,skull,smas,muscles]"
+                 "%s\nusage: sample_viewer RIG.glb [--curves FILE] [--set NAME=VALUE]... [--layers "
+                 "skin,skull,smas,muscles]"
                  " [--frames N] [--screenshot FILE.png]\n",
                  error.what());
     return 2;

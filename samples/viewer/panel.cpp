@@ -35,7 +35,8 @@ void show_set(Scene& scene, std::size_t set) {
     float& value = scene.members[set][m];
     ImGui::SetNextItemWidth(130);
     if (!ImGui::SliderFloat(info.members[m], &value, 0.0F, 1.0F, "%.2f")) continue;
-    check(fascia_face_set(scene.face.get(), (std::string(info.name) + ":" + info.members[m]).c_str(), value), "set");
+    check(fascia_face_set(scene.face.get(), (std::string(info.name) + ":" + info.members[m]).c_str(), value),
+          "set");
   }
 }
 

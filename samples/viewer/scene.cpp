@@ -58,7 +58,8 @@ void Scene::advance(double seconds) {
     if (playing) time = duration > 0 ? std::fmod(time + seconds, duration) : 0;
     check(fascia_curves_apply(curves.get(), time, 1.0F, face.get()), "curves");
   }
-  const fascia_result result = fascia_face_step(face.get(), static_cast<float>(std::clamp(seconds, 0.0, 0.1)));
+  const fascia_result result =
+      fascia_face_step(face.get(), static_cast<float>(std::clamp(seconds, 0.0, 0.1)));
   // A face that diverged stands at its bones again and goes on.
   if (result == FASCIA_ERROR_DIVERGED)
     std::fprintf(stderr, "%s\n", fascia_last_message());

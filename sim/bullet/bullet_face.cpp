@@ -12,16 +12,20 @@ namespace fascia::sim {
 namespace {
 
 btVector3 to_bullet(const Vec3& v, double scale) {
-  return {static_cast<btScalar>(scale * v.x()), static_cast<btScalar>(scale * v.y()), static_cast<btScalar>(scale * v.z())};
+  return {static_cast<btScalar>(scale * v.x()), static_cast<btScalar>(scale * v.y()),
+          static_cast<btScalar>(scale * v.z())};
 }
 
-Vec3 from_bullet(const btVector3& v, double scale) { return Vec3(v.x(), v.y(), v.z()) / scale; }
+Vec3 from_bullet(const btVector3& v, double scale) {
+  return Vec3(v.x(), v.y(), v.z()) / scale;
+}
 
 btTransform to_bullet(const RigidTransform& t, double scale) {
   const Mat3& r = t.rotation;
-  const btMatrix3x3 basis(static_cast<btScalar>(r(0, 0)), static_cast<btScalar>(r(0, 1)), static_cast<btScalar>(r(0, 2)),
-                          static_cast<btScalar>(r(1, 0)), static_cast<btScalar>(r(1, 1)), static_cast<btScalar>(r(1, 2)),
-                          static_cast<btScalar>(r(2, 0)), static_cast<btScalar>(r(2, 1)), static_cast<btScalar>(r(2, 2)));
+  const btMatrix3x3 basis(
+      static_cast<btScalar>(r(0, 0)), static_cast<btScalar>(r(0, 1)), static_cast<btScalar>(r(0, 2)),
+      static_cast<btScalar>(r(1, 0)), static_cast<btScalar>(r(1, 1)), static_cast<btScalar>(r(1, 2)),
+      static_cast<btScalar>(r(2, 0)), static_cast<btScalar>(r(2, 1)), static_cast<btScalar>(r(2, 2)));
   return btTransform(basis, to_bullet(t.translation, scale));
 }
 
@@ -48,7 +52,12 @@ struct BulletFace::World {
   btTransform condyles;          // the joint's frame at rest
 
   World(const FaceModel& m, size_t channels, const BulletOptions& o)
-      : model(m), options(o), frame(m.make_frame()), state(m.rest()), forces(m.rest().size()), activations(channels),
+      : model(m),
+        options(o),
+        frame(m.make_frame()),
+        state(m.rest()),
+        forces(m.rest().size()),
+        activations(channels),
         rest_excitations(channels) {
     dynamics.setGravity(btVector3(0, 0, 0));
     dynamics.getWorldInfo().m_gravity.setZero();
@@ -80,15 +89,19 @@ struct BulletFace::World {
     dynamics.addConstraint(joint.get(), true);
   }
 
-  /// Explicit steps hold while h^2 k < 4 m (Courant, Friedrichs & Lewy 1928): nodes stiffer than their mass allows are made heavier,
-  /// as explicit finite elements do. Where a face comes to rest is the same.
+  /// Explicit steps hold while h^2 k < 4 m (Courant, Friedrichs & Lewy 1928): nodes stiffer than their mass
+  /// allows are made heavier, as explicit finite elements do. Where a face comes to rest is the same.
   void weigh() {
-    const double h = options.substep, contact = model.options().contact.globe_stiffness + model.options().contact.facing_stiffness;
+    const double h = options.substep,
+                 contact = model.options().contact.globe_stiffness + model.options().contact.facing_stiffness;
     const auto& unknowns = model.unknowns();
     masses = model.masses();
     for (size_t i = 0; i < unknowns.size(); ++i) {
       double stiffness = contact;
-      for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator e(model.stiffness(), static_cast<int>(i)); e; ++e) stiffness += std::abs(e.value());
+      for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator e(model.stiffness(),
+                                                                         static_cast<int>(i));
+           e; ++e)
+        stiffness += std::abs(e.value());
       masses[unknowns[i]] = std::max(masses[unknowns[i]], 30.0 * h * h * stiffness);
     }
   }
@@ -102,7 +115,8 @@ struct BulletFace::World {
       places.push_back(to_bullet(state[i], s));
       weights.push_back(model.prescribed(i) ? btScalar(0) : static_cast<btScalar>(masses[i]));
     }
-    tissue = new btSoftBody(&dynamics.getWorldInfo(), static_cast<int>(places.size()), places.data(), weights.data());
+    tissue = new btSoftBody(&dynamics.getWorldInfo(), static_cast<int>(places.size()), places.data(),
+                            weights.data());
     const auto inverse = [&](uint32_t i) { return model.prescribed(i) ? 0.0 : 1.0 / masses[i]; };
     for (const Spring& spring : model.springs()) {
       const double w = inverse(spring.nodes[0]) + inverse(spring.nodes[1]);
@@ -114,7 +128,8 @@ struct BulletFace::World {
       material->m_kLST = static_cast<btScalar>(stiff / (1.0 + stiff));
       tissue->appendLink(static_cast<int>(spring.nodes[0]), static_cast<int>(spring.nodes[1]), material);
     }
-    tissue->updateConstants();  // now, at rest: Bullet would take its rest lengths from the first pose it steps
+    tissue
+        ->updateConstants();  // now, at rest: Bullet would take its rest lengths from the first pose it steps
     tissue->m_bUpdateRtCst = false;
     tissue->m_cfg.piterations = 1;
     tissue->m_cfg.viterations = 0;
@@ -130,14 +145,16 @@ struct BulletFace::World {
     const btTransform& t = jaw->getCenterOfMassTransform();
     RigidTransform result;
     for (int r = 0; r < 3; ++r)
-      for (int c = 0; c < 3; ++c) result.rotation(r, c) = t.getBasis()[r][c];
+      for (int c = 0; c < 3; ++c)
+        result.rotation(r, c) = t.getBasis()[r][c];
     result.translation = from_bullet(t.getOrigin(), options.length_scale);
     return result;
   }
 
   void read_state() {
     for (size_t i = 0; i < state.size(); ++i)
-      if (!model.prescribed(i)) state[i] = from_bullet(tissue->m_nodes[static_cast<int>(i)].m_x, options.length_scale);
+      if (!model.prescribed(i))
+        state[i] = from_bullet(tissue->m_nodes[static_cast<int>(i)].m_x, options.length_scale);
   }
 
   /// Puts nodes without mass where their bones are; on the mandible itself, where Bullet's mandible is.
@@ -155,8 +172,8 @@ struct BulletFace::World {
     }
   }
 
-  /// A link's pull is l (l^2 - r^2) / (l^2 + r^2) times its stiffness, a spring's only while l is near its rest length
-  /// r: what is missing to l - r comes as a force.
+  /// A link's pull is l (l^2 - r^2) / (l^2 + r^2) times its stiffness, a spring's only while l is near its
+  /// rest length r: what is missing to l - r comes as a force.
   void add_link_corrections() {
     for (const Spring& spring : model.springs()) {
       if (spring.one_sided || spring.stiffness == 0.0) continue;
@@ -176,15 +193,18 @@ struct BulletFace::World {
   void substep(const Drive& drive) {
     const double s = options.length_scale;
     model.place({activations, drive.jaw, drive.acceleration, drive.touches}, frame);
-    if (substeps++ % 20 == 0) model.face_up(state.data(), frame);  // lips hardly move in a hundredth of a second
+    if (substeps++ % 20 == 0)
+      model.face_up(state.data(), frame);  // lips hardly move in a hundredth of a second
     joint->setFrames(to_bullet(jaw_transform(model.jaw(), clamped(drive.jaw)), s) * condyles, condyles);
     carry_nodes();
     model.energy_beside_links(frame, state.data(), forces.data());
     add_link_corrections();
     for (const uint32_t i : model.unknowns()) {
-      // No element is worth more than a fifth of a millimetre a substep: what asks for it is inside out or about to be.
+      // No element is worth more than a fifth of a millimetre a substep: what asks for it is inside out or
+      // about to be.
       const double most = 2e-4 * masses[i] / (options.substep * options.substep), size = forces[i].norm();
-      tissue->m_nodes[static_cast<int>(i)].m_f += to_bullet(-(size > most ? most / size : 1.0) * forces[i], s);
+      tissue->m_nodes[static_cast<int>(i)].m_f +=
+          to_bullet(-(size > most ? most / size : 1.0) * forces[i], s);
     }
     const auto h = static_cast<btScalar>(options.substep);
     dynamics.stepSimulation(h, 1, h);
@@ -200,7 +220,8 @@ struct BulletFace::World {
   double fastest() const {
     double most = 0.0;
     for (int i = 0; i < tissue->m_nodes.size(); ++i)
-      most = std::max<double>(most, static_cast<double>(tissue->m_nodes[i].m_v.length()) / options.length_scale);
+      most =
+          std::max<double>(most, static_cast<double>(tissue->m_nodes[i].m_v.length()) / options.length_scale);
     return most;
   }
 
@@ -224,7 +245,9 @@ BulletFace::BulletFace(const FaceModel& model, size_t channels, const BulletOpti
 
 BulletFace::~BulletFace() = default;
 
-RigidTransform BulletFace::mandible() const { return world_->mandible(); }
+RigidTransform BulletFace::mandible() const {
+  return world_->mandible();
+}
 
 void BulletFace::reset(const Drive& drive) {
   World& w = *world_;
@@ -238,7 +261,8 @@ StepResult BulletFace::step(double seconds, const Drive& drive) {
   World& w = *world_;
   StepResult result;
   bool finite = std::isfinite(seconds) && drive.acceleration.allFinite();
-  for (const float a : drive.activations) finite = finite && std::isfinite(a);
+  for (const float a : drive.activations)
+    finite = finite && std::isfinite(a);
   if (!finite) {
     reset({{}, drive.jaw, Vec3::Zero()});
     result.status = StepStatus::reset;
@@ -262,7 +286,8 @@ StepResult BulletFace::step(double seconds, const Drive& drive) {
 void BulletFace::static_pose(const Drive& drive, std::span<Vec3f> out) {
   World& w = *world_;
   reset(drive);
-  for (size_t c = 0; c < w.activations.size(); ++c) w.activations[c] = c < drive.activations.size() ? drive.activations[c] : 0.0F;
+  for (size_t c = 0; c < w.activations.size(); ++c)
+    w.activations[c] = c < drive.activations.size() ? drive.activations[c] : 0.0F;
   const int most = static_cast<int>(w.options.settle_seconds / w.options.substep);
   for (int k = 0; k < most; ++k) {
     w.substep(drive);

@@ -1,9 +1,10 @@
-// Sixteen floats that are worked on at once, whatever the width of the vector unit: one register of AVX-512, two of AVX2, four of
-// SSE2. Since every unit does the same IEEE operations on the same sixteen, all give the same bits; nothing here may contract,
-// estimate or reorder.
+// Sixteen floats that are worked on at once, whatever the width of the vector unit: one register of AVX-512,
+// two of AVX2, four of SSE2. Since every unit does the same IEEE operations on the same sixteen, all give the
+// same bits; nothing here may contract, estimate or reorder.
 //
-// Included once by each source that is compiled for one unit, which defines FASCIA_LANES_NAMESPACE before. Everything here is
-// local to the including source, so that nothing compiled for a wider unit can be called by accident.
+// Included once by each source that is compiled for one unit, which defines FASCIA_LANES_NAMESPACE before.
+// Everything here is local to the including source, so that nothing compiled for a wider unit can be called
+// by accident.
 
 #pragma once
 
@@ -37,36 +38,50 @@ struct Lanes {
 
 FASCIA_INLINE Lanes load(const float* from) {
   Lanes out;
-  for (size_t p = 0; p < part_count; ++p) out.part[p] = *reinterpret_cast<const UnalignedPart*>(from + p * part_width);
+  for (size_t p = 0; p < part_count; ++p)
+    out.part[p] = *reinterpret_cast<const UnalignedPart*>(from + p * part_width);
   return out;
 }
 FASCIA_INLINE void store(float* to, const Lanes& value) {
-  for (size_t p = 0; p < part_count; ++p) *reinterpret_cast<UnalignedPart*>(to + p * part_width) = value.part[p];
+  for (size_t p = 0; p < part_count; ++p)
+    *reinterpret_cast<UnalignedPart*>(to + p * part_width) = value.part[p];
 }
 FASCIA_INLINE Lanes splat(float value) {
   Lanes out;
   // Subtracting zero changes nothing, and compilers know it: this is one broadcast.
-  for (size_t p = 0; p < part_count; ++p) out.part[p] = value - Part{};
+  for (size_t p = 0; p < part_count; ++p)
+    out.part[p] = value - Part{};
   return out;
 }
 
-#define FASCIA_LANES_OPERATOR(op)                                                   \
-  FASCIA_INLINE Lanes operator op(const Lanes& a, const Lanes& b) {                 \
-    Lanes out;                                                                      \
-    for (size_t p = 0; p < part_count; ++p) out.part[p] = a.part[p] op b.part[p];   \
-    return out;                                                                     \
-  }                                                                                 \
-  FASCIA_INLINE Lanes operator op(const Lanes& a, float b) { return a op splat(b); } \
-  FASCIA_INLINE Lanes operator op(float a, const Lanes& b) { return splat(a) op b; }
+#define FASCIA_LANES_OPERATOR(op)                                   \
+  FASCIA_INLINE Lanes operator op(const Lanes& a, const Lanes& b) { \
+    Lanes out;                                                      \
+    for (size_t p = 0; p < part_count; ++p)                         \
+      out.part[p] = a.part[p] op b.part[p];                         \
+    return out;                                                     \
+  }                                                                 \
+  FASCIA_INLINE Lanes operator op(const Lanes& a, float b) {        \
+    return a op splat(b);                                           \
+  }                                                                 \
+  FASCIA_INLINE Lanes operator op(float a, const Lanes& b) {        \
+    return splat(a) op b;                                           \
+  }
 FASCIA_LANES_OPERATOR(+)
 FASCIA_LANES_OPERATOR(-)
 FASCIA_LANES_OPERATOR(*)
 FASCIA_LANES_OPERATOR(/)
 #undef FASCIA_LANES_OPERATOR
 
-FASCIA_INLINE Lanes& operator+=(Lanes& a, const Lanes& b) { return a = a + b; }
-FASCIA_INLINE Lanes& operator-=(Lanes& a, const Lanes& b) { return a = a - b; }
-FASCIA_INLINE Lanes operator-(const Lanes& a) { return splat(-0.0F) - a; }
+FASCIA_INLINE Lanes& operator+=(Lanes& a, const Lanes& b) {
+  return a = a + b;
+}
+FASCIA_INLINE Lanes& operator-=(Lanes& a, const Lanes& b) {
+  return a = a - b;
+}
+FASCIA_INLINE Lanes operator-(const Lanes& a) {
+  return splat(-0.0F) - a;
+}
 
 FASCIA_INLINE Lanes square_root(const Lanes& a) {
   Lanes out;
@@ -78,7 +93,8 @@ FASCIA_INLINE Lanes square_root(const Lanes& a) {
 #elif defined(__SSE2__)
     out.part[p] = _mm_sqrt_ps(a.part[p]);
 #else
-    for (size_t l = 0; l < part_width; ++l) out.part[p][l] = __builtin_sqrtf(a.part[p][l]);
+    for (size_t l = 0; l < part_width; ++l)
+      out.part[p][l] = __builtin_sqrtf(a.part[p][l]);
 #endif
   }
   return out;
@@ -99,11 +115,14 @@ FASCIA_INLINE Lanes greater(const Lanes& a, const Lanes& b) {
   }
   return out;
 }
-FASCIA_INLINE Lanes greater(const Lanes& a, float b) { return greater(a, splat(b)); }
+FASCIA_INLINE Lanes greater(const Lanes& a, float b) {
+  return greater(a, splat(b));
+}
 
 FASCIA_INLINE Lanes lesser(const Lanes& a, const Lanes& b) {
   Lanes out;
-  for (size_t p = 0; p < part_count; ++p) out.part[p] = b.part[p] > a.part[p] ? a.part[p] : b.part[p];
+  for (size_t p = 0; p < part_count; ++p)
+    out.part[p] = b.part[p] > a.part[p] ? a.part[p] : b.part[p];
   return out;
 }
 
@@ -111,12 +130,24 @@ FASCIA_INLINE Lanes lesser(const Lanes& a, const Lanes& b) {
 struct Lanes3 {
   Lanes x, y, z;
 };
-FASCIA_INLINE Lanes3 operator+(const Lanes3& a, const Lanes3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-FASCIA_INLINE Lanes3 operator-(const Lanes3& a, const Lanes3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-FASCIA_INLINE Lanes3 operator*(const Lanes& a, const Lanes3& b) { return {a * b.x, a * b.y, a * b.z}; }
-FASCIA_INLINE Lanes3& operator+=(Lanes3& a, const Lanes3& b) { return a = a + b; }
-FASCIA_INLINE Lanes3& operator-=(Lanes3& a, const Lanes3& b) { return a = a - b; }
-FASCIA_INLINE Lanes dot(const Lanes3& a, const Lanes3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+FASCIA_INLINE Lanes3 operator+(const Lanes3& a, const Lanes3& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+FASCIA_INLINE Lanes3 operator-(const Lanes3& a, const Lanes3& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+FASCIA_INLINE Lanes3 operator*(const Lanes& a, const Lanes3& b) {
+  return {a * b.x, a * b.y, a * b.z};
+}
+FASCIA_INLINE Lanes3& operator+=(Lanes3& a, const Lanes3& b) {
+  return a = a + b;
+}
+FASCIA_INLINE Lanes3& operator-=(Lanes3& a, const Lanes3& b) {
+  return a = a - b;
+}
+FASCIA_INLINE Lanes dot(const Lanes3& a, const Lanes3& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 FASCIA_INLINE Lanes3 cross(const Lanes3& a, const Lanes3& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
@@ -124,7 +155,8 @@ FASCIA_INLINE Lanes3 cross(const Lanes3& a, const Lanes3& b) {
 /// `yes` where a < b, else `no`.
 FASCIA_INLINE Lanes where_below(const Lanes& a, const Lanes& b, const Lanes& yes, const Lanes& no) {
   Lanes out;
-  for (size_t p = 0; p < part_count; ++p) out.part[p] = a.part[p] < b.part[p] ? yes.part[p] : no.part[p];
+  for (size_t p = 0; p < part_count; ++p)
+    out.part[p] = a.part[p] < b.part[p] ? yes.part[p] : no.part[p];
   return out;
 }
 FASCIA_INLINE bool any_below(const Lanes& a, const Lanes& b) {
@@ -137,20 +169,26 @@ FASCIA_INLINE bool any_below(const Lanes& a, const Lanes& b) {
 #elif defined(__SSE2__)
     any |= _mm_movemask_ps(_mm_cmplt_ps(a.part[p], b.part[p])) != 0;
 #else
-    for (size_t l = 0; l < part_width; ++l) any |= a.part[p][l] < b.part[p][l];
+    for (size_t l = 0; l < part_width; ++l)
+      any |= a.part[p][l] < b.part[p][l];
 #endif
   }
   return any;
 }
 
-// Places in memory: four floats each, x y z and one of no meaning. Sixteen of them are fetched and turned into coordinates, or turned
-// back and added, in fours: lane 4j + k is the j-th quarter of a register's k-th fetch.
+// Places in memory: four floats each, x y z and one of no meaning. Sixteen of them are fetched and turned
+// into coordinates, or turned back and added, in fours: lane 4j + k is the j-th quarter of a register's k-th
+// fetch.
 
 typedef float Quad __attribute__((vector_size(16)));
 typedef float UnalignedQuad __attribute__((vector_size(16), aligned(4), may_alias));
 
-FASCIA_INLINE Quad load_quad(const float* from) { return *reinterpret_cast<const UnalignedQuad*>(from); }
-FASCIA_INLINE void store_quad(float* to, Quad value) { *reinterpret_cast<UnalignedQuad*>(to) = value; }
+FASCIA_INLINE Quad load_quad(const float* from) {
+  return *reinterpret_cast<const UnalignedQuad*>(from);
+}
+FASCIA_INLINE void store_quad(float* to, Quad value) {
+  *reinterpret_cast<UnalignedQuad*>(to) = value;
+}
 
 /// Sums of lanes l, l + 4, l + 8 and l + 12, halves to halves.
 FASCIA_INLINE Quad quarters(const Lanes& a) {
@@ -158,10 +196,12 @@ FASCIA_INLINE Quad quarters(const Lanes& a) {
   typedef float Eight __attribute__((vector_size(32)));
   const Eight eight = __builtin_shufflevector(a.part[0], a.part[0], 0, 1, 2, 3, 4, 5, 6, 7) +
                       __builtin_shufflevector(a.part[0], a.part[0], 8, 9, 10, 11, 12, 13, 14, 15);
-  return __builtin_shufflevector(eight, eight, 0, 1, 2, 3) + __builtin_shufflevector(eight, eight, 4, 5, 6, 7);
+  return __builtin_shufflevector(eight, eight, 0, 1, 2, 3) +
+         __builtin_shufflevector(eight, eight, 4, 5, 6, 7);
 #elif defined(__AVX2__)
   const Part eight = a.part[0] + a.part[1];
-  return __builtin_shufflevector(eight, eight, 0, 1, 2, 3) + __builtin_shufflevector(eight, eight, 4, 5, 6, 7);
+  return __builtin_shufflevector(eight, eight, 0, 1, 2, 3) +
+         __builtin_shufflevector(eight, eight, 4, 5, 6, 7);
 #else
   return (a.part[0] + a.part[2]) + (a.part[1] + a.part[3]);
 #endif
@@ -182,20 +222,25 @@ FASCIA_INLINE Quad totals(const Lanes3& a) {
 #if defined(__AVX512F__)
 FASCIA_INLINE Part fetch(const float* base, const int32_t* at) {
   typedef float Eight __attribute__((vector_size(32)));
-  const Eight low = __builtin_shufflevector(load_quad(base + at[0]), load_quad(base + at[4]), 0, 1, 2, 3, 4, 5, 6, 7);
-  const Eight high = __builtin_shufflevector(load_quad(base + at[8]), load_quad(base + at[12]), 0, 1, 2, 3, 4, 5, 6, 7);
+  const Eight low =
+      __builtin_shufflevector(load_quad(base + at[0]), load_quad(base + at[4]), 0, 1, 2, 3, 4, 5, 6, 7);
+  const Eight high =
+      __builtin_shufflevector(load_quad(base + at[8]), load_quad(base + at[12]), 0, 1, 2, 3, 4, 5, 6, 7);
   return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
 }
-#define FASCIA_SHUFFLE(a, b, i, j, k, l)                                                                                \
-  __builtin_shufflevector(a, b, i, j, k + 12, l + 12, i + 4, j + 4, k + 16, l + 16, i + 8, j + 8, k + 20, l + 20, i + 12, \
-                          j + 12, k + 24, l + 24)
+#define FASCIA_SHUFFLE(a, b, i, j, k, l)                                                                  \
+  __builtin_shufflevector(a, b, i, j, k + 12, l + 12, i + 4, j + 4, k + 16, l + 16, i + 8, j + 8, k + 20, \
+                          l + 20, i + 12, j + 12, k + 24, l + 24)
 #elif defined(__AVX2__)
 FASCIA_INLINE Part fetch(const float* base, const int32_t* at) {
   return __builtin_shufflevector(load_quad(base + at[0]), load_quad(base + at[4]), 0, 1, 2, 3, 4, 5, 6, 7);
 }
-#define FASCIA_SHUFFLE(a, b, i, j, k, l) __builtin_shufflevector(a, b, i, j, k + 4, l + 4, i + 4, j + 4, k + 8, l + 8)
+#define FASCIA_SHUFFLE(a, b, i, j, k, l) \
+  __builtin_shufflevector(a, b, i, j, k + 4, l + 4, i + 4, j + 4, k + 8, l + 8)
 #else
-FASCIA_INLINE Part fetch(const float* base, const int32_t* at) { return load_quad(base + at[0]); }
+FASCIA_INLINE Part fetch(const float* base, const int32_t* at) {
+  return load_quad(base + at[0]);
+}
 #define FASCIA_SHUFFLE(a, b, i, j, k, l) __builtin_shufflevector(a, b, i, j, k, l)
 #endif
 
@@ -204,7 +249,8 @@ FASCIA_INLINE Lanes3 gather(const float* base, const int32_t* at) {
   Lanes3 out;
   for (size_t p = 0; p < part_count; ++p) {
     const int32_t* first = at + p * part_width;
-    const Part a = fetch(base, first), b = fetch(base, first + 1), c = fetch(base, first + 2), d = fetch(base, first + 3);
+    const Part a = fetch(base, first), b = fetch(base, first + 1), c = fetch(base, first + 2),
+               d = fetch(base, first + 3);
     const Part ab = FASCIA_SHUFFLE(a, b, 0, 1, 4, 5), cd = FASCIA_SHUFFLE(c, d, 0, 1, 4, 5);
     const Part ab_z = FASCIA_SHUFFLE(a, b, 2, 3, 6, 7), cd_z = FASCIA_SHUFFLE(c, d, 2, 3, 6, 7);
     out.x.part[p] = FASCIA_SHUFFLE(ab, cd, 0, 2, 4, 6);
@@ -221,15 +267,17 @@ struct PartPlaces {
 FASCIA_INLINE PartPlaces places_of(const Part& x, const Part& y, const Part& z, const Part& w) {
   const Part low = FASCIA_SHUFFLE(x, y, 0, 1, 4, 5), high = FASCIA_SHUFFLE(x, y, 2, 3, 6, 7);
   const Part low_z = FASCIA_SHUFFLE(z, w, 0, 1, 4, 5), high_z = FASCIA_SHUFFLE(z, w, 2, 3, 6, 7);
-  return {{FASCIA_SHUFFLE(low, low_z, 0, 2, 4, 6), FASCIA_SHUFFLE(low, low_z, 1, 3, 5, 7), FASCIA_SHUFFLE(high, high_z, 0, 2, 4, 6),
-           FASCIA_SHUFFLE(high, high_z, 1, 3, 5, 7)}};
+  return {{FASCIA_SHUFFLE(low, low_z, 0, 2, 4, 6), FASCIA_SHUFFLE(low, low_z, 1, 3, 5, 7),
+           FASCIA_SHUFFLE(high, high_z, 0, 2, 4, 6), FASCIA_SHUFFLE(high, high_z, 1, 3, 5, 7)}};
 }
 // Quarters are named by constants: taken in a loop, compilers go through memory float by float.
 #if defined(__AVX512F__)
-#define FASCIA_QUARTER(part, j) __builtin_shufflevector(part, part, 4 * (j), 4 * (j) + 1, 4 * (j) + 2, 4 * (j) + 3)
+#define FASCIA_QUARTER(part, j) \
+  __builtin_shufflevector(part, part, 4 * (j), 4 * (j) + 1, 4 * (j) + 2, 4 * (j) + 3)
 #define FASCIA_EACH_QUARTER(what) what(0) what(1) what(2) what(3)
 #elif defined(__AVX2__)
-#define FASCIA_QUARTER(part, j) __builtin_shufflevector(part, part, 4 * (j), 4 * (j) + 1, 4 * (j) + 2, 4 * (j) + 3)
+#define FASCIA_QUARTER(part, j) \
+  __builtin_shufflevector(part, part, 4 * (j), 4 * (j) + 1, 4 * (j) + 2, 4 * (j) + 3)
 #define FASCIA_EACH_QUARTER(what) what(0) what(1)
 #else
 #define FASCIA_QUARTER(part, j) (part)
@@ -240,17 +288,19 @@ FASCIA_INLINE PartPlaces places_of(const Part& x, const Part& y, const Part& z, 
 FASCIA_INLINE void interleave(const Lanes3& value, const Lanes& fourth, float* to) {
   for (size_t p = 0; p < part_count; ++p, to += 4 * part_width) {
     const PartPlaces places = places_of(value.x.part[p], value.y.part[p], value.z.part[p], fourth.part[p]);
-#define FASCIA_WRITE(j)                                         \
-  store_quad(to + 16 * (j), FASCIA_QUARTER(places.quad[0], j));      \
-  store_quad(to + 16 * (j) + 4, FASCIA_QUARTER(places.quad[1], j));  \
-  store_quad(to + 16 * (j) + 8, FASCIA_QUARTER(places.quad[2], j));  \
+#define FASCIA_WRITE(j)                                             \
+  store_quad(to + 16 * (j), FASCIA_QUARTER(places.quad[0], j));     \
+  store_quad(to + 16 * (j) + 4, FASCIA_QUARTER(places.quad[1], j)); \
+  store_quad(to + 16 * (j) + 8, FASCIA_QUARTER(places.quad[2], j)); \
   store_quad(to + 16 * (j) + 12, FASCIA_QUARTER(places.quad[3], j));
     FASCIA_EACH_QUARTER(FASCIA_WRITE)
 #undef FASCIA_WRITE
   }
 }
 
-FASCIA_INLINE void interleave(const Lanes3& value, float* to) { interleave(value, splat(0.0F), to); }
+FASCIA_INLINE void interleave(const Lanes3& value, float* to) {
+  interleave(value, splat(0.0F), to);
+}
 
 /// Adds each lane's value to the place at base + at[lane], lane after lane: places may be named twice.
 FASCIA_INLINE void scatter_add(float* base, const int32_t* at, const Lanes3& value, const Lanes& fourth) {
@@ -266,20 +316,26 @@ FASCIA_INLINE void scatter_add(float* base, const int32_t* at, const Lanes3& val
 #undef FASCIA_ADD
   }
 }
-FASCIA_INLINE void scatter_add(float* base, const int32_t* at, const Lanes3& value) { scatter_add(base, at, value, splat(0.0F)); }
+FASCIA_INLINE void scatter_add(float* base, const int32_t* at, const Lanes3& value) {
+  scatter_add(base, at, value, splat(0.0F));
+}
 /// Four places one behind the other, and four floats, each four times.
 FASCIA_INLINE Lanes four_places(const float* base, const int32_t* at) {
   Lanes out;
 #if defined(__AVX512F__)
   typedef float Eight __attribute__((vector_size(32)));
-  const Eight low = __builtin_shufflevector(load_quad(base + at[0]), load_quad(base + at[1]), 0, 1, 2, 3, 4, 5, 6, 7);
-  const Eight high = __builtin_shufflevector(load_quad(base + at[2]), load_quad(base + at[3]), 0, 1, 2, 3, 4, 5, 6, 7);
+  const Eight low =
+      __builtin_shufflevector(load_quad(base + at[0]), load_quad(base + at[1]), 0, 1, 2, 3, 4, 5, 6, 7);
+  const Eight high =
+      __builtin_shufflevector(load_quad(base + at[2]), load_quad(base + at[3]), 0, 1, 2, 3, 4, 5, 6, 7);
   out.part[0] = __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
 #elif defined(__AVX2__)
   for (size_t p = 0; p < 2; ++p)
-    out.part[p] = __builtin_shufflevector(load_quad(base + at[2 * p]), load_quad(base + at[2 * p + 1]), 0, 1, 2, 3, 4, 5, 6, 7);
+    out.part[p] = __builtin_shufflevector(load_quad(base + at[2 * p]), load_quad(base + at[2 * p + 1]), 0, 1,
+                                          2, 3, 4, 5, 6, 7);
 #else
-  for (size_t p = 0; p < 4; ++p) out.part[p] = load_quad(base + at[p]);
+  for (size_t p = 0; p < 4; ++p)
+    out.part[p] = load_quad(base + at[p]);
 #endif
   return out;
 }

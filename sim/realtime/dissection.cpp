@@ -10,9 +10,11 @@ using Matrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
 constexpr size_t last_piece = 16;  // unknowns that are not worth cutting further
 
-const Vec3 directions[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {1, -1, 0}, {1, 0, 1}, {1, 0, -1}, {0, 1, 1}, {0, 1, -1}};
+const Vec3 directions[] = {{1, 0, 0}, {0, 1, 0},  {0, 0, 1}, {1, 1, 0}, {1, -1, 0},
+                           {1, 0, 1}, {1, 0, -1}, {0, 1, 1}, {0, 1, -1}};
 /// The fewest of two sides' nodes without which no edge joins them: by a greatest matching (König 1931).
-std::vector<uint32_t> fewest_between(const std::vector<uint32_t>& near, const std::vector<uint32_t>& far, const Matrix& matrix) {
+std::vector<uint32_t> fewest_between(const std::vector<uint32_t>& near, const std::vector<uint32_t>& far,
+                                     const Matrix& matrix) {
   std::vector<std::vector<uint32_t>> joined(near.size());
   for (uint32_t i = 0; i < near.size(); ++i)
     for (Matrix::InnerIterator e(matrix, static_cast<int>(near[i])); e; ++e) {
@@ -56,7 +58,8 @@ std::vector<uint32_t> fewest_between(const std::vector<uint32_t>& near, const st
 
 Dissection::Dissection(const Matrix& matrix, const Positions& places) {
   std::vector<uint32_t> all(static_cast<size_t>(matrix.rows()));
-  for (uint32_t i = 0; i < all.size(); ++i) all[i] = i;
+  for (uint32_t i = 0; i < all.size(); ++i)
+    all[i] = i;
   mark_.assign(all.size(), 0);
   order_.reserve(all.size());
   dissect(all, matrix, places);
@@ -86,9 +89,11 @@ void Dissection::dissect(std::vector<uint32_t>& piece, const Matrix& matrix, con
   std::vector<std::pair<double, uint32_t>> keyed(piece.size());
   const size_t middle = piece.size() / 2;
   for (const Vec3& direction : directions) {
-    for (size_t i = 0; i < piece.size(); ++i) keyed[i] = {direction.dot(places[piece[i]]), piece[i]};
+    for (size_t i = 0; i < piece.size(); ++i)
+      keyed[i] = {direction.dot(places[piece[i]]), piece[i]};
     std::nth_element(keyed.begin(), keyed.begin() + static_cast<std::ptrdiff_t>(middle), keyed.end());
-    for (size_t i = 0; i < keyed.size(); ++i) mark_[keyed[i].second] = i < middle ? 1 : 2;
+    for (size_t i = 0; i < keyed.size(); ++i)
+      mark_[keyed[i].second] = i < middle ? 1 : 2;
     const auto touches = [&](uint32_t node, uint8_t side) {
       for (Matrix::InnerIterator e(matrix, static_cast<int>(node)); e; ++e)
         if (mark_[static_cast<size_t>(e.col())] == side) return true;
@@ -100,15 +105,18 @@ void Dissection::dissect(std::vector<uint32_t>& piece, const Matrix& matrix, con
       (is_near ? cut.near : cut.far).push_back(node);
       if (touches(node, is_near ? 2 : 1)) (is_near ? cut.from_near : cut.from_far).push_back(node);
     }
-    for (const uint32_t node : piece) mark_[node] = 0;
+    for (const uint32_t node : piece)
+      mark_[node] = 0;
     if (best.near.empty() || cut.cost() < best.cost()) best = std::move(cut);
   }
   const std::vector<uint32_t> between = fewest_between(best.from_near, best.from_far, matrix);
-  for (const uint32_t node : between) mark_[node] = 1;
+  for (const uint32_t node : between)
+    mark_[node] = 1;
   const auto is_between = [this](uint32_t node) { return mark_[node] == 1; };
   std::erase_if(best.near, is_between);
   std::erase_if(best.far, is_between);
-  for (const uint32_t node : between) mark_[node] = 0;
+  for (const uint32_t node : between)
+    mark_[node] = 0;
   if (best.near.empty() || best.far.empty()) {  // everything touches everything
     eliminate(piece);
     return;
@@ -120,9 +128,11 @@ void Dissection::dissect(std::vector<uint32_t>& piece, const Matrix& matrix, con
 
 void Dissection::find_rows(const Matrix& matrix) {
   std::vector<uint32_t> position(order_.size()), front_of(order_.size());
-  for (uint32_t k = 0; k < order_.size(); ++k) position[order_[k]] = k;
+  for (uint32_t k = 0; k < order_.size(); ++k)
+    position[order_[k]] = k;
   for (uint32_t f = 0; f < fronts_.size(); ++f)
-    for (uint32_t c = 0; c < fronts_[f].width; ++c) front_of[fronts_[f].first + c] = f;
+    for (uint32_t c = 0; c < fronts_[f].width; ++c)
+      front_of[fronts_[f].first + c] = f;
   for (uint32_t f = 0; f < fronts_.size(); ++f) {
     Front& front = fronts_[f];  // holds its children's rows already
     const uint32_t end = front.first + front.width;
@@ -140,7 +150,8 @@ void Dissection::find_rows(const Matrix& matrix) {
 }
 
 /// Appends a front with its F.
-void PanelFactor::pack(const Dissection::Front& from, const Eigen::MatrixXd& matrix, std::vector<float>& values) {
+void PanelFactor::pack(const Dissection::Front& from, const Eigen::MatrixXd& matrix,
+                       std::vector<float>& values) {
   constexpr uint32_t wide = batch_width;
   const auto rows = static_cast<uint32_t>(matrix.rows());
   Panels::Front front;
@@ -155,7 +166,8 @@ void PanelFactor::pack(const Dissection::Front& from, const Eigen::MatrixXd& mat
   }
   for (uint32_t block = 0; block < front.blocks; ++block)
     for (uint32_t c = 0; c < front.columns(block); ++c)
-      for (uint32_t r = wide * block; r < wide * (block + 1); ++r) values.push_back(r < rows ? static_cast<float>(matrix(r, c)) : 0.0F);
+      for (uint32_t r = wide * block; r < wide * (block + 1); ++r)
+        values.push_back(r < rows ? static_cast<float>(matrix(r, c)) : 0.0F);
   scratch_ = std::max<size_t>(scratch_, std::max(3 * wide * front.blocks, 4 * front.width));
   fronts_.push_back(front);
 }
@@ -168,18 +180,22 @@ bool PanelFactor::compute(const Dissection& dissection, const Matrix& matrix) {
   rows_.clear();
   std::vector<float> values;
   std::vector<uint32_t> position(size_);
-  for (uint32_t k = 0; k < size_; ++k) position[order[k]] = k;
-  std::vector<Eigen::MatrixXd> left(fronts.size());       // what each front leaves to its parent
+  for (uint32_t k = 0; k < size_; ++k)
+    position[order[k]] = k;
+  std::vector<Eigen::MatrixXd> left(fronts.size());  // what each front leaves to its parent
   std::vector<std::vector<uint32_t>> children(fronts.size());
   for (uint32_t f = 0; f < fronts.size(); ++f)
     if (fronts[f].parent >= 0) children[static_cast<size_t>(fronts[f].parent)].push_back(f);
   std::vector<uint32_t> local(size_);
   for (size_t f = 0; f < fronts.size(); ++f) {
     const auto& front = fronts[f];
-    const auto width = static_cast<Eigen::Index>(front.width), below = static_cast<Eigen::Index>(front.rows.size());
+    const auto width = static_cast<Eigen::Index>(front.width),
+               below = static_cast<Eigen::Index>(front.rows.size());
     Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(width + below, width + below);
-    for (uint32_t c = 0; c < front.width; ++c) local[front.first + c] = c;
-    for (uint32_t r = 0; r < front.rows.size(); ++r) local[front.rows[r]] = front.width + r;
+    for (uint32_t c = 0; c < front.width; ++c)
+      local[front.first + c] = c;
+    for (uint32_t r = 0; r < front.rows.size(); ++r)
+      local[front.rows[r]] = front.width + r;
     for (uint32_t c = 0; c < front.width; ++c)
       for (Matrix::InnerIterator e(matrix, static_cast<int>(order[front.first + c])); e; ++e) {
         const uint32_t row = position[static_cast<size_t>(e.col())];
@@ -188,7 +204,8 @@ bool PanelFactor::compute(const Dissection& dissection, const Matrix& matrix) {
     for (const uint32_t child : children[f]) {
       const auto& rows = fronts[child].rows;
       for (uint32_t c = 0; c < rows.size(); ++c)
-        for (uint32_t r = c; r < rows.size(); ++r) dense(local[rows[r]], local[rows[c]]) += left[child](r, c);
+        for (uint32_t r = c; r < rows.size(); ++r)
+          dense(local[rows[r]], local[rows[c]]) += left[child](r, c);
       left[child].resize(0, 0);
     }
     auto diagonal = dense.topLeftCorner(width, width);
@@ -200,7 +217,8 @@ bool PanelFactor::compute(const Dissection& dissection, const Matrix& matrix) {
     left[f] = dense.bottomRightCorner(below, below);
 
     Eigen::MatrixXd whole(width + below, width);
-    whole.topRows(width) = diagonal.triangularView<Eigen::Lower>().solve(Eigen::MatrixXd::Identity(width, width));
+    whole.topRows(width) =
+        diagonal.triangularView<Eigen::Lower>().solve(Eigen::MatrixXd::Identity(width, width));
     whole.bottomRows(below).noalias() = -under * whole.topRows(width);
     pack(front, whole, values);
   }

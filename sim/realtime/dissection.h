@@ -11,8 +11,8 @@
 
 namespace fascia::sim::realtime {
 
-/// How a symmetric matrix over nodes in space is eliminated: nested dissection by planes (George 1973), every separator and
-/// every last piece a supernode whose columns are treated as dense.
+/// How a symmetric matrix over nodes in space is eliminated: nested dissection by planes (George 1973), every
+/// separator and every last piece a supernode whose columns are treated as dense.
 class Dissection {
  public:
   /// `matrix` square, full; `places` of its unknowns.
@@ -30,7 +30,8 @@ class Dissection {
   const std::vector<Front>& fronts() const { return fronts_; }  ///< children before parents
 
  private:
-  void dissect(std::vector<uint32_t>& piece, const Eigen::SparseMatrix<double, Eigen::RowMajor>& matrix, const Positions& places);
+  void dissect(std::vector<uint32_t>& piece, const Eigen::SparseMatrix<double, Eigen::RowMajor>& matrix,
+               const Positions& places);
   void eliminate(const std::vector<uint32_t>& columns);
   void find_rows(const Eigen::SparseMatrix<double, Eigen::RowMajor>& matrix);
 
@@ -39,17 +40,17 @@ class Dissection {
   std::vector<uint8_t> mark_;
 };
 
-/// The Cholesky factor of a matrix in an order of elimination, front by front in whole blocks of sixteen rows,
-/// single precision (computed in double). Diagonal parts are kept as their inverses.
+/// The Cholesky factor of a matrix in an order of elimination, front by front in whole blocks of sixteen
+/// rows, single precision (computed in double). Diagonal parts are kept as their inverses.
 class PanelFactor {
  public:
-  /// Factors `matrix`, which must have the pattern `dissection` was made for; false when it is not positive definite.
+  /// Factors `matrix`, which must have the pattern `dissection` was made for; false when it is not positive
+  /// definite.
   bool compute(const Dissection& dissection, const Eigen::SparseMatrix<double, Eigen::RowMajor>& matrix);
   Panels view() const { return {size_, fronts_.size(), fronts_.data(), rows_.data(), values_.data()}; }
   size_t entries() const { return values_.size(); }
   size_t columns() const { return size_; }
   size_t scratch() const { return scratch_; }  ///< floats that a solve needs to work in
-
 
  private:
   void pack(const Dissection::Front& from, const Eigen::MatrixXd& matrix, std::vector<float>& values);

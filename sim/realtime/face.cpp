@@ -10,10 +10,15 @@ namespace {
 /// Fields of distances rise by at most this much a metre: one, but for their grid.
 constexpr double steepest = 1.25;
 
-float f(double value) { return static_cast<float>(value); }
-Vec3 place_at(const float* list, int32_t at) { return {list[at], list[at + 1], list[at + 2]}; }
+float f(double value) {
+  return static_cast<float>(value);
+}
+Vec3 place_at(const float* list, int32_t at) {
+  return {list[at], list[at + 1], list[at + 2]};
+}
 void add_at(float* list, int32_t at, const Vec3& value) {
-  for (int axis = 0; axis < 3; ++axis) list[at + axis] += f(value[axis]);
+  for (int axis = 0; axis < 3; ++axis)
+    list[at + axis] += f(value[axis]);
 }
 
 }  // namespace
@@ -30,13 +35,22 @@ struct Face::Solve {
 };
 
 Face::Face(const Model& model, size_t channels)
-    : model_(&model), position_(model.places()), velocity_(model.places()), carried_(model.places()), last_direction_(model.unknown_floats()), trust_(model.unknown_floats() / 4),
-      facing_(model.face().contacts().facing_count()), reach_(model.face().contacts().bone_nodes().size()), excitations_(channels),
-      last_excitations_(channels), activations_(channels) {
+    : model_(&model),
+      position_(model.places()),
+      velocity_(model.places()),
+      carried_(model.places()),
+      last_direction_(model.unknown_floats()),
+      trust_(model.unknown_floats() / 4),
+      facing_(model.face().contacts().facing_count()),
+      reach_(model.face().contacts().bone_nodes().size()),
+      excitations_(channels),
+      last_excitations_(channels),
+      activations_(channels) {
   reset({});
 }
 
-void Face::place(const JawPose& jaw, std::span<const float> activations, Workspace& work, Driven& driven) const {
+void Face::place(const JawPose& jaw, std::span<const float> activations, Workspace& work,
+                 Driven& driven) const {
   driven = model_->driven(work);
   for (size_t c = 0; c < work.values.size() && c < activations.size(); ++c)
     work.values[c] = std::isfinite(activations[c]) ? activations[c] : 0.0F;
@@ -45,7 +59,8 @@ void Face::place(const JawPose& jaw, std::span<const float> activations, Workspa
 }
 
 void Face::fill_nodes(const float* x, Positions& nodes) const {
-  for (size_t i = 0; i < nodes.size(); ++i) nodes[i] = place_at(x, model_->slot_of(i));
+  for (size_t i = 0; i < nodes.size(); ++i)
+    nodes[i] = place_at(x, model_->slot_of(i));
 }
 
 /// Bones, the other lip, friction and touches: few nodes, one after the other.
@@ -63,7 +78,8 @@ double Face::contact_energy(Solve& solve, const float* x, float* gradient) {
     if (reach.free >= 0.0F && away.squaredNorm() < static_cast<double>(reach.free) * reach.free) continue;
     Vec3 slope;
     const double depth = contacts.bone_margins()[c] - contacts.bone_field(c).sample(local, slope);
-    for (int axis = 0; axis < 3; ++axis) reach.place[axis] = f(local[axis]);
+    for (int axis = 0; axis < 3; ++axis)
+      reach.place[axis] = f(local[axis]);
     // Outside its grid the field says nothing: one cell's width is safe to go before looking again.
     reach.free = std::isfinite(depth) ? f(std::max(0.0, -depth) / steepest) : 0.0F;
     if (!(depth > 0.0)) continue;
@@ -75,23 +91,28 @@ double Face::contact_energy(Solve& solve, const float* x, float* gradient) {
   for (const FacingPair& pair : facing_) {
     if (!pair.is_found()) continue;
     Vec3 gap = place_at(x, model_->slot_of(pair.node));
-    for (size_t k = 0; k < 3; ++k) gap -= pair.weights[static_cast<int>(k)] * place_at(x, model_->slot_of(pair.corners[k]));
+    for (size_t k = 0; k < 3; ++k)
+      gap -= pair.weights[static_cast<int>(k)] * place_at(x, model_->slot_of(pair.corners[k]));
     const double depth = pair.margin - pair.normal.dot(gap);
     if (depth <= 0.0) continue;
     const Vec3 push = (contacts.options().facing_stiffness * depth) * pair.normal;
     const auto stiffer = f(2.0 * contacts.options().facing_stiffness);
     gradient[model_->slot_of(pair.node) + 3] += stiffer;
-    for (size_t k = 0; k < 3; ++k) gradient[model_->slot_of(pair.corners[k]) + 3] += f(pair.weights[static_cast<int>(k)]) * stiffer;
+    for (size_t k = 0; k < 3; ++k)
+      gradient[model_->slot_of(pair.corners[k]) + 3] += f(pair.weights[static_cast<int>(k)]) * stiffer;
     energy += 0.5 * contacts.options().facing_stiffness * depth * depth;
     add_at(gradient, model_->slot_of(pair.node), -push);
-    for (size_t k = 0; k < 3; ++k) add_at(gradient, model_->slot_of(pair.corners[k]), pair.weights[static_cast<int>(k)] * push);
+    for (size_t k = 0; k < 3; ++k)
+      add_at(gradient, model_->slot_of(pair.corners[k]), pair.weights[static_cast<int>(k)] * push);
   }
   for (const Grip& grip : solve.grips) {
     Vec3 slip = place_at(x, model_->slot_of(grip.node)) - grip.anchor;
     const bool facing = grip.corners[0] != FacingPair::none;
-    for (size_t k = 0; facing && k < 3; ++k) slip -= grip.weights[static_cast<int>(k)] * place_at(x, model_->slot_of(grip.corners[k]));
+    for (size_t k = 0; facing && k < 3; ++k)
+      slip -= grip.weights[static_cast<int>(k)] * place_at(x, model_->slot_of(grip.corners[k]));
     const double along = grip.normal.dot(slip);
-    const Vec3 force = grip.stiffness * (slip - along * grip.normal) + (grip.normal_stiffness * along) * grip.normal;
+    const Vec3 force =
+        grip.stiffness * (slip - along * grip.normal) + (grip.normal_stiffness * along) * grip.normal;
     energy += 0.5 * force.dot(slip);
     add_at(gradient, model_->slot_of(grip.node), force);
     gradient[model_->slot_of(grip.node) + 3] += f(grip.stiffness + grip.normal_stiffness);
@@ -121,22 +142,26 @@ double Face::evaluate(Solve& solve, const float* x) {
     loops.subtract(solve.unknowns, w.moved.data());
     loops.multiply(model_->stiffness(), w.moved.data(), w.damped.data());
   }
-  return energy + loops.collect(solve.unknowns, w.moved.data(), w.damped.data(), w.packed.data(), w.answer.data());
+  return energy +
+         loops.collect(solve.unknowns, w.moved.data(), w.damped.data(), w.packed.data(), w.answer.data());
 }
 
-/// What is left to go along the stride before, by what it did to the gradient: the line search along it that was left out,
-/// finished, and what keeps the new direction from undoing it (Hestenes & Stiefel 1952). The preconditioner answers for x, y and z
-/// alike and so goes too short; nobody looks where this leads, so no more than once as far.
+/// What is left to go along the stride before, by what it did to the gradient: the line search along it that
+/// was left out, finished, and what keeps the new direction from undoing it (Hestenes & Stiefel 1952). The
+/// preconditioner answers for x, y and z alike and so goes too short; nobody looks where this leads, so no
+/// more than once as far.
 float Face::left_to_go(const Workspace& w) const {
   const size_t floats = model_->unknown_floats();
   const auto dot = model_->loops().dot;
-  const float *stride = w.steps[0].data(), *before = w.last_gradient.data(), *now = w.packed.data(), *direction = w.direction.data();
+  const float *stride = w.steps[0].data(), *before = w.last_gradient.data(), *now = w.packed.data(),
+              *direction = w.direction.data();
   const double slope = dot(stride, now, floats), curvature = slope - dot(stride, before, floats);
   const double answer = dot(direction, before, floats) - dot(direction, now, floats);
   return curvature > 0.0 ? f(std::clamp((answer - slope) / curvature, 0.0, 1.0)) : 0.0F;
 }
 
-/// As sim::minimise: quasi-Newton steps on the rest factor, with the last few changes of the gradient as corrections.
+/// As sim::minimise: quasi-Newton steps on the rest factor, with the last few changes of the gradient as
+/// corrections.
 MinimiseResult Face::minimise(Solve& solve, const MinimiseOptions& options, bool checks_last, float* x) {
   constexpr size_t history = Workspace::history;
   const Loops& loops = model_->loops();
@@ -146,7 +171,8 @@ MinimiseResult Face::minimise(Solve& solve, const MinimiseOptions& options, bool
   const auto go = [&](float length) {
     const float* direction = w.direction.data();
     for (size_t k = 0; k < slots.size(); ++k)
-      for (size_t axis = 0; axis < 3; ++axis) x[static_cast<size_t>(slots[k]) + axis] += length * direction[4 * k + axis];
+      for (size_t axis = 0; axis < 3; ++axis)
+        x[static_cast<size_t>(slots[k]) + axis] += length * direction[4 * k + axis];
   };
   MinimiseResult result;
   double curvatures[history] = {};
@@ -189,7 +215,8 @@ MinimiseResult Face::minimise(Solve& solve, const MinimiseOptions& options, bool
     float length = f(std::min(1.0, 0.02 / result.move));
     if (!checks_last) {
       float* const before = w.steps[0].data();
-      loops.stride({slots.size(), slots.data(), direction, before, iteration > 0 ? left_to_go(w) : 0.0F, last_direction_.data(), trust_.data(), x});
+      loops.stride({slots.size(), slots.data(), direction, before, iteration > 0 ? left_to_go(w) : 0.0F,
+                    last_direction_.data(), trust_.data(), x});
       if (iteration + 1 >= options.iterations) {
         result.iterations = iteration + 1;
         return result;
@@ -205,9 +232,11 @@ MinimiseResult Face::minimise(Solve& solve, const MinimiseOptions& options, bool
     bool fell = false;
     for (int halving = 0; halving < 16; ++halving) {
       trial = evaluate(solve, x);
-      // Where energies differ by less than their rounding, the slope tells (Hager & Zhang 2005, approximate Wolfe conditions).
+      // Where energies differ by less than their rounding, the slope tells (Hager & Zhang 2005, approximate
+      // Wolfe conditions).
       fell = trial <= value + 1e-4 * length * slope ||
-             (trial <= value + 1e-6 * std::abs(value) && std::abs(loops.dot(direction, w.packed.data(), floats)) <= 0.9 * std::abs(slope));
+             (trial <= value + 1e-6 * std::abs(value) &&
+              std::abs(loops.dot(direction, w.packed.data(), floats)) <= 0.9 * std::abs(slope));
       if (fell) break;
       go(-0.5F * length);
       length *= 0.5F;
@@ -230,8 +259,10 @@ MinimiseResult Face::minimise(Solve& solve, const MinimiseOptions& options, bool
     const double curvature = loops.dot(step, change, floats);
     if (curvature > 0.2 * length * std::abs(slope)) {
       curvatures[slot] = curvature;
-      if (count < history) ++count;
-      else first = (first + 1) % history;
+      if (count < history)
+        ++count;
+      else
+        first = (first + 1) % history;
     }
     value = trial;
   }
@@ -240,13 +271,21 @@ MinimiseResult Face::minimise(Solve& solve, const MinimiseOptions& options, bool
 MinimiseResult Face::static_pose(const Drive& drive, const PoseOptions& options, std::span<Vec3f> positions) {
   std::unique_ptr<Workspace> work = model_->borrow();
   const JawPose jaw = clamped(drive.jaw);
-  Solve solve{*work, {}, model_->pose_factor(), jaw_transform(model_->face().jaw(), jaw), drive.touches, model_->unknown_list(), {}};
+  Solve solve{*work,
+              {},
+              model_->pose_factor(),
+              jaw_transform(model_->face().jaw(), jaw),
+              drive.touches,
+              model_->unknown_list(),
+              {}};
   solve.unknowns.diagonal = model_->pose_diagonal();
-  for (int axis = 0; axis < 3; ++axis) solve.unknowns.acceleration[axis] = drive.acceleration.allFinite() ? f(drive.acceleration[axis]) : 0.0F;
+  for (int axis = 0; axis < 3; ++axis)
+    solve.unknowns.acceleration[axis] = drive.acceleration.allFinite() ? f(drive.acceleration[axis]) : 0.0F;
   place(jaw, drive.activations, *work, solve.driven);
   float* const x = work->start.data();
   std::copy(work->carried.data(), work->carried.data() + model_->places(), x);
-  if (options.from_last_pose && pose_offset_.size() > 0) model_->loops().add(1.0F, pose_offset_.data(), x, model_->places());
+  if (options.from_last_pose && pose_offset_.size() > 0)
+    model_->loops().add(1.0F, pose_offset_.data(), x, model_->places());
   const Contacts& contacts = model_->face().contacts();
   fill_nodes(x, work->nodes);
   contacts.find_facing(work->nodes.data(), facing_, work->facing_search);
@@ -257,10 +296,12 @@ MinimiseResult Face::static_pose(const Drive& drive, const PoseOptions& options,
     result.iterations += before;
     if (facing_.empty()) break;
     fill_nodes(x, work->nodes);
-    if (contacts.find_facing(work->nodes.data(), facing_, work->facing_search) < options.contact_tolerance) break;
+    if (contacts.find_facing(work->nodes.data(), facing_, work->facing_search) < options.contact_tolerance)
+      break;
   }
   if (pose_offset_.size() == 0) pose_offset_ = Floats(model_->places());
-  for (size_t i = 0; i < model_->places(); ++i) pose_offset_.data()[i] = x[i] - work->carried.data()[i];
+  for (size_t i = 0; i < model_->places(); ++i)
+    pose_offset_.data()[i] = x[i] - work->carried.data()[i];
   for (size_t i = 0; i < positions.size() && i < model_->face().rest().size(); ++i)
     positions[i] = place_at(x, model_->slot_of(i)).cast<float>();
   model_->give_back(std::move(work));
@@ -289,7 +330,8 @@ void Face::reset(const Drive& drive) {
 MinimiseResult Face::settle(const Drive& drive, const PoseOptions& options) {
   const MinimiseResult result = static_pose(drive, options, {});
   reset(drive);
-  for (size_t c = 0; c < activations_.size(); ++c) activations_[c] = drive.activation(c);
+  for (size_t c = 0; c < activations_.size(); ++c)
+    activations_[c] = drive.activation(c);
   last_excitations_ = activations_;
   last_acceleration_ = drive.acceleration;
   model_->loops().add(1.0F, pose_offset_.data(), position_.data(), model_->places());
@@ -306,10 +348,14 @@ MinimiseResult Face::substep(double share, const Drive& drive, const StepOptions
   follow(options.dynamics, h, excitations_, activations_);
   const auto mix = [share](float from, float to) { return from + f(share) * (to - from); };
   const JawPose goal = clamped(drive.jaw);
-  const JawPose jaw{mix(last_jaw_.open, goal.open), mix(last_jaw_.forward, goal.forward), mix(last_jaw_.lateral, goal.lateral)};
-  Solve solve{work, {}, model_->step_factor(), jaw_transform(face.jaw(), jaw), drive.touches, model_->unknown_list(), {}};
+  const JawPose jaw{mix(last_jaw_.open, goal.open), mix(last_jaw_.forward, goal.forward),
+                    mix(last_jaw_.lateral, goal.lateral)};
+  Solve solve{
+      work, {}, model_->step_factor(), jaw_transform(face.jaw(), jaw), drive.touches, model_->unknown_list(),
+      {}};
   const Vec3 acceleration = last_acceleration_ + share * (drive.acceleration - last_acceleration_);
-  for (int axis = 0; axis < 3; ++axis) solve.unknowns.acceleration[axis] = f(acceleration[axis]);
+  for (int axis = 0; axis < 3; ++axis)
+    solve.unknowns.acceleration[axis] = f(acceleration[axis]);
   place(jaw, activations_, work, solve.driven);
 
   const Contacts& contacts = face.contacts();
@@ -322,10 +368,14 @@ MinimiseResult Face::substep(double share, const Drive& drive, const StepOptions
       work.nodes[node] = place_at(x, at);
       work.nodes_before[node] = work.nodes[node] - h * place_at(velocity, at);
     };
-    for (const uint32_t node : contacts.soft_nodes()) bring(node);
-    // Who faces whom changes slowly, and is known from afar: after the first time, a quarter of them a substep.
-    if (turn_ == 0) contacts.find_facing(work.nodes.data(), facing_, work.facing_search);
-    else contacts.find_facing(work.nodes.data(), facing_, work.facing_search, turn_ % 4, 4);
+    for (const uint32_t node : contacts.soft_nodes())
+      bring(node);
+    // Who faces whom changes slowly, and is known from afar: after the first time, a quarter of them a
+    // substep.
+    if (turn_ == 0)
+      contacts.find_facing(work.nodes.data(), facing_, work.facing_search);
+    else
+      contacts.find_facing(work.nodes.data(), facing_, work.facing_search, turn_ % 4, 4);
     ++turn_;
     if (contacts.options().friction > 0.0 || contacts.options().stickiness > 0.0) {
       RigidTransform turn;
@@ -338,7 +388,8 @@ MinimiseResult Face::substep(double share, const Drive& drive, const StepOptions
           work.near_bones.push_back(c);
           bring(contacts.bone_nodes()[c]);
         }
-      const size_t grips = contacts.find_grips(last_mandible_, turn, facing_, work.nodes_before.data(), work.nodes.data(), work.grips, &work.near_bones);
+      const size_t grips = contacts.find_grips(last_mandible_, turn, facing_, work.nodes_before.data(),
+                                               work.nodes.data(), work.grips, &work.near_bones);
       solve.grips = std::span(work.grips).first(grips);
     }
   }
@@ -356,12 +407,17 @@ MinimiseResult Face::substep(double share, const Drive& drive, const StepOptions
   std::copy(carried, carried + model_->places(), work.begun_places.data());
   const auto& slots = model_->slots();
   const float seconds = f(h);
-  model_->loops().set_out({slots.size(), slots.data(), velocity, carried, carried_.data(), trust_.data(), seconds, x, work.ballistic.data(), work.begun.data(), work.begun_places.data()});
-  for (const int32_t at : model_->prescribed_slots()) std::copy(carried + at, carried + at + 4, x + at);
+  model_->loops().set_out({slots.size(), slots.data(), velocity, carried, carried_.data(), trust_.data(),
+                           seconds, x, work.ballistic.data(), work.begun.data(), work.begun_places.data()});
+  for (const int32_t at : model_->prescribed_slots())
+    std::copy(carried + at, carried + at + 4, x + at);
   std::copy(carried, carried + model_->places(), carried_.data());
-  const MinimiseResult result = minimise(solve, {options.iterations, options.tolerance}, options.checks_last, x);
-  for (int more = 0; !turn_back(work, x) && more < 4; ++more) minimise(solve, {2, options.tolerance}, false, x);
-  for (size_t i = 0; i < model_->places(); ++i) velocity[i] = (x[i] - before[i]) / seconds;
+  const MinimiseResult result =
+      minimise(solve, {options.iterations, options.tolerance}, options.checks_last, x);
+  for (int more = 0; !turn_back(work, x) && more < 4; ++more)
+    minimise(solve, {2, options.tolerance}, false, x);
+  for (size_t i = 0; i < model_->places(); ++i)
+    velocity[i] = (x[i] - before[i]) / seconds;
   return result;
 }
 
@@ -391,7 +447,8 @@ StepResult Face::step(double seconds, const Drive& drive, const StepOptions& opt
   const int substeps = std::min(static_cast<int>(due / h + 1e-9), options.largest_number_of_substeps);
   for (int k = 0; k < substeps && result.status == StepStatus::done; ++k) {
     // The drive at this substep's own time: before it lie last frame's left-over and k whole substeps.
-    const MinimiseResult solved = substep(std::clamp(((k + 1) * h - left_over_) / seconds, 0.0, 1.0), drive, options, *work);
+    const MinimiseResult solved =
+        substep(std::clamp(((k + 1) * h - left_over_) / seconds, 0.0, 1.0), drive, options, *work);
     ++result.substeps;
     result.iterations += solved.iterations;
     result.move = solved.move;
@@ -403,27 +460,33 @@ StepResult Face::step(double seconds, const Drive& drive, const StepOptions& opt
     return result;
   }
   left_over_ = std::clamp(due - substeps * h, 0.0, h);
-  for (size_t c = 0; c < last_excitations_.size(); ++c) last_excitations_[c] = drive.activation(c);
+  for (size_t c = 0; c < last_excitations_.size(); ++c)
+    last_excitations_[c] = drive.activation(c);
   last_jaw_ = clamped(drive.jaw);
   last_acceleration_ = drive.acceleration;
   return result;
 }
 
 void Face::displacements(std::span<Vec3f> out) const {
-  const float *x = position_.data(), *velocity = velocity_.data(), *rest = model_->packed().rest, coast = f(left_over_);
+  const float *x = position_.data(), *velocity = velocity_.data(), *rest = model_->packed().rest,
+              coast = f(left_over_);
   for (size_t i = 0; i < out.size() && i < model_->face().rest().size(); ++i) {
     const auto at = static_cast<size_t>(model_->slot_of(i));
-    for (size_t axis = 0; axis < 3; ++axis) out[i][static_cast<int>(axis)] = x[at + axis] - rest[at + axis] + coast * velocity[at + axis];
+    for (size_t axis = 0; axis < 3; ++axis)
+      out[i][static_cast<int>(axis)] = x[at + axis] - rest[at + axis] + coast * velocity[at + axis];
   }
 }
 
 void Face::positions(std::span<Vec3f> out) const {
   displacements(out);
-  for (size_t i = 0; i < out.size() && i < model_->face().rest().size(); ++i) out[i] += model_->face().lattice().rest[i];
+  for (size_t i = 0; i < out.size() && i < model_->face().rest().size(); ++i)
+    out[i] += model_->face().lattice().rest[i];
 }
 
 size_t Face::memory() const {
-  return sizeof *this + sizeof(float) * (position_.size() + velocity_.size() + carried_.size() + last_direction_.size() + trust_.size() + pose_offset_.size() + 3 * activations_.size()) +
+  return sizeof *this +
+         sizeof(float) * (position_.size() + velocity_.size() + carried_.size() + last_direction_.size() +
+                          trust_.size() + pose_offset_.size() + 3 * activations_.size()) +
          sizeof(FacingPair) * facing_.size() + sizeof(BoneReach) * reach_.size();
 }
 

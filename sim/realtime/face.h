@@ -11,17 +11,19 @@ namespace fascia::sim::realtime {
 /// How time passes for a face in real time.
 struct StepOptions {
   ActivationDynamics dynamics;
-  int iterations = 2;                   ///< at most, of each substep
-  double tolerance = 3e-7;              ///< metres: largest move of a node still wanted when a substep ends earlier
-  bool checks_last = false;             ///< whether the last iteration's energy is looked at too; costs as much as one more
+  int iterations = 2;       ///< at most, of each substep
+  double tolerance = 3e-7;  ///< metres: largest move of a node still wanted when a substep ends earlier
+  bool checks_last =
+      false;  ///< whether the last iteration's energy is looked at too; costs as much as one more
   int largest_number_of_substeps = 16;  ///< a longer frame loses the rest of its time
   double largest_displacement = 0.15;   ///< metres: beyond it the watchdog calls the face diverged
 };
 
 /// One face on a model laid out for the loops: what sim::Face does, on the same energies, many times faster.
 ///
-/// Positions are single precision and work memory is borrowed from the model, so a face is small. Not for two threads at once;
-/// different faces are free. Nothing but the constructor and the first use of borrowed memory allocates; nothing throws.
+/// Positions are single precision and work memory is borrowed from the model, so a face is small. Not for two
+/// threads at once; different faces are free. Nothing but the constructor and the first use of borrowed
+/// memory allocates; nothing throws.
 class Face {
  public:
   /// `model` must be valid and outlive the face; `channels` is how many activations it listens to.
@@ -49,8 +51,8 @@ class Face {
   float left_to_go(const Workspace& work) const;
   MinimiseResult minimise(Solve& solve, const MinimiseOptions& options, bool checks_last, float* x);
   MinimiseResult substep(double share, const Drive& drive, const StepOptions& options, Workspace& work);
-  /// Takes the nodes of prisms that a substep of few iterations has turned inside out back towards where it began; false when
-  /// some are left.
+  /// Takes the nodes of prisms that a substep of few iterations has turned inside out back towards where it
+  /// began; false when some are left.
   bool turn_back(Workspace& work, float* x) const;
   /// False when a prism was not upright; its nodes are then taken back if that helps, and marked.
   bool is_upright(Workspace& work, size_t layer, size_t triangle, float* x) const;

@@ -5,22 +5,28 @@
 namespace fascia::sim::realtime {
 namespace {
 
-constexpr double least = 0.01;  // of a prism's volume at rest, that is left to it
-constexpr float touched = 1e30F; // stiffness that marks nodes taken back
-constexpr int passes = 24;      // over neighbours that a node's way back may turn in their stead
+constexpr double least = 0.01;    // of a prism's volume at rest, that is left to it
+constexpr float touched = 1e30F;  // stiffness that marks nodes taken back
+constexpr int passes = 24;        // over neighbours that a node's way back may turn in their stead
 
-float f(double value) { return static_cast<float>(value); }
-Vec3 place_at(const float* list, size_t at) { return {list[at], list[at + 1], list[at + 2]}; }
+float f(double value) {
+  return static_cast<float>(value);
+}
+Vec3 place_at(const float* list, size_t at) {
+  return {list[at], list[at + 1], list[at + 2]};
+}
 
 /// A prism on its way through one substep.
 struct Way {
-  std::array<Vec3, 6> now, back, corners;  ///< where it is, where it was but for its bones' mean motion, and a place between
+  std::array<Vec3, 6> now, back,
+      corners;  ///< where it is, where it was but for its bones' mean motion, and a place between
 
   /// Goes back as far as it must for a volume of `room`; false when that is not to be had.
   bool go_back(double room) {
     constexpr double shares[] = {0.5, 0.25, 0.125, 0.0};
     for (const double share : shares) {
-      for (size_t k = 0; k < 6; ++k) corners[k] = back[k] + share * (now[k] - back[k]);
+      for (size_t k = 0; k < 6; ++k)
+        corners[k] = back[k] + share * (now[k] - back[k]);
       if (volume() > room) return true;
     }
     return false;
@@ -43,18 +49,23 @@ bool Face::is_upright(Workspace& work, size_t layer, size_t triangle, float* x) 
     way.now[k] = way.corners[k] = place_at(x, at[k]);
   }
   if (way.volume() > room) return true;
-  // Carried along as one it keeps the volume it had, or has that of its bones alone; nodes on bones stay where they are.
+  // Carried along as one it keeps the volume it had, or has that of its bones alone; nodes on bones stay
+  // where they are.
   const auto go_back = [&](const float* from, const float* to, const float* shape) {
     Vec3 shift = Vec3::Zero();
-    for (const size_t slot : at) shift += (place_at(to, slot) - place_at(from, slot)) / 6.0;
-    for (size_t k = 0; k < 6; ++k) way.back[k] = face.prescribed(prism.nodes[k]) ? way.now[k] : Vec3(place_at(shape, at[k]) + shift);
+    for (const size_t slot : at)
+      shift += (place_at(to, slot) - place_at(from, slot)) / 6.0;
+    for (size_t k = 0; k < 6; ++k)
+      way.back[k] = face.prescribed(prism.nodes[k]) ? way.now[k] : Vec3(place_at(shape, at[k]) + shift);
     return way.go_back(room);
   };
   const float* const before = work.start.data();
-  const bool goes = go_back(before, work.begun_places.data(), before) || go_back(work.carried.data(), x, work.carried.data());
+  const bool goes = go_back(before, work.begun_places.data(), before) ||
+                    go_back(work.carried.data(), x, work.carried.data());
   for (size_t k = 0; k < 6; ++k) {
     work.gradient.data()[at[k] + 3] = touched;
-    for (size_t axis = 0; goes && axis < 3; ++axis) x[at[k] + axis] = f(way.corners[k][static_cast<int>(axis)]);
+    for (size_t axis = 0; goes && axis < 3; ++axis)
+      x[at[k] + axis] = f(way.corners[k][static_cast<int>(axis)]);
   }
   return false;
 }
@@ -66,7 +77,8 @@ bool Face::turn_back(Workspace& work, float* x) const {
     float shares[2 * batch_width];
     model_->loops().shares_left(model_->packed(), b, x, shares);
     for (size_t i = 0; i < 2 * batch_width; ++i)
-      if (const size_t t = model_->triangle_at(b, i % batch_width); !(shares[i] > 1.5F * f(least)) && t < triangles.size())
+      if (const size_t t = model_->triangle_at(b, i % batch_width);
+          !(shares[i] > 1.5F * f(least)) && t < triangles.size())
         all_upright = is_upright(work, i / batch_width, t, x) && all_upright;
   }
   // Nodes taken back may have turned their neighbours.
@@ -76,7 +88,9 @@ bool Face::turn_back(Workspace& work, float* x) const {
       for (size_t layer = 0; layer < 2; ++layer) {
         bool is_near = false;
         for (const uint32_t column : triangles[t])
-          for (size_t k = 0; k < 2; ++k) is_near = is_near || work.gradient.data()[16 * static_cast<size_t>(column) + 4 * (layer + k) + 3] == touched;
+          for (size_t k = 0; k < 2; ++k)
+            is_near = is_near ||
+                      work.gradient.data()[16 * static_cast<size_t>(column) + 4 * (layer + k) + 3] == touched;
         if (is_near) all_upright = is_upright(work, layer, t, x) && all_upright;
       }
   }

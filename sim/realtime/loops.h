@@ -1,5 +1,5 @@
-// The loops of a face, included once by each of the sources that are compiled for one vector unit (see sim/lanes/lanes.h), which
-// define FASCIA_LOOPS. Everything else here is local to the including source.
+// The loops of a face, included once by each of the sources that are compiled for one vector unit (see
+// sim/lanes/lanes.h), which define FASCIA_LOOPS. Everything else here is local to the including source.
 
 #include "sim/realtime/energy_loops.h"
 #include "sim/realtime/place_loops.h"
@@ -9,7 +9,8 @@
 namespace fascia::sim::realtime {
 
 const Loops& FASCIA_LOOPS() {
-  static constexpr Loops loops{place, total_energy, shares_left, multiply, subtract, collect, scale, solve, stride, set_out, dot_of, add, largest};
+  static constexpr Loops loops{place, total_energy, shares_left, multiply, subtract, collect, scale,
+                               solve, stride,       set_out,     dot_of,   add,      largest};
   return loops;
 }
 

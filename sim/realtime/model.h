@@ -15,19 +15,20 @@ namespace fascia::sim::realtime {
 /// What a solve needs of memory beside a face's own state; handed from face to face.
 struct Workspace {
   static constexpr size_t history = 6;
-  Floats carried, start, begun_places, gradient, tether_normals, carrier_pulls, fibre_scratch;      // places and batches
+  Floats carried, start, begun_places, gradient, tether_normals, carrier_pulls,
+      fibre_scratch;  // places and batches
   Floats solve_scratch;
-  Floats packed, direction, moved, damped, last_gradient, begun, ballistic, answer;    // unknowns
-  std::vector<Floats> steps, changes;                                                  // `history` of unknowns
-  Positions nodes, nodes_before;                                                       // #nodes, for contact
-  std::vector<float> values;                                                           // by channel
+  Floats packed, direction, moved, damped, last_gradient, begun, ballistic, answer;  // unknowns
+  std::vector<Floats> steps, changes;                                                // `history` of unknowns
+  Positions nodes, nodes_before;                                                     // #nodes, for contact
+  std::vector<float> values;                                                         // by channel
   std::vector<Grip> grips;
   FacingSearch facing_search;
   std::vector<uint32_t> near_bones;  // contacts that may touch
 };
 
-/// A face model laid out for the loops: the same energies, in single precision, with factors of its own. Immutable but for
-/// the workspaces it lends, so any number of faces and threads may use one.
+/// A face model laid out for the loops: the same energies, in single precision, with factors of its own.
+/// Immutable but for the workspaces it lends, so any number of faces and threads may use one.
 class Model {
  public:
   /// `face` must be valid and outlive this.
@@ -38,16 +39,20 @@ class Model {
   const Loops& loops() const { return *loops_; }
   size_t places() const { return packed_.places; }  ///< floats of a list of places
   size_t unknowns() const { return slots_.size(); }
-  size_t unknown_floats() const { return unknown_floats_; }              ///< of a list of unknowns
-  const std::vector<int32_t>& slots() const { return slots_; }           ///< of each unknown in the factors' order
-  const std::vector<int32_t>& prescribed_slots() const { return prescribed_slots_; }  ///< of nodes that go with their bones alone
+  size_t unknown_floats() const { return unknown_floats_; }     ///< of a list of unknowns
+  const std::vector<int32_t>& slots() const { return slots_; }  ///< of each unknown in the factors' order
+  const std::vector<int32_t>& prescribed_slots() const {
+    return prescribed_slots_;
+  }  ///< of nodes that go with their bones alone
   int32_t slot_of(size_t node) const {
     const size_t columns = face_->lattice().columns;
     return static_cast<int32_t>(16 * (node % columns) + 4 * (node / columns));
   }
   Panels pose_factor() const { return pose_factor_.view(); }
   Panels step_factor() const { return step_factor_.view(); }
-  const float* pose_diagonal() const { return pose_diagonal_.data(); }   ///< of the factored matrices, each unknown's
+  const float* pose_diagonal() const {
+    return pose_diagonal_.data();
+  }  ///< of the factored matrices, each unknown's
   const float* step_diagonal() const { return step_diagonal_.data(); }
   SparseRows stiffness() const { return {slots_.size(), begin_.data(), column_.data(), value_.data()}; }
   Unknowns unknown_list() const {
@@ -58,7 +63,8 @@ class Model {
     list.rest = packed_.rest;
     return list;
   }
-  /// Triangles of columns as they lie in the batches, lane after lane: element of batch b and lane l, or one past the last.
+  /// Triangles of columns as they lie in the batches, lane after lane: element of batch b and lane l, or one
+  /// past the last.
   size_t triangle_at(size_t batch, size_t lane) const { return lane * packed_.triangle_batches + batch; }
   size_t factor_entries() const { return pose_factor_.entries(); }
   bool valid() const { return valid_; }

@@ -1,11 +1,12 @@
 #pragma once
 
-// What the loops of a face work on: plain numbers only, so that no inline function of a library is compiled for a machine that
-// may not be there.
+// What the loops of a face work on: plain numbers only, so that no inline function of a library is compiled
+// for a machine that may not be there.
 //
-// A place is four floats (x, y, z, nothing). The places of a column stand together on one cache line, skin, SMAS, inner layer and
-// an empty one: `at` in the lists below is 16 * column + 4 * layer. Elements are in batches of sixteen, each number of a batch sixteen
-// floats in a row; the last batch is filled up with elements without stiffness.
+// A place is four floats (x, y, z, nothing). The places of a column stand together on one cache line, skin,
+// SMAS, inner layer and an empty one: `at` in the lists below is 16 * column + 4 * layer. Elements are in
+// batches of sixteen, each number of a batch sixteen floats in a row; the last batch is filled up with
+// elements without stiffness.
 
 #include <cstddef>
 #include <cstdint>
@@ -30,7 +31,8 @@ struct alignas(64) TriangleBatch {
   PrismBatch prism[2];
 };
 struct alignas(64) HingeBatch {
-  Sixteen weight[3];  ///< of the edge's second end and the opposite corners; the first's is what lacks to a sum of zero
+  Sixteen weight[3];  ///< of the edge's second end and the opposite corners; the first's is what lacks to a
+                      ///< sum of zero
   Sixteen stiffness, bend, scale_a, scale_b;
 };
 struct alignas(64) SpringBatch {
@@ -93,29 +95,32 @@ struct Packed {
   const FibreBatch* fibres;
   const FibrePointBatch* fibre_points;
   const PressureBatch* pressures;
-  size_t triangle_batches, edge_batches, spring_batches, tether_batches, carrier_batches, globe_batches, fibre_batches, pressure_batches;
-  size_t places;          ///< 4 * columns
-  const float* rest;      ///< places
-  const float* balance;   ///< places: gradient at rest; null while it is being found
-  const float* jaw_share; ///< #places, one float each: how far the mandible carries it
-  float crush_begin, crush_end, turn_begin, turn_end, segment_rounding, fold_softness;  ///< see sim/energies.h
+  size_t triangle_batches, edge_batches, spring_batches, tether_batches, carrier_batches, globe_batches,
+      fibre_batches, pressure_batches;
+  size_t places;           ///< 4 * columns
+  const float* rest;       ///< places
+  const float* balance;    ///< places: gradient at rest; null while it is being found
+  const float* jaw_share;  ///< #places, one float each: how far the mandible carries it
+  float crush_begin, crush_end, turn_begin, turn_end, segment_rounding,
+      fold_softness;  ///< see sim/energies.h
 };
 
 /// Where bones and drive stand for a solve.
 struct Driven {
-  const float* values;       ///< by channel
+  const float* values;  ///< by channel
   float jaw_origin[3], jaw_up[3], jaw_lateral[3];
-  float turn_open, turn_lateral;  ///< radians at share 1: about lateral, then about up
-  float glide[3];                 ///< at share 1
+  float turn_open, turn_lateral;              ///< radians at share 1: about lateral, then about up
+  float glide[3];                             ///< at share 1
   float jaw_rotation[9], jaw_translation[3];  ///< of the mandible itself, rows
   bool jaw_at_rest;
-  float* carried;            ///< places: where each goes with its bones
-  float* tether_normals;     ///< 3 x 16 a batch
-  float* carrier_pulls;      ///< 3 x 16 a batch
-  float* fibre_scratch;      ///< 3 x 16 a point of the longest batch
+  float* carried;         ///< places: where each goes with its bones
+  float* tether_normals;  ///< 3 x 16 a batch
+  float* carrier_pulls;   ///< 3 x 16 a batch
+  float* fibre_scratch;   ///< 3 x 16 a point of the longest batch
 };
 
-/// A matrix over unknowns that x, y and z share, rows of 4-float places. Rows are filled up to a multiple of four entries.
+/// A matrix over unknowns that x, y and z share, rows of 4-float places. Rows are filled up to a multiple of
+/// four entries.
 struct SparseRows {
   size_t size;
   const uint32_t* begin;  ///< size + 1
@@ -123,14 +128,16 @@ struct SparseRows {
   const float* value;
 };
 
-/// A Cholesky factor by fronts, see dissection.h. Of a front with the factor's diagonal part A and part B below it stands
-/// F = (A^-1; -B A^-1), so that going forward is one product with F and going back one with its transpose.
+/// A Cholesky factor by fronts, see dissection.h. Of a front with the factor's diagonal part A and part B
+/// below it stands F = (A^-1; -B A^-1), so that going forward is one product with F and going back one with
+/// its transpose.
 struct Panels {
   struct Front {
     uint32_t first, width;  ///< its unknowns
     uint32_t blocks;        ///< of sixteen rows of F
     uint32_t rows;          ///< into `row`: 16 * blocks, its own first
-    uint32_t values;        ///< into `value`: block after block by columns, sixteen floats each; columns after a block's last own row are left out
+    uint32_t values;  ///< into `value`: block after block by columns, sixteen floats each; columns after a
+                      ///< block's last own row are left out
     uint32_t columns(uint32_t block) const {
       const auto last = static_cast<uint32_t>(batch_width) * (block + 1);
       return last < width ? last : width;
@@ -142,28 +149,29 @@ struct Panels {
   const float* value;
 };
 
-/// What a solve asks for and what holds it back: unknowns by their places, with the forces that act on each alone.
+/// What a solve asks for and what holds it back: unknowns by their places, with the forces that act on each
+/// alone.
 struct Unknowns {
   size_t count;
-  const int32_t* slot;    ///< of each, into places
+  const int32_t* slot;  ///< of each, into places
   const float* mass;
-  const float* diagonal;  ///< of the factored matrix
+  const float* diagonal;             ///< of the factored matrix
   const float *rest, *x, *gradient;  ///< places
   const float *ballistic, *begun;    ///< by unknown: where inertia, where bones alone would bring it
   float acceleration[3];
-  float per_mass, drag, stiff;       ///< 1 / h^2 and dampings over h; all 0 in a static pose
+  float per_mass, drag, stiff;  ///< 1 / h^2 and dampings over h; all 0 in a static pose
 };
 
 /// One step along a direction whose outcome is not looked at.
 struct Stride {
-  size_t count;           ///< unknowns
-  const int32_t* slot;    ///< of each, into places
-  float* direction;       ///< 4 an unknown; leaves as it was gone
-  const float* before;    ///< the stride before, gone on with `onward` times where a node can be trusted
+  size_t count;         ///< unknowns
+  const int32_t* slot;  ///< of each, into places
+  float* direction;     ///< 4 an unknown; leaves as it was gone
+  const float* before;  ///< the stride before, gone on with `onward` times where a node can be trusted
   float onward;
-  float* last;            ///< 4 an unknown: each node's last stride, of whatever solve
-  float* trust;           ///< of each unknown, 0.02 to 1: its share of a stride; less where it keeps turning back
-  float* x;               ///< places
+  float* last;   ///< 4 an unknown: each node's last stride, of whatever solve
+  float* trust;  ///< of each unknown, 0.02 to 1: its share of a stride; less where it keeps turning back
+  float* x;      ///< places
 };
 
 /// Where a step of time begins.
@@ -172,37 +180,43 @@ struct Outset {
   const int32_t* slot;
   const float *velocity, *carried, *carried_before, *trust;
   float seconds;
-  float* x;                        ///< places that unknowns leave for the first guess
-  float *ballistic, *begun;        ///< by unknown
-  float* begun_places;             ///< as `begun`, by place
+  float* x;                  ///< places that unknowns leave for the first guess
+  float *ballistic, *begun;  ///< by unknown
+  float* begun_places;       ///< as `begun`, by place
 };
 
 struct Loops {
   /// Moves carried places, tether normals and carrier pulls.
   void (*place)(const Packed&, const Driven&);
-  /// Energy of everything but contact with bones and lips at `x` (places), joules; writes the gradient (places), and in each
-  /// place's fourth float by how much it is stiffer than at rest, newton per metre: where walls stand and springs have stiffened.
+  /// Energy of everything but contact with bones and lips at `x` (places), joules; writes the gradient
+  /// (places), and in each place's fourth float by how much it is stiffer than at rest, newton per metre:
+  /// where walls stand and springs have stiffened.
   double (*energy)(const Packed&, const Driven&, const float* x, float* gradient);
-  /// What is left of the volume of a batch's prisms at `x`, as shares of that at rest: 16 outer ones, then 16 inner ones.
+  /// What is left of the volume of a batch's prisms at `x`, as shares of that at rest: 16 outer ones, then 16
+  /// inner ones.
   void (*shares_left)(const Packed&, size_t batch, const float* x, float* shares);
   /// out = matrix * x over unknowns.
   void (*multiply)(const SparseRows&, const float* x, float* out);
   /// What unknowns have moved from where bones alone would bring them.
   void (*subtract)(const Unknowns&, float* moved);
-  /// Gradient over unknowns with inertia, damping and acceleration, whose energy is returned. `answer`: S of a step S P^-1 S with
-  /// S^2 = p / (p + more), by which a node answers less where it is stiffer than the factor knows; one a float of `packed`.
+  /// Gradient over unknowns with inertia, damping and acceleration, whose energy is returned. `answer`: S of
+  /// a step S P^-1 S with S^2 = p / (p + more), by which a node answers less where it is stiffer than the
+  /// factor knows; one a float of `packed`.
   double (*collect)(const Unknowns&, const float* moved, const float* damped, float* packed, float* answer);
   /// list *= factors.
   void (*scale)(const float* factors, float* list, size_t count);
-  /// Solves in place over unknowns (4 x (size + 1) floats, the last place of no meaning). `scratch` as PanelFactor::scratch says.
+  /// Solves in place over unknowns (4 x (size + 1) floats, the last place of no meaning). `scratch` as
+  /// PanelFactor::scratch says.
   void (*solve)(const Panels&, float* values, float* scratch);
-  /// Goes along a direction, safe to go unseen: no node farther than a substep's largest sensible motion, and where a node keeps
-  /// turning back it has been going too far (as in Riedmiller & Braun 1993, resilient propagation).
+  /// Goes along a direction, safe to go unseen: no node farther than a substep's largest sensible motion, and
+  /// where a node keeps turning back it has been going too far (as in Riedmiller & Braun 1993, resilient
+  /// propagation).
   void (*stride)(const Stride&);
   /// Finds where inertia alone and where bones alone would bring unknowns, and puts x between.
   void (*set_out)(const Outset&);
   double (*dot)(const float* a, const float* b, size_t count);
-  void (*add)(float factor, const float* a, float* to, size_t count);  ///< to += factor * a; counts are multiples of 16
+  void (*add)(float factor, const float* a, float* to,
+              size_t count);  ///< to += factor * a; counts are multiples of 16
   /// Largest squared length of a place.
   float (*largest)(const float* a, size_t count);
 };

@@ -12,15 +12,18 @@ namespace {
 constexpr size_t wide = batch_width;
 constexpr float never = -1e3F;  // metres: no spring is that much shorter than at rest
 
-float f(double value) { return static_cast<float>(value); }
-
-void put(Sixteen* list, size_t lane, const Vec3& value) {
-  for (size_t axis = 0; axis < 3; ++axis) list[axis][lane] = f(value[static_cast<int>(axis)]);
+float f(double value) {
+  return static_cast<float>(value);
 }
 
-/// Calls `set(batch, lane, element, counts)` for every lane. Each lane takes a strip of neighbouring elements, so that hardly a
-/// place is named twice by one batch: a sum that is read again before it is written waits. Lanes left over repeat the last
-/// element, and are to have no stiffness (`counts` false).
+void put(Sixteen* list, size_t lane, const Vec3& value) {
+  for (size_t axis = 0; axis < 3; ++axis)
+    list[axis][lane] = f(value[static_cast<int>(axis)]);
+}
+
+/// Calls `set(batch, lane, element, counts)` for every lane. Each lane takes a strip of neighbouring
+/// elements, so that hardly a place is named twice by one batch: a sum that is read again before it is
+/// written waits. Lanes left over repeat the last element, and are to have no stiffness (`counts` false).
 template <class Batch, class Set>
 void lay_in_strips(std::vector<Batch>& list, size_t count, Set&& set) {
   const size_t rows = (count + wide - 1) / wide;
@@ -44,7 +47,8 @@ void put_spring(SpringBatch& batch, size_t lane, const Spring& spring, bool coun
 void Model::pack_triangles() {
   const auto& columns = face_->lattice().triangles;
   lay_in_strips(triangles_, columns.size(), [&](TriangleBatch& batch, size_t lane, size_t i, bool counts) {
-    for (size_t k = 0; k < 3; ++k) batch.column[k][lane] = static_cast<int32_t>(16 * columns[i][k]);
+    for (size_t k = 0; k < 3; ++k)
+      batch.column[k][lane] = static_cast<int32_t>(16 * columns[i][k]);
     for (size_t layer = 0; layer < 2; ++layer) {
       const Membrane& m = face_->membranes()[layer * columns.size() + i];
       MembraneBatch& membrane = batch.membrane[layer];
@@ -65,7 +69,8 @@ void Model::pack_triangles() {
   packed_.triangle_batches = triangles_.size();
 }
 
-/// Hinges of both layers on the same four columns together with the springs that cross the edge between the first two.
+/// Hinges of both layers on the same four columns together with the springs that cross the edge between the
+/// first two.
 void Model::pack_edges() {
   const uint32_t columns = face_->lattice().columns;
   struct Edge {
@@ -79,7 +84,8 @@ void Model::pack_edges() {
   for (const Hinge& hinge : face_->hinges()) {
     std::array<uint32_t, 4> nodes = hinge.nodes;
     const uint32_t layer = nodes[0] / columns;
-    for (uint32_t& node : nodes) node -= layer * columns;
+    for (uint32_t& node : nodes)
+      node -= layer * columns;
     const auto [at, is_new] = by_hinge.try_emplace(nodes, edges.size());
     if (is_new) edges.push_back({nodes});
     edges[at->second].hinge[layer] = &hinge;
@@ -97,19 +103,25 @@ void Model::pack_edges() {
     }
     const Spring** slot = nullptr;
     for (size_t k = 0; k < edge_springs && at != by_ends.end() && !spring.one_sided; ++k)
-      if (layers[0] == edge_spring_layers[k][0] && layers[1] == edge_spring_layers[k][1]) slot = &edges[at->second].spring[k];
-    if (slot != nullptr && *slot == nullptr) *slot = &spring;
-    else others.push_back(&spring);
+      if (layers[0] == edge_spring_layers[k][0] && layers[1] == edge_spring_layers[k][1])
+        slot = &edges[at->second].spring[k];
+    if (slot != nullptr && *slot == nullptr)
+      *slot = &spring;
+    else
+      others.push_back(&spring);
   }
-  std::stable_sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) { return a.columns < b.columns; });
+  std::stable_sort(edges.begin(), edges.end(),
+                   [](const Edge& a, const Edge& b) { return a.columns < b.columns; });
   lay_in_strips(edges_, edges.size(), [&](EdgeBatch& batch, size_t lane, size_t i, bool counts) {
     const Edge& edge = edges[i];
-    for (size_t k = 0; k < 4; ++k) batch.column[k][lane] = static_cast<int32_t>(16 * edge.columns[k]);
+    for (size_t k = 0; k < 4; ++k)
+      batch.column[k][lane] = static_cast<int32_t>(16 * edge.columns[k]);
     for (size_t layer = 0; layer < 2; ++layer) {
       const Hinge* h = edge.hinge[layer];
       if (h == nullptr) continue;
       HingeBatch& hinge = batch.hinge[layer];
-      for (size_t k = 0; k < 3; ++k) hinge.weight[k][lane] = f(h->weights[k + 1]);
+      for (size_t k = 0; k < 3; ++k)
+        hinge.weight[k][lane] = f(h->weights[k + 1]);
       hinge.stiffness[lane] = counts ? f(h->stiffness) : 0.0F;
       hinge.bend[lane] = f(h->bend);
       hinge.scale_a[lane] = f(h->scale_a);
@@ -121,9 +133,12 @@ void Model::pack_edges() {
   packed_.edges = edges_.data();
   packed_.edge_batches = edges_.size();
 
-  std::stable_sort(others.begin(), others.end(), [this](const Spring* a, const Spring* b) { return slot_of(a->nodes[0]) < slot_of(b->nodes[0]); });
+  std::stable_sort(others.begin(), others.end(), [this](const Spring* a, const Spring* b) {
+    return slot_of(a->nodes[0]) < slot_of(b->nodes[0]);
+  });
   lay_in_strips(springs_, others.size(), [&](LooseSpringBatch& batch, size_t lane, size_t i, bool counts) {
-    for (size_t k = 0; k < 2; ++k) batch.at[k][lane] = slot_of(others[i]->nodes[k]);
+    for (size_t k = 0; k < 2; ++k)
+      batch.at[k][lane] = slot_of(others[i]->nodes[k]);
     put_spring(batch.spring, lane, *others[i], counts);
     batch.slack[lane] = others[i]->one_sided ? 0.0F : never;
   });
@@ -144,37 +159,41 @@ void Model::pack_held() {
   packed_.tethers = tethers_.data();
   packed_.tether_batches = tethers_.size();
 
-  lay_in_strips(carriers_, lattice.carrier_node.size(), [&](CarrierBatch& batch, size_t lane, size_t from, bool counts) {
-    Vec3 axis = lattice.carrier_axis[from].cast<double>();
-    axis = axis.norm() > 1e-9 ? Vec3(axis.normalized()) : Vec3(Vec3::UnitX());
-    batch.at[lane] = slot_of(lattice.carrier_node[from]);
-    put(batch.origin, lane, lattice.carrier_origin[from].cast<double>());
-    put(batch.axis, lane, axis);
-    batch.angle[lane] = lattice.carrier_angle[from];
-    batch.reverse[lane] = lattice.carrier_reverse[from];
-    batch.stiffness[lane] = counts ? lattice.carrier_stiffness[from] : 0.0F;
-    batch.drive[lane] = counts ? lattice.carrier_drive[from] : 0.0F;
-    batch.channel[lane] = static_cast<int32_t>(lattice.carrier_channel[from]);
-  });
+  lay_in_strips(carriers_, lattice.carrier_node.size(),
+                [&](CarrierBatch& batch, size_t lane, size_t from, bool counts) {
+                  Vec3 axis = lattice.carrier_axis[from].cast<double>();
+                  axis = axis.norm() > 1e-9 ? Vec3(axis.normalized()) : Vec3(Vec3::UnitX());
+                  batch.at[lane] = slot_of(lattice.carrier_node[from]);
+                  put(batch.origin, lane, lattice.carrier_origin[from].cast<double>());
+                  put(batch.axis, lane, axis);
+                  batch.angle[lane] = lattice.carrier_angle[from];
+                  batch.reverse[lane] = lattice.carrier_reverse[from];
+                  batch.stiffness[lane] = counts ? lattice.carrier_stiffness[from] : 0.0F;
+                  batch.drive[lane] = counts ? lattice.carrier_drive[from] : 0.0F;
+                  batch.channel[lane] = static_cast<int32_t>(lattice.carrier_channel[from]);
+                });
   packed_.carriers = carriers_.data();
   packed_.carrier_batches = carriers_.size();
 
   const Contacts& contacts = face_->contacts();
-  lay_in_strips(globes_, contacts.globe_nodes().size(), [&](GlobeBatch& batch, size_t lane, size_t from, bool counts) {
-    batch.at[lane] = slot_of(contacts.globe_nodes()[from]);
-    put(batch.centre, lane, contacts.globe_centres()[from]);
-    batch.radius[lane] = f(contacts.globe_radii()[from]);
-    batch.stiffness[lane] = counts ? f(contacts.options().globe_stiffness) : 0.0F;
-  });
+  lay_in_strips(globes_, contacts.globe_nodes().size(),
+                [&](GlobeBatch& batch, size_t lane, size_t from, bool counts) {
+                  batch.at[lane] = slot_of(contacts.globe_nodes()[from]);
+                  put(batch.centre, lane, contacts.globe_centres()[from]);
+                  batch.radius[lane] = f(contacts.globe_radii()[from]);
+                  batch.stiffness[lane] = counts ? f(contacts.options().globe_stiffness) : 0.0F;
+                });
   packed_.globes = globes_.data();
   packed_.globe_batches = globes_.size();
 
-  lay_in_strips(pressures_, lattice.pressure_prism.size(), [&](PressureBatch& batch, size_t lane, size_t from, bool counts) {
-    for (size_t k = 0; k < 3; ++k)
-      batch.at[k][lane] = slot_of(lattice.columns + lattice.triangles[lattice.pressure_prism[from]][k]);
-    batch.pressure[lane] = counts ? lattice.pressure[from] : 0.0F;
-    batch.channel[lane] = static_cast<int32_t>(lattice.pressure_channel[from]);
-  });
+  lay_in_strips(pressures_, lattice.pressure_prism.size(),
+                [&](PressureBatch& batch, size_t lane, size_t from, bool counts) {
+                  for (size_t k = 0; k < 3; ++k)
+                    batch.at[k][lane] =
+                        slot_of(lattice.columns + lattice.triangles[lattice.pressure_prism[from]][k]);
+                  batch.pressure[lane] = counts ? lattice.pressure[from] : 0.0F;
+                  batch.channel[lane] = static_cast<int32_t>(lattice.pressure_channel[from]);
+                });
   packed_.pressures = pressures_.data();
   packed_.pressure_batches = pressures_.size();
 }
@@ -182,12 +201,16 @@ void Model::pack_held() {
 void Model::pack_fibres() {
   const Lattice& lattice = face_->lattice();
   std::vector<uint32_t> order;
-  const auto points_of = [&](uint32_t fibre) { return lattice.fibre_offsets[fibre + 1] - lattice.fibre_offsets[fibre]; };
+  const auto points_of = [&](uint32_t fibre) {
+    return lattice.fibre_offsets[fibre + 1] - lattice.fibre_offsets[fibre];
+  };
   for (uint32_t fibre = 0; fibre < lattice.fibre_count(); ++fibre)
     if (points_of(fibre) > 1 && face_->fibre_lengths()[fibre] > 0.0) order.push_back(fibre);
-  // A muscle's together, so that those at rest are passed over; of muscles, those of like length, so that few lanes idle.
+  // A muscle's together, so that those at rest are passed over; of muscles, those of like length, so that few
+  // lanes idle.
   std::map<uint32_t, uint32_t> longest;
-  for (const uint32_t fibre : order) longest[lattice.fibre_channel[fibre]] = std::max(longest[lattice.fibre_channel[fibre]], points_of(fibre));
+  for (const uint32_t fibre : order)
+    longest[lattice.fibre_channel[fibre]] = std::max(longest[lattice.fibre_channel[fibre]], points_of(fibre));
   std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
     const uint32_t channel_a = lattice.fibre_channel[a], channel_b = lattice.fibre_channel[b];
     return std::make_pair(longest[channel_a], channel_a) < std::make_pair(longest[channel_b], channel_b);
@@ -197,7 +220,8 @@ void Model::pack_fibres() {
     FibreBatch& batch = fibres_[b];
     const size_t end = std::min((b + 1) * wide, order.size());
     batch.first = static_cast<uint32_t>(fibre_points_.size());
-    for (size_t i = b * wide; i < end; ++i) batch.count = std::max(batch.count, points_of(order[i]));
+    for (size_t i = b * wide; i < end; ++i)
+      batch.count = std::max(batch.count, points_of(order[i]));
     longest_fibre_ = std::max<size_t>(longest_fibre_, batch.count);
     fibre_points_.resize(fibre_points_.size() + batch.count);
     for (size_t lane = 0; lane < wide; ++lane) {

@@ -1,6 +1,7 @@
 #pragma once
 
-// What a step of time does with unknowns: where it begins, what it asks for, how far it goes; see sim/realtime/loops.h.
+// What a step of time does with unknowns: where it begins, what it asks for, how far it goes; see
+// sim/realtime/loops.h.
 
 #include "sim/lanes/lanes.h"
 #include "sim/realtime/loops_common.h"
@@ -12,7 +13,8 @@ namespace {
 using namespace lanes::FASCIA_LANES_NAMESPACE;
 
 void subtract(const Unknowns& u, float* moved) {
-  for (size_t k = 0; k < u.count; ++k) store_quad(moved + 4 * k, load_quad(u.x + u.slot[k]) - load_quad(u.begun + 4 * k));
+  for (size_t k = 0; k < u.count; ++k)
+    store_quad(moved + 4 * k, load_quad(u.x + u.slot[k]) - load_quad(u.begun + 4 * k));
 }
 
 double collect(const Unknowns& u, const float* moved, const float* damped, float* packed, float* answer) {
@@ -20,13 +22,15 @@ double collect(const Unknowns& u, const float* moved, const float* damped, float
   Quad twice{}, work{};
   for (size_t k = 0; k < u.count; ++k) {
     const Quad gradient = load_quad(u.gradient + u.slot[k]), x = load_quad(u.x + u.slot[k]);
-    const float mass = u.mass[k], more = gradient[3], s = more > 0.0F ? __builtin_sqrtf(u.diagonal[k] / (u.diagonal[k] + more)) : 1.0F;
+    const float mass = u.mass[k], more = gradient[3],
+                s = more > 0.0F ? __builtin_sqrtf(u.diagonal[k] / (u.diagonal[k] + more)) : 1.0F;
     const Quad felt = mass * acceleration;
     Quad force = gradient - felt;
     work += felt * (x - load_quad(u.rest + u.slot[k]));
     if (u.per_mass != 0.0F) {
       const Quad off = x - load_quad(u.ballistic + 4 * k), way = load_quad(moved + 4 * k);
-      const Quad inertia = (u.per_mass * mass) * off, slow = (u.drag * mass) * way + u.stiff * load_quad(damped + 4 * k);
+      const Quad inertia = (u.per_mass * mass) * off,
+                 slow = (u.drag * mass) * way + u.stiff * load_quad(damped + 4 * k);
       force += inertia + slow;
       twice += inertia * off + slow * way;
     }
@@ -39,17 +43,20 @@ double collect(const Unknowns& u, const float* moved, const float* damped, float
 }
 
 void scale(const float* factors, float* list, size_t count) {
-  for (size_t i = 0; i < count; i += batch_width) store(list + i, load(factors + i) * load(list + i));
+  for (size_t i = 0; i < count; i += batch_width)
+    store(list + i, load(factors + i) * load(list + i));
 }
 
 constexpr float farthest = 0.0015F;  // metres a node may go in one stride
 constexpr float noise = 1e-5F;       // metres below which turning back means nothing
 constexpr float least_trust = 0.02F;
-constexpr float inertia_trusted = 0.7F, inertia_else = 0.5F;  // share of what inertia alone would do that the first guess takes
+constexpr float inertia_trusted = 0.7F,
+                inertia_else = 0.5F;  // share of what inertia alone would do that the first guess takes
 
 void stride(const Stride& s) {
   SixteenAt at;
-  for (size_t l = 0; l < batch_width; ++l) at[l] = static_cast<int32_t>(4 * l);
+  for (size_t l = 0; l < batch_width; ++l)
+    at[l] = static_cast<int32_t>(4 * l);
   const Lanes none = splat(0.0F), one = splat(1.0F);
   for (size_t k = 0; k < s.count; k += batch_width) {  // lists of unknowns are whole batches
     Lanes trust = load(s.trust + k);
@@ -63,14 +70,16 @@ void stride(const Stride& s) {
     const Lanes most = farthest / square_root(greater(squared, 1e-20F));
     trust = where_below(splat(farthest * farthest), squared * trust * trust, most, trust);
     const Lanes is_sound = where_below(squared, splat(1e6F), one, none);  // false where it is not a number
-    way = {where_below(none, is_sound, way.x, none), where_below(none, is_sound, way.y, none), where_below(none, is_sound, way.z, none)};
+    way = {where_below(none, is_sound, way.x, none), where_below(none, is_sound, way.y, none),
+           where_below(none, is_sound, way.z, none)};
     trust = where_below(none, is_sound, trust, load(s.trust + k));
     store(s.trust + k, trust);
     way = trust * way;
     interleave(way, s.last + 4 * k);
     interleave(way, s.direction + 4 * k);
     const size_t end = s.count - k < batch_width ? s.count : k + batch_width;
-    for (size_t i = k; i < end; ++i) store_quad(s.x + s.slot[i], load_quad(s.x + s.slot[i]) + load_quad(s.direction + 4 * i));
+    for (size_t i = k; i < end; ++i)
+      store_quad(s.x + s.slot[i], load_quad(s.x + s.slot[i]) + load_quad(s.direction + 4 * i));
   }
 }
 
@@ -79,7 +88,9 @@ void set_out(const Outset& o) {
     const int32_t at = o.slot[k];
     const Quad x = load_quad(o.x + at), ballistic = x + o.seconds * load_quad(o.velocity + at);
     const Quad begun = x + (load_quad(o.carried + at) - load_quad(o.carried_before + at));
-    const float trust = o.trust[k], sure = 2.0F * trust - 1.0F, share = trust * (inertia_else + (inertia_trusted - inertia_else) * (sure > 0.0F ? sure : 0.0F));
+    const float trust = o.trust[k], sure = 2.0F * trust - 1.0F,
+                share =
+                    trust * (inertia_else + (inertia_trusted - inertia_else) * (sure > 0.0F ? sure : 0.0F));
     store_quad(o.ballistic + 4 * k, ballistic);
     store_quad(o.begun + 4 * k, begun);
     store_quad(o.begun_places + at, begun);
@@ -89,18 +100,21 @@ void set_out(const Outset& o) {
 
 double dot_of(const float* a, const float* b, size_t count) {
   Lanes sums[4] = {splat(0.0F), splat(0.0F), splat(0.0F), splat(0.0F)};
-  for (size_t i = 0, k = 0; i < count; i += batch_width, ++k) sums[k % 4] += load(a + i) * load(b + i);
+  for (size_t i = 0, k = 0; i < count; i += batch_width, ++k)
+    sums[k % 4] += load(a + i) * load(b + i);
   return static_cast<double>(total((sums[0] + sums[1]) + (sums[2] + sums[3])));
 }
 
 void add(float factor, const float* a, float* to, size_t count) {
-  for (size_t i = 0; i < count; i += batch_width) store(to + i, load(to + i) + factor * load(a + i));
+  for (size_t i = 0; i < count; i += batch_width)
+    store(to + i, load(to + i) + factor * load(a + i));
 }
 
 float largest(const float* a, size_t count) {
   Lanes most = splat(0.0F);
   SixteenAt at;
-  for (size_t l = 0; l < batch_width; ++l) at[l] = static_cast<int32_t>(4 * l);
+  for (size_t l = 0; l < batch_width; ++l)
+    at[l] = static_cast<int32_t>(4 * l);
   bool finite = true;
   for (size_t i = 0; i < count; i += 4 * batch_width) {
     const Lanes3 value = gather(a + i, at);
@@ -111,7 +125,8 @@ float largest(const float* a, size_t count) {
   }
   float list[batch_width], result = 0.0F;
   store(list, most);
-  for (const float value : list) result = value > result ? value : result;
+  for (const float value : list)
+    result = value > result ? value : result;
   return finite ? result : __builtin_nanf("");
 }
 

@@ -10,9 +10,12 @@ constexpr uint32_t strips = 16;  // one a lane
 sheet::StepFunction step_for([[maybe_unused]] lanes::InstructionSet instructions) {
 #if defined(__x86_64__)
   switch (instructions) {
-    case lanes::InstructionSet::avx512: return sheet::step_avx512;
-    case lanes::InstructionSet::avx2: return sheet::step_avx2;
-    case lanes::InstructionSet::baseline: break;
+    case lanes::InstructionSet::avx512:
+      return sheet::step_avx512;
+    case lanes::InstructionSet::avx2:
+      return sheet::step_avx2;
+    case lanes::InstructionSet::baseline:
+      break;
   }
 #endif
   return sheet::step_baseline;
@@ -25,8 +28,10 @@ Sheet::Sheet(const SheetOptions& options) : options_(options), step_(step_for(op
   s.rows = options.rows;
   s.width = (options.columns + strips - 1) / strips;
   s.spacing = options.spacing;
-  // Room before and after: a spring that leaves a strip reads its neighbour one lane on. All lists begin at a cache line.
-  const size_t margin = 2 * strips, places = static_cast<size_t>(s.rows) * s.width * strips, block = places + 2 * margin;
+  // Room before and after: a spring that leaves a strip reads its neighbour one lane on. All lists begin at a
+  // cache line.
+  const size_t margin = 2 * strips, places = static_cast<size_t>(s.rows) * s.width * strips,
+               block = places + 2 * margin;
   const size_t masks = static_cast<size_t>(s.width) * strips;
   memory_.assign(10 * block + 2 * masks + 5 * static_cast<size_t>(s.rows) * strips + strips, 0.0F);
   const size_t past_line = reinterpret_cast<uintptr_t>(memory_.data()) / sizeof(float) % strips;
@@ -37,7 +42,8 @@ Sheet::Sheet(const SheetOptions& options) : options_(options), step_(step_for(op
     next += block;
     return taken;
   };
-  for (float** list : {&s.x, &s.y, &s.z, &s.before_x, &s.before_y, &s.before_z, &s.velocity_x, &s.velocity_y, &s.velocity_z})
+  for (float** list :
+       {&s.x, &s.y, &s.z, &s.before_x, &s.before_y, &s.before_z, &s.velocity_x, &s.velocity_y, &s.velocity_z})
     *list = take();
   float* const inverse_mass = take();
   s.inverse_mass = inverse_mass;
@@ -89,7 +95,8 @@ double Sheet::mean_stretch() const {
         const int64_t r = static_cast<int64_t>(row) + way[0], c = static_cast<int64_t>(column) + way[1];
         if (r >= options_.rows || c < 0 || c >= options_.columns) continue;
         const double rest = static_cast<double>(options_.spacing) * std::hypot(way[0], way[1]);
-        const Vec3f along = position(static_cast<uint32_t>(r), static_cast<uint32_t>(c)) - position(row, column);
+        const Vec3f along =
+            position(static_cast<uint32_t>(r), static_cast<uint32_t>(c)) - position(row, column);
         sum += std::abs(along.cast<double>().norm() / rest - 1.0);
       }
   return sum / spring_count();

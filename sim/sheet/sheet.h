@@ -12,21 +12,22 @@ namespace fascia::sim {
 /// A rectangular sheet of particles held together along its fibres.
 struct SheetOptions {
   uint32_t rows = 100, columns = 100;
-  float spacing = 0.01F;           ///< metres between neighbours
-  Vec3f corner = Vec3f::Zero();    ///< place of row 0, column 0
+  float spacing = 0.01F;                                            ///< metres between neighbours
+  Vec3f corner = Vec3f::Zero();                                     ///< place of row 0, column 0
   Vec3f along_row = Vec3f::UnitX(), along_column = Vec3f::UnitZ();  ///< unit
   Vec3f gravity = Vec3f(0.0F, -9.81F, 0.0F);
   int substeps = 10;
   lanes::InstructionSet instructions = lanes::instruction_set();
 };
 
-/// A sheet of inextensible springs, its first row pinned: structural ones to the next particle of row and column, shear ones
-/// along both diagonals, and skip-one ones against folding.
+/// A sheet of inextensible springs, its first row pinned: structural ones to the next particle of row and
+/// column, shear ones along both diagonals, and skip-one ones against folding.
 ///
-/// Substeps of position-based dynamics (Macklin et al. 2019, "Small steps in physics simulation"). Columns, which carry the
-/// weight, are solved as whole chains: one Newton step of all their lengths together, a tridiagonal system each, sixteen columns at once
-/// (Goldenthal et al. 2007 on direct solves of inextensible threads); the other springs are relaxed one after the other,
-/// sixteen at once, in an order in which no two touch the same particle. Same bits on every processor.
+/// Substeps of position-based dynamics (Macklin et al. 2019, "Small steps in physics simulation"). Columns,
+/// which carry the weight, are solved as whole chains: one Newton step of all their lengths together, a
+/// tridiagonal system each, sixteen columns at once (Goldenthal et al. 2007 on direct solves of inextensible
+/// threads); the other springs are relaxed one after the other, sixteen at once, in an order in which no two
+/// touch the same particle. Same bits on every processor.
 class Sheet {
  public:
   explicit Sheet(const SheetOptions& options);

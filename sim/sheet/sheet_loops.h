@@ -1,5 +1,5 @@
-// The loops of a sheet, included once by each of the sources that are compiled for one vector unit (see lanes.h), which define
-// FASCIA_SHEET_STEP. Everything else here is local to the including source.
+// The loops of a sheet, included once by each of the sources that are compiled for one vector unit (see
+// lanes.h), which define FASCIA_SHEET_STEP. Everything else here is local to the including source.
 
 #include "sim/lanes/lanes.h"
 #include "sim/sheet/sheet_state.h"
@@ -9,7 +9,9 @@ namespace {
 
 using namespace lanes::FASCIA_LANES_NAMESPACE;
 
-FASCIA_INLINE Lanes3 load3(const State& s, ptrdiff_t at) { return {load(s.x + at), load(s.y + at), load(s.z + at)}; }
+FASCIA_INLINE Lanes3 load3(const State& s, ptrdiff_t at) {
+  return {load(s.x + at), load(s.y + at), load(s.z + at)};
+}
 FASCIA_INLINE void store3(const State& s, ptrdiff_t at, const Lanes3& value) {
   store(s.x + at, value.x);
   store(s.y + at, value.y);
@@ -45,8 +47,8 @@ void keep_velocity(const State& s, float length) {
       store(velocity[axis] + i, (load(list[axis] + i) - load(before[axis] + i)) * rate);
 }
 
-/// One Newton step that brings all lengths of sixteen columns to rest at once. With C = (d.d - rest^2) / 2 of each segment d,
-/// J M^-1 J^T lambda = -C is tridiagonal and needs no root.
+/// One Newton step that brings all lengths of sixteen columns to rest at once. With C = (d.d - rest^2) / 2 of
+/// each segment d, J M^-1 J^T lambda = -C is tridiagonal and needs no root.
 void solve_chains(const State& s, ptrdiff_t column) {
   const auto row = static_cast<ptrdiff_t>(s.width * lane_count);
   const auto segments = static_cast<ptrdiff_t>(s.rows) - 1;
@@ -68,7 +70,8 @@ void solve_chains(const State& s, ptrdiff_t column) {
     const Lanes inverse = 1.0F / pivot;
     last_right = (0.5F * (square - squared) - lower * last_right) * inverse;
     // The entry above the diagonal needs the segment that comes next.
-    if (i + 1 < segments) last_upper = -(next_weight * dot(d, load3(s, column + (i + 2) * row) - next)) * inverse;
+    if (i + 1 < segments)
+      last_upper = -(next_weight * dot(d, load3(s, column + (i + 2) * row) - next)) * inverse;
     store(dx + at, d.x);
     store(dy + at, d.y);
     store(dz + at, d.z);
@@ -95,12 +98,14 @@ void solve_chains(const State& s, ptrdiff_t column) {
 FASCIA_INLINE void relax(const State& s, ptrdiff_t a, ptrdiff_t b, float squared_rest, const Lanes& exists) {
   const Lanes3 place_a = load3(s, a), place_b = load3(s, b), d = place_b - place_a;
   const Lanes weight_a = load(s.inverse_mass + a), weight_b = load(s.inverse_mass + b), squared = dot(d, d);
-  const Lanes share = exists * (squared - squared_rest) / ((squared + squared_rest) * greater(weight_a + weight_b, 1e-6F));
+  const Lanes share =
+      exists * (squared - squared_rest) / ((squared + squared_rest) * greater(weight_a + weight_b, 1e-6F));
   store3(s, a, place_a + (share * weight_a) * d);
   store3(s, b, place_b - (share * weight_b) * d);
 }
 
-/// Where the particle `step` columns on from place `within` of its strip stands: past the strip's end, at the next one's beginning one lane on.
+/// Where the particle `step` columns on from place `within` of its strip stands: past the strip's end, at the
+/// next one's beginning one lane on.
 FASCIA_INLINE ptrdiff_t beside(ptrdiff_t width, ptrdiff_t within, ptrdiff_t step) {
   const ptrdiff_t to = within + step;
   return to % width * static_cast<ptrdiff_t>(lane_count) + to / width;
@@ -115,7 +120,8 @@ void relax_rows(const State& s, ptrdiff_t step, float squared_rest, const float*
     const ptrdiff_t end = begin + together < rows ? begin + together : rows;
     for (ptrdiff_t k = 0; k < width; ++k) {
       const ptrdiff_t there = beside(width, k, step);
-      for (ptrdiff_t r = begin; r < end; ++r) relax(s, r * row + k * wide, r * row + there, squared_rest, load(exists + k * wide));
+      for (ptrdiff_t r = begin; r < end; ++r)
+        relax(s, r * row + k * wide, r * row + there, squared_rest, load(exists + k * wide));
     }
   }
 }
@@ -134,7 +140,8 @@ void relax_all(const State& s) {
       relax(s, (r + 1) * row + k * wide, r * row + beside(width, k, 1), shear, load(s.exists_1 + k * wide));
   relax_rows(s, 2, skip, s.exists_2);
   for (ptrdiff_t r = 0; r + 2 < rows; ++r)
-    for (ptrdiff_t k = 0; k < width; ++k) relax(s, r * row + k * wide, (r + 2) * row + k * wide, skip, always);
+    for (ptrdiff_t k = 0; k < width; ++k)
+      relax(s, r * row + k * wide, (r + 2) * row + k * wide, skip, always);
 }
 
 }  // namespace
@@ -142,7 +149,8 @@ void relax_all(const State& s) {
 void FASCIA_SHEET_STEP(const State& s, const Step& step) {
   for (int substep = 0; substep < step.substeps; ++substep) {
     move(s, step, substep == 0);
-    for (ptrdiff_t k = 0; k < static_cast<ptrdiff_t>(s.width); ++k) solve_chains(s, k * static_cast<ptrdiff_t>(lane_count));
+    for (ptrdiff_t k = 0; k < static_cast<ptrdiff_t>(s.width); ++k)
+      solve_chains(s, k * static_cast<ptrdiff_t>(lane_count));
     relax_all(s);
   }
   keep_velocity(s, step.length);

@@ -15,7 +15,9 @@ const GenericAnatomy& generic() {
   return anatomy;
 }
 
-Vec3 mirror(const Vec3& p) { return Vec3(-p.x(), p.y(), p.z()); }
+Vec3 mirror(const Vec3& p) {
+  return Vec3(-p.x(), p.y(), p.z());
+}
 
 std::string other_side(std::string name) {
   return name.replace(name.size() - 5, 5, "_right");
@@ -25,7 +27,8 @@ TEST(Landmarks, AllCraniometricPointsWithDepths) {
   // Every landmark of the default table stands on the face.
   for (const TissueDepth& depth : generic().depth_tables.front().depths) {
     bool found = false;
-    for (const Landmark& landmark : generic().landmarks) found = found || landmark.depth == depth.key;
+    for (const Landmark& landmark : generic().landmarks)
+      found = found || landmark.depth == depth.key;
     EXPECT_TRUE(found) << depth.key;
   }
   EXPECT_EQ(generic().depth_tables.front().depths.size(), 25U);
@@ -46,25 +49,38 @@ TEST(Landmarks, BoneLiesTheTabledDepthUnderTheSkin) {
 TEST(Landmarks, ExactlySymmetricAndUnitNormals) {
   int pairs = 0;
   for (const Landmark& left : generic().landmarks) {
-    if (left.skin) { EXPECT_NEAR(left.normal.norm(), 1.0, 1e-12) << left.name; }
+    if (left.skin) {
+      EXPECT_NEAR(left.normal.norm(), 1.0, 1e-12) << left.name;
+    }
     if (left.side == Side::midline) {
-      if (left.skin) { EXPECT_EQ(left.skin->x(), 0.0) << left.name; }
-      if (left.bone) { EXPECT_EQ(left.bone->x(), 0.0) << left.name; }
+      if (left.skin) {
+        EXPECT_EQ(left.skin->x(), 0.0) << left.name;
+      }
+      if (left.bone) {
+        EXPECT_EQ(left.bone->x(), 0.0) << left.name;
+      }
     }
     if (left.side != Side::left) continue;
     ++pairs;
     const Landmark* right = generic().landmark(other_side(left.name));
     ASSERT_NE(right, nullptr) << left.name;
-    if (left.skin) { EXPECT_EQ(mirror(*left.skin), *right->skin) << left.name; }
-    if (left.bone) { EXPECT_EQ(mirror(*left.bone), *right->bone) << left.name; }
-    if (left.skin) { EXPECT_GT(left.skin->x(), 0.0) << left.name; }
+    if (left.skin) {
+      EXPECT_EQ(mirror(*left.skin), *right->skin) << left.name;
+    }
+    if (left.bone) {
+      EXPECT_EQ(mirror(*left.bone), *right->bone) << left.name;
+    }
+    if (left.skin) {
+      EXPECT_GT(left.skin->x(), 0.0) << left.name;
+    }
   }
   EXPECT_GT(pairs, 40);
 }
 
 TEST(Landmarks, AFewAreRequired) {
   int required = 0;
-  for (const Landmark& landmark : generic().landmarks) required += landmark.required ? 1 : 0;
+  for (const Landmark& landmark : generic().landmarks)
+    required += landmark.required ? 1 : 0;
   EXPECT_GE(required, 18);
   EXPECT_LE(required, 24);
 }
@@ -102,7 +118,8 @@ TEST(Muscles, LeftMirrorsRight) {
     ASSERT_EQ(left.origin.polygon.size(), right->origin.polygon.size());
     for (size_t i = 0; i < left.origin.polygon.size(); ++i)
       EXPECT_EQ(mirror(left.origin.polygon[i]), right->origin.polygon[left.origin.polygon.size() - 1 - i]);
-    for (size_t i = 0; i < left.waypoints.size(); ++i) EXPECT_EQ(mirror(left.waypoints[i]), right->waypoints[i]);
+    for (size_t i = 0; i < left.waypoints.size(); ++i)
+      EXPECT_EQ(mirror(left.waypoints[i]), right->waypoints[i]);
     if (left.band) {
       EXPECT_NEAR(std::cos(left.band->begin_angle), -std::cos(right->band->end_angle), 1e-12) << left.name;
       EXPECT_NEAR(std::sin(left.band->begin_angle), std::sin(right->band->end_angle), 1e-12) << left.name;
@@ -114,21 +131,46 @@ TEST(Muscles, LeftMirrorsRight) {
 
 TEST(Muscles, EveryMuscleOfTheFaceIsThere) {
   std::set<std::string> wholes;
-  for (const Muscle& muscle : generic().muscles) wholes.insert(muscle.whole);
-  for (const char* name :
-       {"frontalis", "corrugator_supercilii", "procerus", "orbicularis_oculi", "levator_labii_superioris_alaeque_nasi",
-        "levator_labii_superioris", "levator_anguli_oris", "zygomaticus_minor", "zygomaticus_major",
-        "incisivus_labii_superioris", "incisivus_labii_inferioris", "orbicularis_oris", "depressor_labii_inferioris",
-        "depressor_anguli_oris", "mentalis", "risorius", "buccinator", "platysma", "temporalis", "masseter",
-        "medial_pterygoid", "lateral_pterygoid", "nasalis", "depressor_septi_nasi", "depressor_supercilii",
-        "levator_palpebrae_superioris", "digastric", "mylohyoid", "geniohyoid"})
-    for (const char* side : {"_left", "_right"}) EXPECT_TRUE(wholes.count(std::string(name) + side)) << name;
+  for (const Muscle& muscle : generic().muscles)
+    wholes.insert(muscle.whole);
+  for (const char* name : {"frontalis",
+                           "corrugator_supercilii",
+                           "procerus",
+                           "orbicularis_oculi",
+                           "levator_labii_superioris_alaeque_nasi",
+                           "levator_labii_superioris",
+                           "levator_anguli_oris",
+                           "zygomaticus_minor",
+                           "zygomaticus_major",
+                           "incisivus_labii_superioris",
+                           "incisivus_labii_inferioris",
+                           "orbicularis_oris",
+                           "depressor_labii_inferioris",
+                           "depressor_anguli_oris",
+                           "mentalis",
+                           "risorius",
+                           "buccinator",
+                           "platysma",
+                           "temporalis",
+                           "masseter",
+                           "medial_pterygoid",
+                           "lateral_pterygoid",
+                           "nasalis",
+                           "depressor_septi_nasi",
+                           "depressor_supercilii",
+                           "levator_palpebrae_superioris",
+                           "digastric",
+                           "mylohyoid",
+                           "geniohyoid"})
+    for (const char* side : {"_left", "_right"})
+      EXPECT_TRUE(wholes.count(std::string(name) + side)) << name;
 }
 
 double course_length(const Muscle& muscle) {
   const auto mean = [](const std::vector<Vec3>& points) {
     Vec3 sum = Vec3::Zero();
-    for (const Vec3& point : points) sum += point;
+    for (const Vec3& point : points)
+      sum += point;
     return Vec3(sum / static_cast<double>(points.size()));
   };
   Vec3 at = mean(muscle.origin.polygon);
@@ -153,8 +195,10 @@ TEST(Muscles, LengthsArePlausible) {
 TEST(Muscles, PartsOfTheOrbicularisDoNotOverlap) {
   for (const Muscle& a : generic().muscles)
     for (const Muscle& b : generic().muscles) {
-      if (!a.band || !b.band || a.name >= b.name || a.kind != MuscleKind::sphincter_ring || b.kind != a.kind) continue;
-      if (a.side != b.side || a.band->orifice != b.band->orifice || a.band->upper() != b.band->upper()) continue;
+      if (!a.band || !b.band || a.name >= b.name || a.kind != MuscleKind::sphincter_ring || b.kind != a.kind)
+        continue;
+      if (a.side != b.side || a.band->orifice != b.band->orifice || a.band->upper() != b.band->upper())
+        continue;
       EXPECT_TRUE(a.band->outer <= b.band->inner + 1e-12 || b.band->outer <= a.band->inner + 1e-12)
           << a.name << " and " << b.name;
     }
@@ -162,8 +206,9 @@ TEST(Muscles, PartsOfTheOrbicularisDoNotOverlap) {
 
 TEST(Actuators, EveryMuscleAndTheJawEyesLidsLips) {
   EXPECT_EQ(generic().actuators.size(), 2 * 53 + 3 + 2 * 7U);
-  for (const char* name : {"jaw_open", "jaw_forward", "jaw_lateral", "eye_yaw_left", "eye_pitch_right",
-                           "buccal_pressure_left", "lip_roll_upper_right", "lid_upper_left", "lid_lower_right"})
+  for (const char* name :
+       {"jaw_open", "jaw_forward", "jaw_lateral", "eye_yaw_left", "eye_pitch_right", "buccal_pressure_left",
+        "lip_roll_upper_right", "lid_upper_left", "lid_lower_right"})
     EXPECT_NE(generic().actuator(name), nullptr) << name;
   EXPECT_EQ(generic().actuator("jaw_lateral")->minimum, -1.0);
   ASSERT_NE(generic().whole("orbicularis_oculi_left"), nullptr);
@@ -177,7 +222,8 @@ TEST(Expressions, VocabulariesAreComplete) {
   EXPECT_EQ(generic().expression_set("vrm")->expressions.size(), 18U);
   EXPECT_EQ(generic().expression_set("smile")->expressions.size(), 3U);
   EXPECT_EQ(generic().expression_set("arkit")->find("mouthClose")->corrects, "jawOpen");
-  for (const int unit : {1, 2, 4, 5, 6, 7, 9, 10, 11, 12, 14, 15, 16, 17, 18, 20, 22, 23, 24, 25, 26, 27, 28, 43, 45})
+  for (const int unit :
+       {1, 2, 4, 5, 6, 7, 9, 10, 11, 12, 14, 15, 16, 17, 18, 20, 22, 23, 24, 25, 26, 27, 28, 43, 45})
     EXPECT_NE(generic().expression_set("au")->find(std::to_string(unit)), nullptr) << unit;
 }
 
@@ -232,7 +278,8 @@ TEST(Tissue, LayersFromTheSkinInwardAndFractionsInRange) {
     EXPECT_GT(zone.value, 0.0) << zone.name;
     EXPECT_LE(zone.value, 1.0) << zone.name;
   }
-  for (const Zone& zone : tissue.gliding_planes) EXPECT_LT(zone.value, 0.02) << zone.name;
+  for (const Zone& zone : tissue.gliding_planes)
+    EXPECT_LT(zone.value, 0.02) << zone.name;
   EXPECT_EQ(tissue.ligaments.size(), 16U);
   for (const RetainingLigament& ligament : tissue.ligaments)
     for (size_t i = 0; i < ligament.bone.size(); ++i) {

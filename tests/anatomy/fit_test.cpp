@@ -42,7 +42,8 @@ std::optional<double> measured_depth(const Landmark& landmark) {
   const Surfaces& all = surfaces();
   const Vec3 start = all.skin.closest(*landmark.skin).position;
   std::optional<double> depth;
-  for (const spatial::SurfaceQuery* part : {&all.cranium, &all.mandible, &all.teeth_upper, &all.teeth_lower}) {
+  for (const spatial::SurfaceQuery* part :
+       {&all.cranium, &all.mandible, &all.teeth_upper, &all.teeth_lower}) {
     const auto hit = part->first_hit(start, -landmark.normal, 0.06);
     if (hit && (!depth || hit->distance < *depth)) depth = hit->distance;
   }
@@ -83,7 +84,8 @@ TEST(HeadAndSkull, BonePointsLieOnTheirBones) {
     if (!landmark.bone) continue;
     const double off = surfaces().to_bone(*landmark.bone);
     // Where the depth places the point, the skull may miss it by as much as people differ.
-    const TissueDepth* depth = landmark.depth.empty() ? nullptr : surfaces().anatomy.depth_tables.front().find(landmark.depth);
+    const TissueDepth* depth =
+        landmark.depth.empty() ? nullptr : surfaces().anatomy.depth_tables.front().find(landmark.depth);
     const double allowed = landmark.bone_from_depth ? depth ? depth->deviation : 0.006 : 0.0003;
     EXPECT_LE(off, allowed) << landmark.name << ": " << off * 1e3 << " mm";
     EXPECT_NEAR(landmark.bone_normal.norm(), 1.0, 1e-9) << landmark.name;
@@ -115,9 +117,10 @@ TEST(HeadAndSkull, ChinPointsStandInOrder) {
 }
 
 TEST(HeadAndSkull, CurvesLieOnTheirSurfacesAndMirror) {
-  for (const char* name : {"orbital_rim", "piriform_margin", "mandible_border", "temporal_line", "zygomatic_arch", "brow",
-                           "upper_lid_margin", "lower_lid_margin", "upper_vermilion_border", "lower_vermilion_border",
-                           "lip_line", "nasolabial_fold", "jaw_line", "upper_lid_crease", "alar_groove", "hairline"}) {
+  for (const char* name :
+       {"orbital_rim", "piriform_margin", "mandible_border", "temporal_line", "zygomatic_arch", "brow",
+        "upper_lid_margin", "lower_lid_margin", "upper_vermilion_border", "lower_vermilion_border",
+        "lip_line", "nasolabial_fold", "jaw_line", "upper_lid_crease", "alar_groove", "hairline"}) {
     ASSERT_NE(surfaces().anatomy.curve(std::string(name) + "_left"), nullptr) << name;
   }
   for (const Curve& curve : surfaces().anatomy.curves) {
@@ -125,7 +128,8 @@ TEST(HeadAndSkull, CurvesLieOnTheirSurfacesAndMirror) {
                                            : curve.on == "cranium" ? surfaces().cranium
                                                                    : surfaces().mandible;
     EXPECT_GE(curve.points.size(), 8U) << curve.name;
-    for (const Vec3& point : curve.points) EXPECT_LT(surface.closest(point).distance, 0.0002) << curve.name;
+    for (const Vec3& point : curve.points)
+      EXPECT_LT(surface.closest(point).distance, 0.0002) << curve.name;
     for (std::size_t i = 0; i + 1 < curve.points.size(); ++i) {
       EXPECT_LT((curve.points[i + 1] - curve.points[i]).norm(), 0.025) << curve.name << " jumps at " << i;
     }
@@ -140,14 +144,17 @@ TEST(HeadAndSkull, CurvesLieOnTheirSurfacesAndMirror) {
 
 TEST(HeadAndSkull, RegionsLieOnTheSkin) {
   const Tissue& tissue = surfaces().anatomy.tissue;
-  for (const std::vector<Zone>* zones : {&tissue.skin_attachments, &tissue.gliding_planes, &tissue.fat_compartments,
-                                         &tissue.aesthetic_units, &tissue.tarsal_plates}) {
+  for (const std::vector<Zone>* zones :
+       {&tissue.skin_attachments, &tissue.gliding_planes, &tissue.fat_compartments, &tissue.aesthetic_units,
+        &tissue.tarsal_plates}) {
     EXPECT_FALSE(zones->empty());
     for (const Zone& zone : *zones) {
       for (const Vec3& corner : zone.polygon) {
-        EXPECT_LT(surfaces().skin.closest(corner).distance, 0.0005) << zone.name << " at " << 1e3 * corner.transpose();
+        EXPECT_LT(surfaces().skin.closest(corner).distance, 0.0005)
+            << zone.name << " at " << 1e3 * corner.transpose();
       }
-      // No corner has slipped to another part of the head: the straight way to the next one keeps near the skin.
+      // No corner has slipped to another part of the head: the straight way to the next one keeps near the
+      // skin.
       for (std::size_t i = 0; i < zone.polygon.size(); ++i) {
         const Vec3 middle = 0.5 * (zone.polygon[i] + zone.polygon[(i + 1) % zone.polygon.size()]);
         EXPECT_LT(surfaces().outer.surface.closest(middle).distance, 0.015) << zone.name << " side " << i;
@@ -177,18 +184,22 @@ double off_its_surface(const Region& region) {
   for (std::size_t i = 0; i < region.polygon.size(); ++i) {
     const Vec3& corner = region.polygon[i];
     const Vec3 middle = 0.5 * (corner + region.polygon[(i + 1) % region.polygon.size()]);
-    for (const Vec3& point : {corner, middle}) worst = std::max(worst, surface.closest(point).distance);
-    if (!on_bone) { EXPECT_LT(surface.signed_distance(corner), 0.0005) << "outside the skin"; }
+    for (const Vec3& point : {corner, middle})
+      worst = std::max(worst, surface.closest(point).distance);
+    if (!on_bone) {
+      EXPECT_LT(surface.signed_distance(corner), 0.0005) << "outside the skin";
+    }
   }
   return worst;
 }
 
 TEST(HeadAndSkull, MuscleRegionsLieWhereTheySay) {
-  // Within the skin by what the region is in; the orbit's apex, where the lid's levator begins, is filled in the skull.
+  // Within the skin by what the region is in; the orbit's apex, where the lid's levator begins, is filled in
+  // the skull.
   const std::map<Attachment, double> within{
-      {Attachment::cranium, 0.006}, {Attachment::mandible, 0.006}, {Attachment::skin, 0.006},
-      {Attachment::tarsus, 0.004},  {Attachment::smas, 0.006},     {Attachment::galea, 0.006},
-      {Attachment::modiolus, 0.010}, {Attachment::fascia, 0.014},  {Attachment::hyoid, 0.028}};
+      {Attachment::cranium, 0.006},  {Attachment::mandible, 0.006}, {Attachment::skin, 0.006},
+      {Attachment::tarsus, 0.004},   {Attachment::smas, 0.006},     {Attachment::galea, 0.006},
+      {Attachment::modiolus, 0.010}, {Attachment::fascia, 0.014},   {Attachment::hyoid, 0.028}};
   for (const Muscle& muscle : surfaces().anatomy.muscles) {
     for (const Region* region : {&muscle.origin, &muscle.insertion}) {
       if (region->polygon.empty()) continue;

@@ -24,7 +24,9 @@ struct Mesh {
   std::vector<std::string> group;
 };
 
-std::string data_file(const std::string& name) { return std::string(FASCIA_TEST_DATA) + "/../../anatomy/" + name; }
+std::string data_file(const std::string& name) {
+  return std::string(FASCIA_TEST_DATA) + "/../../anatomy/" + name;
+}
 
 std::map<std::string, Mesh> read_head() {
   std::map<std::string, Mesh> out;
@@ -76,14 +78,16 @@ const std::map<std::string, Mesh>& head() {
 }
 
 const nlohmann::json& regions() {
-  static const nlohmann::json json = nlohmann::json::parse(std::ifstream(data_file("data/head_regions.json"))).at("objects");
+  static const nlohmann::json json =
+      nlohmann::json::parse(std::ifstream(data_file("data/head_regions.json"))).at("objects");
   return json;
 }
 
 std::map<std::pair<int, int>, int> directed_edges(const Mesh& mesh) {
   std::map<std::pair<int, int>, int> out;
   for (const auto& face : mesh.faces)
-    for (std::size_t k = 0; k < face.size(); ++k) ++out[{face[k], face[(k + 1) % face.size()]}];
+    for (std::size_t k = 0; k < face.size(); ++k)
+      ++out[{face[k], face[(k + 1) % face.size()]}];
   return out;
 }
 
@@ -95,12 +99,15 @@ std::map<int, int> boundary(const Mesh& mesh) {
   return next;
 }
 
-std::vector<int> loop(const std::string& name) { return regions().at("skin").at("loops").at(name).get<std::vector<int>>(); }
+std::vector<int> loop(const std::string& name) {
+  return regions().at("skin").at("loops").at(name).get<std::vector<int>>();
+}
 
 TEST(Head, HoldsSkinAndEyeballsWithinItsBudget) {
   int triangles = 0;
   for (const auto& [name, mesh] : head())
-    for (const auto& face : mesh.faces) triangles += static_cast<int>(face.size()) - 2;
+    for (const auto& face : mesh.faces)
+      triangles += static_cast<int>(face.size()) - 2;
   EXPECT_EQ(head().size(), 3u);
   EXPECT_GE(triangles, 6000);
   EXPECT_LE(triangles, 12000);
@@ -108,11 +115,14 @@ TEST(Head, HoldsSkinAndEyeballsWithinItsBudget) {
 
 TEST(Head, IsManifoldAndConsistentlyOriented) {
   for (const auto& [name, mesh] : head()) {
-    for (const auto& [edge, count] : directed_edges(mesh)) ASSERT_EQ(count, 1) << name << ' ' << edge.first << ' ' << edge.second;
+    for (const auto& [edge, count] : directed_edges(mesh))
+      ASSERT_EQ(count, 1) << name << ' ' << edge.first << ' ' << edge.second;
     std::vector<int> corners(mesh.vertices.size(), 0);
     for (const auto& face : mesh.faces)
-      for (int v : face) ++corners[v];
-    for (std::size_t v = 0; v < corners.size(); ++v) EXPECT_GT(corners[v], 0) << name << " vertex " << v << " is in no face";
+      for (int v : face)
+        ++corners[v];
+    for (std::size_t v = 0; v < corners.size(); ++v)
+      EXPECT_GT(corners[v], 0) << name << " vertex " << v << " is in no face";
   }
 }
 
@@ -121,9 +131,11 @@ TEST(Head, SkinIsADiscThatEndsAtTheNeckAndEyesAreClosed) {
   const auto next = boundary(skin);
   ASSERT_FALSE(next.empty());
   std::size_t length = 1;
-  for (int v = next.at(next.begin()->first); v != next.begin()->first; v = next.at(v)) ++length;
+  for (int v = next.at(next.begin()->first); v != next.begin()->first; v = next.at(v))
+    ++length;
   EXPECT_EQ(length, next.size());
-  for (const auto& [v, _] : next) EXPECT_LT(skin.vertices[v].y(), -85.0);
+  for (const auto& [v, _] : next)
+    EXPECT_LT(skin.vertices[v].y(), -85.0);
   const int edges = static_cast<int>((directed_edges(skin).size() + next.size()) / 2);
   EXPECT_EQ(static_cast<int>(skin.vertices.size()) - edges + static_cast<int>(skin.faces.size()), 1);
   EXPECT_TRUE(boundary(head().at("eye_left")).empty());
@@ -143,9 +155,11 @@ TEST(Head, FacesOutward) {
 TEST(Head, IsExactlySymmetric) {
   std::set<std::array<double, 3>> skin;
   const Mesh& mesh = head().at("skin");
-  for (const Vec3& p : mesh.vertices) skin.insert({p.x(), p.y(), p.z()});
+  for (const Vec3& p : mesh.vertices)
+    skin.insert({p.x(), p.y(), p.z()});
   EXPECT_EQ(skin.size(), mesh.vertices.size());
-  for (const Vec3& p : mesh.vertices) EXPECT_TRUE(skin.count({p.x() == 0.0 ? 0.0 : -p.x(), p.y(), p.z()})) << p.transpose();
+  for (const Vec3& p : mesh.vertices)
+    EXPECT_TRUE(skin.count({p.x() == 0.0 ? 0.0 : -p.x(), p.y(), p.z()})) << p.transpose();
 }
 
 TEST(Head, HasNoDegenerateFace) {
@@ -154,7 +168,8 @@ TEST(Head, HasNoDegenerateFace) {
       const auto& face = mesh.faces[f];
       Vec3 normal = Vec3::Zero();
       for (std::size_t k = 1; k + 1 < face.size(); ++k)
-        normal += (mesh.vertices[face[k]] - mesh.vertices[face[0]]).cross(mesh.vertices[face[k + 1]] - mesh.vertices[face[0]]);
+        normal += (mesh.vertices[face[k]] - mesh.vertices[face[0]])
+                      .cross(mesh.vertices[face[k + 1]] - mesh.vertices[face[0]]);
       EXPECT_GT(normal.norm(), 1e-2) << name << " face " << f << " of " << mesh.group[f];
     }
 }
@@ -163,7 +178,8 @@ TEST(Head, HasNoDegenerateFace) {
 // neighbour would be a fold.
 TEST(Head, OuterSkinHasNoFold) {
   const Mesh& mesh = head().at("skin");
-  const std::set<std::string> open = {"cheek", "chin", "forehead", "temple", "scalp", "neck", "submental", "perioral"};
+  const std::set<std::string> open = {"cheek", "chin", "forehead",  "temple",
+                                      "scalp", "neck", "submental", "perioral"};
   const auto normal = [&](const std::vector<int>& f) {
     Vec3 n = Vec3::Zero();
     for (std::size_t k = 1; k + 1 < f.size(); ++k)
@@ -176,7 +192,8 @@ TEST(Head, OuterSkinHasNoFold) {
       face_of[{mesh.faces[f][k], mesh.faces[f][(k + 1) % mesh.faces[f].size()]}] = static_cast<int>(f);
   for (const auto& [edge, f] : face_of) {
     const auto other = face_of.find({edge.second, edge.first});
-    if (other == face_of.end() || !open.count(mesh.group[f]) || !open.count(mesh.group[other->second])) continue;
+    if (other == face_of.end() || !open.count(mesh.group[f]) || !open.count(mesh.group[other->second]))
+      continue;
     EXPECT_GT(normal(mesh.faces[f]).dot(normal(mesh.faces[other->second])), 0.3)
         << mesh.group[f] << " near " << mesh.vertices[edge.first].transpose();
   }
@@ -219,7 +236,9 @@ TEST(Head, TextureChartDoesNotOverlap) {
       for (int y = static_cast<int>(low.y()); y <= static_cast<int>(high.y()) && y < kSize; ++y)
         for (int x = static_cast<int>(low.x()); x <= static_cast<int>(high.x()) && x < kSize; ++x) {
           const Vec2 p(x + 0.5, y + 0.5);
-          const auto side = [&](const Vec2& from, const Vec2& to) { return (to - from).x() * (p - from).y() - (to - from).y() * (p - from).x(); };
+          const auto side = [&](const Vec2& from, const Vec2& to) {
+            return (to - from).x() * (p - from).y() - (to - from).y() * (p - from).x();
+          };
           const double within = 1e-4 * std::abs(area) + 1e-3;
           if (side(a, b) < within || side(b, d) < within || side(d, a) < within) continue;
           int& own = owner[y * kSize + x];
@@ -237,27 +256,30 @@ TEST(Head, RegionsNameRangesOfFacesAndTheirMirrorImages) {
     for (const auto& [region, range] : regions().at(name).at("faces").items()) {
       const int first = range.at("first"), count = range.at("count");
       ASSERT_LE(static_cast<std::size_t>(first + count), mesh.faces.size());
-      for (int f = first; f < first + count; ++f) EXPECT_EQ(mesh.group[f], region);
+      for (int f = first; f < first + count; ++f)
+        EXPECT_EQ(mesh.group[f], region);
       total += count;
     }
     EXPECT_EQ(total, mesh.faces.size()) << name;
   }
   const auto& skin = regions().at("skin").at("faces");
-  for (const char* region : {"lid_upper_left", "lid_lower_left", "lip_upper", "lip_lower", "mouth_lining", "nostril_left", "ear_left",
-                             "conjunctiva_left", "neck", "scalp", "nose", "cheek", "chin", "forehead", "temple", "perioral"}) {
+  for (const char* region : {"lid_upper_left", "lid_lower_left", "lip_upper", "lip_lower", "mouth_lining",
+                             "nostril_left", "ear_left", "conjunctiva_left", "neck", "scalp", "nose", "cheek",
+                             "chin", "forehead", "temple", "perioral"}) {
     ASSERT_TRUE(skin.contains(region)) << region;
     std::string other = region;
     if (other.ends_with("_left")) other.replace(other.size() - 4, 4, "right");
     EXPECT_EQ(skin.at(region).at("count"), skin.at(other).at("count")) << region;
   }
-  for (const char* region : {"iris", "pupil", "sclera"}) EXPECT_TRUE(regions().at("eye_left").at("faces").contains(region));
+  for (const char* region : {"iris", "pupil", "sclera"})
+    EXPECT_TRUE(regions().at("eye_left").at("faces").contains(region));
 }
 
 TEST(Head, LoopsAreClosedWaysAlongEdges) {
   const Mesh& skin = head().at("skin");
   const auto edges = directed_edges(skin);
-  for (const char* name : {"lip_contact", "vermilion_border", "lid_margin_left", "lid_margin_right", "lid_margin_inner_left",
-                           "nostril_rim_left", "helix_left", "neck_end"}) {
+  for (const char* name : {"lip_contact", "vermilion_border", "lid_margin_left", "lid_margin_right",
+                           "lid_margin_inner_left", "nostril_rim_left", "helix_left", "neck_end"}) {
     const auto way = loop(name);
     ASSERT_GT(way.size(), 8u) << name;
     for (std::size_t k = 0; k < way.size(); ++k) {
@@ -327,7 +349,8 @@ TEST(Head, ConjunctivalSacHoldsTheEyeball) {
   for (std::size_t f = 0; f < skin.faces.size(); ++f) {
     if (skin.group[f] != "conjunctiva_left") continue;
     Vec3 middle = Vec3::Zero();
-    for (int v : skin.faces[f]) middle += skin.vertices[v] / static_cast<double>(skin.faces[f].size());
+    for (int v : skin.faces[f])
+      middle += skin.vertices[v] / static_cast<double>(skin.faces[f].size());
     if (middle.z() > centre.z()) continue;
     ++behind;
     EXPECT_GT((middle - centre).norm(), radius) << f;
@@ -363,7 +386,8 @@ TEST(Head, IsWhatItsToolMakesOfTheFigures) {
   ASSERT_EQ(made.vertices.size(), stored.vertices.size());
   ASSERT_EQ(made.faces.size(), stored.faces.size());
   for (std::size_t v = 0; v < made.vertices.size(); ++v)
-    ASSERT_LT((made.vertices[v] - stored.vertices[v]).norm(), 1e-3) << "run make_head anatomy/figures anatomy/data";
+    ASSERT_LT((made.vertices[v] - stored.vertices[v]).norm(), 1e-3)
+        << "run make_head anatomy/figures anatomy/data";
 }
 
 }  // namespace

@@ -15,8 +15,10 @@ namespace fs = std::filesystem;
 /// A copy of the built-in data in a directory of its own, to be spoilt.
 class Copy {
  public:
-  Copy() : path_(fs::temp_directory_path() / ("fascia_anatomy_" + std::string(
-                     testing::UnitTest::GetInstance()->current_test_info()->name()))) {
+  Copy()
+      : path_(fs::temp_directory_path() /
+              ("fascia_anatomy_" +
+               std::string(testing::UnitTest::GetInstance()->current_test_info()->name()))) {
     fs::remove_all(path_);
     for (const std::string& name : embedded_files()) {
       fs::create_directories((path_ / name).parent_path());
@@ -98,16 +100,18 @@ TEST_P(SpoiltAnatomy, IsRefusedByName) {
 
 INSTANTIATE_TEST_SUITE_P(
     Ways, SpoiltAnatomy,
-    testing::Values(Spoilt{"landmarks.json", "\"name\": \"vertex\"", "\"name\": \"opisthocranion\"", "opisthocranion"},
-                    Spoilt{"landmarks.json", "\"depth\": \"g\"", "\"depth\": \"glabellar\"", "glabella"},
-                    Spoilt{"landmarks.json", "\"side\": \"left\"", "\"side\": \"sinister\"", "mid_supraorbital_left"},
-                    Spoilt{"tissue_depths.json", "\"mean_mm\": 6", "\"mean_mm\": -6", "depths[0]"},
-                    Spoilt{"muscles.json", "\"kind\": \"sheet\"", "\"kind\": \"cloth\"", "frontalis_medial"},
-                    Spoilt{"muscles.json", "\"on\": \"galea\"", "\"on\": \"ceiling\"", "frontalis_medial"},
-                    Spoilt{"muscles.json", "\"peak_shortening\": 0.25", "\"peak_shortening\": 0", "frontalis_medial"},
-                    Spoilt{"muscles.json", "\"name\": \"procerus\"", "\"name\": \"procer\"", "procerus"},
-                    Spoilt{"actuators.json", "\"minimum\": 0, \"maximum\": 1", "\"minimum\": 2, \"maximum\": 1", "jaw_open"},
-                    Spoilt{"tissue.json", "\"thickness_mm\": 1.7", "\"thickness_mm\": \"thin\"", "skin"}));
+    testing::Values(
+        Spoilt{"landmarks.json", "\"name\": \"vertex\"", "\"name\": \"opisthocranion\"", "opisthocranion"},
+        Spoilt{"landmarks.json", "\"depth\": \"g\"", "\"depth\": \"glabellar\"", "glabella"},
+        Spoilt{"landmarks.json", "\"side\": \"left\"", "\"side\": \"sinister\"", "mid_supraorbital_left"},
+        Spoilt{"tissue_depths.json", "\"mean_mm\": 6", "\"mean_mm\": -6", "depths[0]"},
+        Spoilt{"muscles.json", "\"kind\": \"sheet\"", "\"kind\": \"cloth\"", "frontalis_medial"},
+        Spoilt{"muscles.json", "\"on\": \"galea\"", "\"on\": \"ceiling\"", "frontalis_medial"},
+        Spoilt{"muscles.json", "\"peak_shortening\": 0.25", "\"peak_shortening\": 0", "frontalis_medial"},
+        Spoilt{"muscles.json", "\"name\": \"procerus\"", "\"name\": \"procer\"", "procerus"},
+        Spoilt{"actuators.json", "\"minimum\": 0, \"maximum\": 1", "\"minimum\": 2, \"maximum\": 1",
+               "jaw_open"},
+        Spoilt{"tissue.json", "\"thickness_mm\": 1.7", "\"thickness_mm\": \"thin\"", "skin"}));
 
 TEST(LoadAnatomy, UnknownChannelInATable) {
   const Copy copy;

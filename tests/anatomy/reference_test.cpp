@@ -31,7 +31,8 @@ TriangleMesh joined(const formats::Scene& scene, const std::string& only = {}) {
     if (!only.empty() && part.name != only) continue;
     const int first = mesh.vertex_count();
     mesh.vertices.insert(mesh.vertices.end(), part.positions.begin(), part.positions.end());
-    for (const Triangle& t : part.triangles) mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    for (const Triangle& t : part.triangles)
+      mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
   }
   return mesh;
 }
@@ -39,10 +40,12 @@ TriangleMesh joined(const formats::Scene& scene, const std::string& only = {}) {
 /// Vertices and middles of the triangles, millimetres.
 std::vector<Vec3> samples(const TriangleMesh& mesh) {
   std::vector<Vec3> points;
-  for (const Vec3& v : mesh.vertices) points.push_back(1e3 * v);
+  for (const Vec3& v : mesh.vertices)
+    points.push_back(1e3 * v);
   for (const Triangle& t : mesh.triangles) {
     Vec3 middle = Vec3::Zero();
-    for (const int v : t) middle += 1e3 / 3 * mesh.vertices[static_cast<std::size_t>(v)];
+    for (const int v : t)
+      middle += 1e3 / 3 * mesh.vertices[static_cast<std::size_t>(v)];
     points.push_back(middle);
   }
   return points;
@@ -75,20 +78,25 @@ ByRegion distances(const std::string& part, const TriangleMesh& reference) {
 }
 
 class ReferenceSkull : public testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(All, ReferenceSkull, testing::Values("cranium", "mandible", "teeth_upper", "teeth_lower"));
+INSTANTIATE_TEST_SUITE_P(All, ReferenceSkull,
+                         testing::Values("cranium", "mandible", "teeth_upper", "teeth_lower"));
 
 TEST_P(ReferenceSkull, IsMetAfterAWarpThroughTheLandmarks) {
   const std::string part = GetParam();
   const fs::path file = measured / "bodyparts3d" / (part + ".obj");
   if (!fs::exists(file)) GTEST_SKIP() << "the measured skull is not at " << file;
   TriangleMesh reference = joined(formats::read(file));
-  for (Vec3& v : reference.vertices) v = Vec3(v.x() + 0.65, v.z() - 1500.0, -v.y());
+  for (Vec3& v : reference.vertices)
+    v = Vec3(v.x() + 0.65, v.z() - 1500.0, -v.y());
   const auto warp = skull_maker::read_figures(FASCIA_ANATOMY_FIGURES).to_generic;
   TriangleMesh warped = reference;
-  for (Vec3& v : warped.vertices) v = warp(v);
+  for (Vec3& v : warped.vertices)
+    v = warp(v);
   const ByRegion by_warp = distances(part, warped);
   EXPECT_LE(by_warp.face.mean(), 1.5);
-  if (by_warp.elsewhere.count > 0) { EXPECT_LE(by_warp.elsewhere.mean(), 2.5); }
+  if (by_warp.elsewhere.count > 0) {
+    EXPECT_LE(by_warp.elsewhere.mean(), 2.5);
+  }
 
   // By a similarity alone it is only reported.
   Eigen::Matrix3Xd from(3, reference.vertex_count());
@@ -98,11 +106,13 @@ TEST_P(ReferenceSkull, IsMetAfterAWarpThroughTheLandmarks) {
     to.col(v) = warped.vertices[static_cast<std::size_t>(v)];
   }
   const Eigen::Matrix4d similarity = Eigen::umeyama(from, to, true);
-  for (Vec3& v : reference.vertices) v = (similarity * v.homogeneous()).head<3>();
+  for (Vec3& v : reference.vertices)
+    v = (similarity * v.homogeneous()).head<3>();
   const ByRegion alone = distances(part, reference);
-  std::printf("%s: face %.2f mm (worst %.1f), elsewhere %.2f (worst %.1f); by similarity alone %.2f, %.2f\n", part.c_str(),
-              by_warp.face.mean(), by_warp.face.worst, by_warp.elsewhere.count ? by_warp.elsewhere.mean() : 0.0,
-              by_warp.elsewhere.worst, alone.face.mean(), alone.elsewhere.count ? alone.elsewhere.mean() : 0.0);
+  std::printf("%s: face %.2f mm (worst %.1f), elsewhere %.2f (worst %.1f); by similarity alone %.2f, %.2f\n",
+              part.c_str(), by_warp.face.mean(), by_warp.face.worst,
+              by_warp.elsewhere.count ? by_warp.elsewhere.mean() : 0.0, by_warp.elsewhere.worst,
+              alone.face.mean(), alone.elsewhere.count ? alone.elsewhere.mean() : 0.0);
 }
 
 TEST(ReferenceFace, IsMetWithoutAnyWarp) {

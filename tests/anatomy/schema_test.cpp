@@ -17,7 +17,8 @@ using Json = nlohmann::json;
 using Adapter = valijson::adapters::NlohmannJsonAdapter;
 
 Json schema_of(const std::string& file) {
-  const std::string stem = file.rfind("expressions/", 0) == 0 ? "expressions" : file.substr(0, file.find('.'));
+  const std::string stem =
+      file.rfind("expressions/", 0) == 0 ? "expressions" : file.substr(0, file.find('.'));
   std::ifstream stream(std::string(FASCIA_ANATOMY_SCHEMA) + "/" + stem + ".schema.json");
   return Json::parse(stream);
 }
@@ -34,7 +35,8 @@ std::string complaints(const Json& schema_document, const Json& document) {
   valijson::ValidationResults::Error error;
   for (int i = 0; i < 5 && results.popError(error); ++i) {
     text += "\n ";
-    for (const std::string& part : error.context) text += part;
+    for (const std::string& part : error.context)
+      text += part;
     text += ": " + error.description;
   }
   return text;

@@ -75,12 +75,14 @@ class SkullPart : public testing::TestWithParam<const char*> {
  protected:
   const TriangleMesh& mesh() const { return skull().at(GetParam()); }
 };
-INSTANTIATE_TEST_SUITE_P(All, SkullPart, testing::Values("cranium", "mandible", "teeth_upper", "teeth_lower"));
+INSTANTIATE_TEST_SUITE_P(All, SkullPart,
+                         testing::Values("cranium", "mandible", "teeth_upper", "teeth_lower"));
 
 TEST(Skull, HasItsFourPartsAndNoOther) {
   ASSERT_EQ(skull().size(), 4U);
   int triangles = 0;
-  for (const auto& [name, mesh] : skull()) triangles += mesh.triangle_count();
+  for (const auto& [name, mesh] : skull())
+    triangles += mesh.triangle_count();
   EXPECT_GE(triangles, 8000);
   EXPECT_LE(triangles, 15000);
 }
@@ -113,7 +115,8 @@ TEST_P(SkullPart, IsItsOwnMirrorImageExactly) {
     return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
   };
   std::map<Vec3, int, decltype(less)> index(less);
-  for (int v = 0; v < mesh().vertex_count(); ++v) index[mesh().vertices[static_cast<std::size_t>(v)]] = v;
+  for (int v = 0; v < mesh().vertex_count(); ++v)
+    index[mesh().vertices[static_cast<std::size_t>(v)]] = v;
   ASSERT_EQ(static_cast<int>(index.size()), mesh().vertex_count()) << "two vertices in one place";
   std::vector<int> twin;
   for (const Vec3& v : mesh().vertices) {
@@ -126,7 +129,8 @@ TEST_P(SkullPart, IsItsOwnMirrorImageExactly) {
     return t;
   };
   std::set<Triangle> triangles;
-  for (const Triangle& t : mesh().triangles) triangles.insert(turned(t));
+  for (const Triangle& t : mesh().triangles)
+    triangles.insert(turned(t));
   for (const Triangle& t : mesh().triangles) {
     const auto image = [&](std::size_t k) { return twin[static_cast<std::size_t>(t[k])]; };
     EXPECT_TRUE(triangles.count(turned({image(0), image(2), image(1)})));
@@ -171,8 +175,10 @@ TEST(Skull, TrianglesAreWellShaped) {
 TEST(Skull, MandibleAndCraniumDoNotMeet) {
   const spatial::SurfaceQuery cranium(skull().at("cranium"));
   const spatial::SurfaceQuery mandible(skull().at("mandible"));
-  for (const Vec3& v : skull().at("mandible").vertices) EXPECT_GT(cranium.signed_distance(v), 0.0) << v.transpose();
-  for (const Vec3& v : skull().at("cranium").vertices) EXPECT_GT(mandible.signed_distance(v), 0.0) << v.transpose();
+  for (const Vec3& v : skull().at("mandible").vertices)
+    EXPECT_GT(cranium.signed_distance(v), 0.0) << v.transpose();
+  for (const Vec3& v : skull().at("cranium").vertices)
+    EXPECT_GT(mandible.signed_distance(v), 0.0) << v.transpose();
 }
 
 TEST(Skull, TemporalFossaIsOpenUnderTheArch) {
@@ -188,7 +194,8 @@ TEST(Skull, TemporalFossaIsOpenUnderTheArch) {
 }
 
 TEST(Skull, TeethStandInTheirJaws) {
-  for (const auto& [teeth, bone] : {std::pair{"teeth_upper", "cranium"}, std::pair{"teeth_lower", "mandible"}}) {
+  for (const auto& [teeth, bone] :
+       {std::pair{"teeth_upper", "cranium"}, std::pair{"teeth_lower", "mandible"}}) {
     const spatial::SurfaceQuery jaw(skull().at(bone));
     const TriangleMesh& mesh = skull().at(teeth);
     int count = 0;

@@ -10,7 +10,8 @@
 namespace fascia::testing {
 namespace {
 
-constexpr double deepest = 0.003;  // metres: what has crossed farther has neighbours that are less deep; farther behind lies another part of the face
+constexpr double deepest = 0.003;  // metres: what has crossed farther has neighbours that are less deep;
+                                   // farther behind lies another part of the face
 
 /// One side of an opening as a mesh of its own.
 struct SideSurface {
@@ -30,7 +31,8 @@ struct SideSurface {
     for (size_t t = 0; t < mesh.triangles.size(); ++t)
       for (size_t e = 0; e < 3; ++e)
         if (links.neighbours[t][e] < 0)
-          for (const size_t k : {e, (e + 1) % 3}) on_border[static_cast<size_t>(mesh.triangles[t][k])] = true;
+          for (const size_t k : {e, (e + 1) % 3})
+            on_border[static_cast<size_t>(mesh.triangles[t][k])] = true;
   }
 
   /// Whether a place lies on the border, where there is no telling the surface's sides apart.
@@ -50,7 +52,8 @@ struct SideSurface {
 std::vector<uint8_t> column_sides(const rig::TissueLevel& level, int rings) {
   std::vector<uint8_t> sides(level.columns, no_side);
   for (size_t f = 0; f < level.facing_prism.size(); ++f)
-    for (const uint32_t column : level.triangles[level.facing_prism[f]]) sides[column] = level.facing_side[f];
+    for (const uint32_t column : level.triangles[level.facing_prism[f]])
+      sides[column] = level.facing_side[f];
   for (int ring = 0; ring < rings; ++ring) {
     std::vector<std::array<int, 6>> votes(level.columns, std::array<int, 6>{});
     for (const auto& t : level.triangles)
@@ -71,7 +74,8 @@ std::vector<uint8_t> vertex_sides(const rig::Binding& binding, const rig::Tissue
   for (uint32_t v = 0; v < binding.vertex_count; ++v) {
     std::array<float, 6> share{};
     for (uint32_t k = v * binding.influences; k < (v + 1) * binding.influences; ++k)
-      if (binding.nodes[k] < level.columns && columns[binding.nodes[k]] != no_side) share[columns[binding.nodes[k]]] += binding.weights[k];
+      if (binding.nodes[k] < level.columns && columns[binding.nodes[k]] != no_side)
+        share[columns[binding.nodes[k]]] += binding.weights[k];
     const auto best = std::max_element(share.begin(), share.end());
     if (*best > 0.75F) sides[v] = static_cast<uint8_t>(best - share.begin());
   }
@@ -100,7 +104,9 @@ Crossings::Crossings(const TriangleMesh& mesh, const std::vector<uint8_t>& sides
       const SideSurface facing(welded_, sides_, static_cast<uint8_t>(side ^ 1));
       if (facing.mesh.triangles.empty()) continue;
       const spatial::SurfaceQuery query(facing.mesh);
-      for (size_t v = 0; v < behind.size(); ++v) behind[v] = behind[v] || (sides_[v] == side && query.closest(welded_.vertices[v], deepest).signed_distance < -known);
+      for (size_t v = 0; v < behind.size(); ++v)
+        behind[v] = behind[v] || (sides_[v] == side &&
+                                  query.closest(welded_.vertices[v], deepest).signed_distance < -known);
     }
     for (size_t v = 0; v < behind.size(); ++v)
       if (behind[v]) at_rest_.back()[v] = 1.0;
@@ -120,15 +126,22 @@ std::vector<double> Crossings::depths(const std::vector<Vec3>& vertices, int ope
     if (facing.mesh.triangles.empty()) continue;
     const spatial::SurfaceQuery query(facing.mesh);
     for (size_t v = 0; v < depth.size(); ++v) {
-      if (sides_[v] != side || (at_rest_.size() > static_cast<size_t>(opening) && !at_rest_[static_cast<size_t>(opening)].empty() && at_rest_[static_cast<size_t>(opening)][v] >= 1.0)) continue;
+      if (sides_[v] != side || (at_rest_.size() > static_cast<size_t>(opening) &&
+                                !at_rest_[static_cast<size_t>(opening)].empty() &&
+                                at_rest_[static_cast<size_t>(opening)][v] >= 1.0))
+        continue;
       const spatial::ClosestPoint hit = query.closest(now.vertices[v], deepest);
-      if (!hit.found() || hit.signed_distance >= 0.0 || hit.pseudonormal.dot(normals[v]) > 0.0 || facing.is_border(hit.surface)) continue;
+      if (!hit.found() || hit.signed_distance >= 0.0 || hit.pseudonormal.dot(normals[v]) > 0.0 ||
+          facing.is_border(hit.surface))
+        continue;
       // Beside an edge of the other side, not behind it.
       if ((now.vertices[v] - hit.position).dot(hit.pseudonormal) > -0.8 * hit.distance) continue;
       // What lies behind a lip but outside of its flesh, as the far side of the mouth, has skin in between.
       if (!whole) whole.emplace(now);
       constexpr double skip = 2e-5;
-      if (hit.distance > 4 * skip && whole->first_hit(now.vertices[v], hit.position - now.vertices[v], hit.distance - skip, skip)) continue;
+      if (hit.distance > 4 * skip &&
+          whole->first_hit(now.vertices[v], hit.position - now.vertices[v], hit.distance - skip, skip))
+        continue;
       depth[v] = hit.distance;
     }
   }

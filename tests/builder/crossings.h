@@ -11,8 +11,8 @@ namespace fascia::testing {
 /// Sides as in rig::TissueLevel::facing_side; what belongs to no lip or lid is `no_side`.
 inline constexpr uint8_t no_side = 255;
 
-/// Which lip or lid each column of `level` belongs to: those the lattice says may touch, and `rings` rows around the lips, so that their
-/// corners are shared out between both sides.
+/// Which lip or lid each column of `level` belongs to: those the lattice says may touch, and `rings` rows
+/// around the lips, so that their corners are shared out between both sides.
 std::vector<uint8_t> column_sides(const rig::TissueLevel& level, int rings);
 
 /// The same of a mesh's vertices, by the columns they follow most.
@@ -20,8 +20,8 @@ std::vector<uint8_t> vertex_sides(const rig::Binding& binding, const rig::Tissue
 
 /// Finds where a lip or lid has passed through the one it faces.
 ///
-/// A vertex has crossed when it lies behind the nearest place of the facing side, their normals opposed; its depth is the distance
-/// to that place, less what it was at rest.
+/// A vertex has crossed when it lies behind the nearest place of the facing side, their normals opposed; its
+/// depth is the distance to that place, less what it was at rest.
 class Crossings {
  public:
   /// `mesh` at rest, metres; `sides` one a vertex. Vertices in one place count as one.
@@ -38,8 +38,8 @@ class Crossings {
       place = other.place;
     }
   };
-  /// Deepest crossing between sides 2 `opening` and 2 `opening` + 1 (0 lips, 1 left lids, 2 right lids) as the mesh's vertices
-  /// now stand.
+  /// Deepest crossing between sides 2 `opening` and 2 `opening` + 1 (0 lips, 1 left lids, 2 right lids) as
+  /// the mesh's vertices now stand.
   Worst find(const std::vector<Vec3>& vertices, int opening, double tolerance) const;
 
  private:

@@ -136,7 +136,8 @@ TEST_F(DressedHead, LashesBrowsAndHairGoWithTheSkinAtTheirRoots) {
         << "a strip's tip goes with its root, not with the skin behind it";
   const std::vector<Vec3> brow = moved(face, mesh("brows"));
   for (size_t v = 0; v < brow.size(); ++v)
-    EXPECT_LT((brow[v] - skin_at(rest(mesh("brows"), v))).norm(), 1.5) << "of some 6 mm, from up to 3 mm before the skin";
+    EXPECT_LT((brow[v] - skin_at(rest(mesh("brows"), v))).norm(), 1.5)
+        << "of some 6 mm, from up to 3 mm before the skin";
   EXPECT_GT(brow[2].y(), 1.0);
   for (const Vec3& hair : moved(face, mesh("hair")))
     EXPECT_EQ(hair.norm(), 0.0) << "the crown stays";
@@ -234,7 +235,8 @@ TEST_F(DressedHead, LipsLidsAndNostrilsAreNeverBoundAcross) {
         if (sum < 0.98F || !near) column[v] = none;
         if (column[v] == none) continue;
         ++checked;
-        const int about = std::max(6, static_cast<int>(0.006 / edge[column[v]]));  // millimetres; round a lip's corner it is 25
+        const int about = std::max(
+            6, static_cast<int>(0.006 / edge[column[v]]));  // millimetres; round a lip's corner it is 25
         for (size_t k = 0; k < b.influences; ++k)
           if (b.weights[v * b.influences + k] > 0.02F &&
               steps_between(next, column[v], b.nodes[v * b.influences + k], about) > about)

@@ -37,9 +37,13 @@ class EmbeddedHead : public ::testing::Test {
 fs::path* EmbeddedHead::folder_ = nullptr;
 PosedFace* EmbeddedHead::face_ = nullptr;
 
-TEST_F(EmbeddedHead, MovesAsAnatomySays) { expect_face_moves_as_anatomy_says(*face_); }
+TEST_F(EmbeddedHead, MovesAsAnatomySays) {
+  expect_face_moves_as_anatomy_says(*face_);
+}
 
-TEST_F(EmbeddedHead, HasSoundMuscles) { expect_muscles_are_sound(face_->report()); }
+TEST_F(EmbeddedHead, HasSoundMuscles) {
+  expect_muscles_are_sound(face_->report());
+}
 
 TEST_F(EmbeddedHead, MirrorsItself) {
   const auto mirrored = [](Vec3 v) { return Vec3(-v[0], v[1], v[2]); };
@@ -62,19 +66,31 @@ std::vector<double> gaps(cli::Face& a, cli::Face& b) {
   std::vector<double> list;
   for (size_t m = 0; m < a.meshes().size(); ++m) {
     const auto p = a.positions(m), q = b.positions(m);
-    for (size_t i = 0; i + 2 < p.size(); i += 3) list.push_back(1e3 * static_cast<double>(std::hypot(p[i] - q[i], p[i + 1] - q[i + 1], p[i + 2] - q[i + 2])));
+    for (size_t i = 0; i + 2 < p.size(); i += 3)
+      list.push_back(1e3 *
+                     static_cast<double>(std::hypot(p[i] - q[i], p[i + 1] - q[i + 1], p[i + 2] - q[i + 2])));
   }
   std::sort(list.begin(), list.end());
   return list;
 }
-double mean(const std::vector<double>& list) { return std::accumulate(list.begin(), list.end(), 0.0) / static_cast<double>(list.size()); }
+double mean(const std::vector<double>& list) {
+  return std::accumulate(list.begin(), list.end(), 0.0) / static_cast<double>(list.size());
+}
 
 /// Poses and landmarks whose motion the snapshot keeps; millimetres.
 const std::vector<std::pair<std::string, PosedFace::Values>>& snapshot_poses() {
   static const std::vector<std::pair<std::string, PosedFace::Values>> poses = {
       {"smile", {{"arkit:mouthSmileLeft", 1}, {"arkit:mouthSmileRight", 1}}},
-      {"frown", {{"arkit:mouthFrownLeft", 1}, {"arkit:mouthFrownRight", 1}, {"arkit:browDownLeft", 1}, {"arkit:browDownRight", 1}}},
-      {"surprise", {{"arkit:browInnerUp", 1}, {"arkit:browOuterUpLeft", 1}, {"arkit:browOuterUpRight", 1}, {"arkit:jawOpen", 0.6}}},
+      {"frown",
+       {{"arkit:mouthFrownLeft", 1},
+        {"arkit:mouthFrownRight", 1},
+        {"arkit:browDownLeft", 1},
+        {"arkit:browDownRight", 1}}},
+      {"surprise",
+       {{"arkit:browInnerUp", 1},
+        {"arkit:browOuterUpLeft", 1},
+        {"arkit:browOuterUpRight", 1},
+        {"arkit:jawOpen", 0.6}}},
       {"blink", {{"arkit:eyeBlinkLeft", 1}, {"arkit:eyeBlinkRight", 1}}},
       {"pucker", {{"arkit:mouthPucker", 1}}},
       {"jaw_open", {{"jaw_open", 1}}},
@@ -82,9 +98,21 @@ const std::vector<std::pair<std::string, PosedFace::Values>>& snapshot_poses() {
   return poses;
 }
 
-constexpr const char* snapshot_landmarks[] = {
-    "cheilion_left", "cheilion_right", "labiale_superius", "labiale_inferius", "pogonion", "superciliare_left", "superciliare_mediale_right",
-    "palpebrale_superius_left", "palpebrale_inferius_left", "alare_left", "subnasale", "malare_left", "buccale_right", "glabella", "menton"};
+constexpr const char* snapshot_landmarks[] = {"cheilion_left",
+                                              "cheilion_right",
+                                              "labiale_superius",
+                                              "labiale_inferius",
+                                              "pogonion",
+                                              "superciliare_left",
+                                              "superciliare_mediale_right",
+                                              "palpebrale_superius_left",
+                                              "palpebrale_inferius_left",
+                                              "alare_left",
+                                              "subnasale",
+                                              "malare_left",
+                                              "buccale_right",
+                                              "glabella",
+                                              "menton"};
 
 TEST_F(EmbeddedHead, PosesAsInTheSnapshot) {
   const double tolerance_mm = 0.1;
@@ -109,17 +137,20 @@ TEST_F(EmbeddedHead, PosesAsInTheSnapshot) {
   for (const auto& [name, values] : snapshot_poses())
     for (const char* landmark : snapshot_landmarks)
       for (int k = 0; k < 3; ++k)
-        EXPECT_NEAR(now[name][landmark][k].get<double>(), wanted[name][landmark][k].get<double>(), tolerance_mm)
+        EXPECT_NEAR(now[name][landmark][k].get<double>(), wanted[name][landmark][k].get<double>(),
+                    tolerance_mm)
             << name << " " << landmark << " axis " << k;
 }
 
 TEST_F(EmbeddedHead, TheFastSolverPosesAndMovesAsTheReference) {
-  cli::Face own(face_->rig_path(), {FASCIA_SPACE_METRES, "own", "low"}), reference(face_->rig_path(), {FASCIA_SPACE_METRES, "reference", "low"});
+  cli::Face own(face_->rig_path(), {FASCIA_SPACE_METRES, "own", "low"}),
+      reference(face_->rig_path(), {FASCIA_SPACE_METRES, "reference", "low"});
   for (const auto& [name, values] : snapshot_poses()) {
     for (cli::Face* face : {&own, &reference}) {
       face->clear();
       face->reset();
-      for (const auto& [channel, value] : values) face->set(channel, value);
+      for (const auto& [channel, value] : values)
+        face->set(channel, value);
       face->pose();
     }
     const std::vector<double> list = gaps(own, reference);

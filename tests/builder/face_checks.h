@@ -17,17 +17,21 @@ inline void expect_muscles_are_sound(const rigging::BuildReport& report) {
     EXPECT_GT(muscle.shortest_mm, 2.0) << muscle.name;
     EXPECT_LE(muscle.longest_mm, 3.0 * muscle.shortest_mm) << muscle.name << ": a fibre goes astray";
     EXPECT_GT(muscle.area_mm2, 5.0) << muscle.name;
-    EXPECT_NEAR(muscle.thickness_mm * muscle.area_mm2, muscle.volume_mm3, 1e-6 * muscle.volume_mm3) << muscle.name;
+    EXPECT_NEAR(muscle.thickness_mm * muscle.area_mm2, muscle.volume_mm3, 1e-6 * muscle.volume_mm3)
+        << muscle.name;
     EXPECT_LT(muscle.origin_distance_mm, 8.0) << muscle.name;
     EXPECT_LT(muscle.insertion_distance_mm, 8.0) << muscle.name;
   }
   ASSERT_EQ(report.modioli.size(), 2u);
   for (const auto& node : report.modioli) {
     const std::string side = node.name.substr(node.name.rfind('_'));
-    // The seven: rings of both lips, buccinator, zygomaticus major, levator and depressor anguli oris, risorius, platysma.
-    for (const char* muscle : {"orbicularis_oris_marginal_upper", "orbicularis_oris_peripheral_lower", "buccinator_upper", "zygomaticus_major_superior",
-                               "levator_anguli_oris", "depressor_anguli_oris", "risorius", "platysma_modiolar"})
-      EXPECT_NE(std::find(node.muscles.begin(), node.muscles.end(), muscle + side), node.muscles.end()) << muscle << side;
+    // The seven: rings of both lips, buccinator, zygomaticus major, levator and depressor anguli oris,
+    // risorius, platysma.
+    for (const char* muscle : {"orbicularis_oris_marginal_upper", "orbicularis_oris_peripheral_lower",
+                               "buccinator_upper", "zygomaticus_major_superior", "levator_anguli_oris",
+                               "depressor_anguli_oris", "risorius", "platysma_modiolar"})
+      EXPECT_NE(std::find(node.muscles.begin(), node.muscles.end(), muscle + side), node.muscles.end())
+          << muscle << side;
     EXPECT_LT(node.radius_mm, 8.0) << node.name;
   }
 }
@@ -71,7 +75,8 @@ inline void expect_face_moves_as_anatomy_says(PosedFace& face) {
   }
 
   face.pose({{"lid_upper_left", 1}, {"lid_upper_right", 1}});
-  const double left_lid = -face.moved("palpebrale_superius_left")[1], right_lid = -face.moved("palpebrale_superius_right")[1];
+  const double left_lid = -face.moved("palpebrale_superius_left")[1],
+               right_lid = -face.moved("palpebrale_superius_right")[1];
   EXPECT_GT(left_lid, 6.0) << "the eye closes";
   EXPECT_NEAR(left_lid, right_lid, 0.2 * left_lid) << "one eye as the other";
 

@@ -15,21 +15,28 @@ namespace fs = std::filesystem;
 const fs::path data = fs::path(FASCIA_MEASURED_DATA) / "data";
 const fs::path fixtures = FASCIA_TEST_DATA;
 
-/// Lengths of the fibres of a published finite-element face (ArtiSynth), and our part each stands for. Its medial
-/// depressor labii inferioris ends half way up the lip and is not held to it.
+/// Lengths of the fibres of a published finite-element face (ArtiSynth), and our part each stands for. Its
+/// medial depressor labii inferioris ends half way up the lip and is not held to it.
 void expect_published_lengths(const rigging::BuildReport& report, const fs::path& published) {
   struct Pair {
     const char* muscle;
     int fibre;
     const char* ours;
   };
-  const Pair pairs[] = {{"DAO", 1, "depressor_anguli_oris"}, {"BUC", 1, "buccinator_upper"}, {"BUC", 2, "buccinator_lower"},
-                        {"MENT", 1, "mentalis"}, {"OOM", 1, "orbicularis_oris_marginal_upper"},
-                        {"OOM", 2, "orbicularis_oris_marginal_lower"}, {"OOP", 1, "orbicularis_oris_peripheral_upper"},
-                        {"OOP", 2, "orbicularis_oris_peripheral_lower"}, {"DLI", 2, "depressor_labii_inferioris_lateral"},
+  const Pair pairs[] = {{"DAO", 1, "depressor_anguli_oris"},
+                        {"BUC", 1, "buccinator_upper"},
+                        {"BUC", 2, "buccinator_lower"},
+                        {"MENT", 1, "mentalis"},
+                        {"OOM", 1, "orbicularis_oris_marginal_upper"},
+                        {"OOM", 2, "orbicularis_oris_marginal_lower"},
+                        {"OOP", 1, "orbicularis_oris_peripheral_upper"},
+                        {"OOP", 2, "orbicularis_oris_peripheral_lower"},
+                        {"DLI", 2, "depressor_labii_inferioris_lateral"},
                         {"LLSAN", 1, "levator_labii_superioris_alaeque_nasi_labial"},
-                        {"LLSAN", 2, "levator_labii_superioris_alaeque_nasi_alar"}, {"LAO", 1, "levator_anguli_oris"},
-                        {"RIS", 1, "risorius"}, {"ZYG", 1, "zygomaticus_major_superior"},
+                        {"LLSAN", 2, "levator_labii_superioris_alaeque_nasi_alar"},
+                        {"LAO", 1, "levator_anguli_oris"},
+                        {"RIS", 1, "risorius"},
+                        {"ZYG", 1, "zygomaticus_major_superior"},
                         {"LLS", 1, "levator_labii_superioris_medial"}};
   std::ifstream file(published);
   const nlohmann::json fibres = nlohmann::json::parse(file);
@@ -46,7 +53,8 @@ void expect_published_lengths(const rigging::BuildReport& report, const fs::path
   std::vector<double> sorted = ratios;
   std::sort(sorted.begin(), sorted.end());
   const double size = sorted[sorted.size() / 2];  // of one face to the other
-  for (size_t k = 0; k < ratios.size(); ++k) EXPECT_NEAR(ratios[k] / size, 1.0, 0.25) << pairs[k].ours;
+  for (size_t k = 0; k < ratios.size(); ++k)
+    EXPECT_NEAR(ratios[k] / size, 1.0, 0.25) << pairs[k].ours;
 }
 
 TEST(MeasuredHeads, IctMeanHeadMovesAsAnatomySays) {

@@ -9,9 +9,10 @@
 
 namespace fascia::testing {
 
-/// Two seconds in which every channel goes its own slow way, jaw and lids among them, played at `rate` frames a second (a multiple
-/// of ten): displacements at every tenth of a second.
-inline std::vector<std::vector<sim::Vec3f>> played(const runtime::Asset& asset, size_t level, int rate, const sim::realtime::StepOptions& options) {
+/// Two seconds in which every channel goes its own slow way, jaw and lids among them, played at `rate` frames
+/// a second (a multiple of ten): displacements at every tenth of a second.
+inline std::vector<std::vector<sim::Vec3f>> played(const runtime::Asset& asset, size_t level, int rate,
+                                                   const sim::realtime::StepOptions& options) {
   const size_t channels = asset.channel_names.size();
   const auto& bones = asset.bones();
   sim::realtime::Face face(asset.realtime_model(level), channels);
@@ -20,10 +21,14 @@ inline std::vector<std::vector<sim::Vec3f>> played(const runtime::Asset& asset, 
   for (int frame = 1; frame <= 2 * rate; ++frame) {
     const double t = static_cast<double>(frame) / rate;
     for (size_t c = 0; c < channels; ++c) {
-      const double wave = std::sin(2.0 * M_PI * (0.5 + 0.07 * static_cast<double>(c % 7)) * t + 2.4 * static_cast<double>(c));
-      values[c] = static_cast<float>(0.4 * std::min(1.0, t / 0.3) * wave * wave) * (wave > 0.0 ? asset.channel_maximum[c] : asset.channel_minimum[c]);
+      const double wave =
+          std::sin(2.0 * M_PI * (0.5 + 0.07 * static_cast<double>(c % 7)) * t + 2.4 * static_cast<double>(c));
+      values[c] = static_cast<float>(0.4 * std::min(1.0, t / 0.3) * wave * wave) *
+                  (wave > 0.0 ? asset.channel_maximum[c] : asset.channel_minimum[c]);
     }
-    const auto value = [&](int32_t channel) { return channel < 0 ? 0.0F : values[static_cast<size_t>(channel)]; };
+    const auto value = [&](int32_t channel) {
+      return channel < 0 ? 0.0F : values[static_cast<size_t>(channel)];
+    };
     sim::Drive drive;
     drive.activations = values;
     drive.jaw = {value(bones.jaw_open), value(bones.jaw_forward), value(bones.jaw_lateral)};
@@ -40,7 +45,8 @@ struct Apart {
   double most = 0.0;   ///< metres
 };
 
-inline Apart apart(const std::vector<std::vector<sim::Vec3f>>& a, const std::vector<std::vector<sim::Vec3f>>& b) {
+inline Apart apart(const std::vector<std::vector<sim::Vec3f>>& a,
+                   const std::vector<std::vector<sim::Vec3f>>& b) {
   Apart result;
   double off = 0.0, size = 0.0;
   for (size_t k = 0; k < a.size(); ++k)

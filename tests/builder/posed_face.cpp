@@ -8,11 +8,13 @@
 
 namespace fascia::testing {
 
-PosedFace::PosedFace(const std::filesystem::path& head, const std::filesystem::path& landmarks, const std::string& name, const std::string& detail) {
+PosedFace::PosedFace(const std::filesystem::path& head, const std::filesystem::path& landmarks,
+                     const std::string& name, const std::string& detail) {
   const formats::Scene scene = formats::read(head);
   rigging::BuildOptions options;
   options.detail = detail;
-  rigging::BuildResult built = rigging::build_rig(scene, formats::read_landmarks(landmarks), anatomy::load_generic(), options);
+  rigging::BuildResult built =
+      rigging::build_rig(scene, formats::read_landmarks(landmarks), anatomy::load_generic(), options);
   const auto bytes = rig::write(rigging::gltf_source(scene, built.report.input_to_metres), built.rig);
   rig_path_ = std::filesystem::temp_directory_path() / ("fascia_" + name + ".glb");
   formats::write_bytes(rig_path_, bytes.data(), bytes.size());
@@ -44,7 +46,8 @@ PosedFace::~PosedFace() {
 void PosedFace::pose(const Values& values) {
   face_->clear();
   face_->reset();
-  for (const auto& [name, value] : values) face_->set(name, value);
+  for (const auto& [name, value] : values)
+    face_->set(name, value);
   face_->pose();
 }
 
@@ -59,13 +62,16 @@ Vec3 PosedFace::place(const std::string& landmark) const {
   return at(handle->second, false);
 }
 
-Vec3 PosedFace::moved(const std::string& landmark) const { return place(landmark) - at(handles_.at(landmark), true); }
+Vec3 PosedFace::moved(const std::string& landmark) const {
+  return place(landmark) - at(handles_.at(landmark), true);
+}
 
 double PosedFace::largest_motion() const {
   double largest = 0.0;
   for (size_t m = 0; m < face_->meshes().size(); ++m) {
     const auto now = face_->positions(m), rest = face_->rest(m);
-    for (size_t i = 0; i < now.size(); ++i) largest = std::max(largest, 1e3 * std::abs(static_cast<double>(now[i] - rest[i])));
+    for (size_t i = 0; i < now.size(); ++i)
+      largest = std::max(largest, 1e3 * std::abs(static_cast<double>(now[i] - rest[i])));
   }
   return largest;
 }
@@ -77,7 +83,9 @@ double PosedFace::largest_skin_motion_right_of(double x_mm) const {
     const auto now = face_->positions(m), rest = face_->rest(m);
     for (size_t i = 0; i + 2 < now.size(); i += 3)
       if (1e3 * rest[i] < x_mm)
-        largest = std::max(largest, 1e3 * static_cast<double>(std::hypot(now[i] - rest[i], now[i + 1] - rest[i + 1], now[i + 2] - rest[i + 2])));
+        largest =
+            std::max(largest, 1e3 * static_cast<double>(std::hypot(now[i] - rest[i], now[i + 1] - rest[i + 1],
+                                                                   now[i + 2] - rest[i + 2])));
   }
   return largest;
 }

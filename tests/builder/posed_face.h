@@ -13,7 +13,8 @@ namespace fascia::testing {
 /// A rig built in this process, and a face of it to pose; measures in millimetres in the rig's axes.
 class PosedFace {
  public:
-  PosedFace(const std::filesystem::path& head, const std::filesystem::path& landmarks, const std::string& name, const std::string& detail = "medium");
+  PosedFace(const std::filesystem::path& head, const std::filesystem::path& landmarks,
+            const std::string& name, const std::string& detail = "medium");
   ~PosedFace();
 
   using Values = std::map<std::string, double>;
@@ -27,8 +28,8 @@ class PosedFace {
   /// Where a landmark is now, millimetres.
   Vec3 place(const std::string& landmark) const;
 
-  /// The largest motion of any vertex of any mesh, millimetres; of the skin only on the side x < `right_of` when
-  /// that is given.
+  /// The largest motion of any vertex of any mesh, millimetres; of the skin only on the side x < `right_of`
+  /// when that is given.
   double largest_motion() const;
   double largest_skin_motion_right_of(double x_mm) const;
 

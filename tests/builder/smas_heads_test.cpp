@@ -28,7 +28,8 @@ struct Head {
     inputs.skin = &found.head.skin;
     inputs.cranium = &skull.cranium;
     inputs.mandible = &skull.mandible;
-    for (const auto& [name, landmark] : found.landmarks) inputs.landmarks[name] = landmark.position;
+    for (const auto& [name, landmark] : found.landmarks)
+      inputs.landmarks[name] = landmark.position;
   }
 };
 
@@ -42,7 +43,8 @@ fs::path embedded_head() {
 int euler(const TriangleMesh& mesh) {
   int edges = 0;
   for (const auto& neighbours : connectivity(mesh).neighbours)
-    for (int n : neighbours) edges += n < 0 ? 2 : 1;
+    for (int n : neighbours)
+      edges += n < 0 ? 2 : 1;
   return mesh.vertex_count() - edges / 2 + mesh.triangle_count();
 }
 
@@ -57,7 +59,8 @@ void expect_sound(const Head& head, const smas::Result& smas) {
   EXPECT_EQ(euler(smas.mesh), 1 - 4);
   EXPECT_EQ(connectivity(smas.mesh).irregular_edges, 0);
 
-  // Strictly between bone and skin at every vertex: the bones asked anew, the skin over it by the point that it is bound to.
+  // Strictly between bone and skin at every vertex: the bones asked anew, the skin over it by the point that
+  // it is bound to.
   const spatial::SurfaceQuery cranium(*head.inputs.cranium), mandible(*head.inputs.mandible);
   const std::vector<Vec3> normals = vertex_normals(*head.inputs.skin);
   for (size_t v = 0; v < smas.mesh.vertices.size(); ++v) {
@@ -68,7 +71,8 @@ void expect_sound(const Head& head, const smas::Result& smas) {
     const SurfacePoint& at = smas.skin_points[v];
     const Vec3 over = position(*head.inputs.skin, at) - p;
     Vec3 outward = Vec3::Zero();
-    for (int k = 0; k < 3; ++k) outward += at.barycentric[k] * normals[head.inputs.skin->triangles[at.triangle][k]];
+    for (int k = 0; k < 3; ++k)
+      outward += at.barycentric[k] * normals[head.inputs.skin->triangles[at.triangle][k]];
     EXPECT_GT(over.dot(outward), 0.0) << v;
     EXPECT_NEAR(over.norm(), smas.skin_distance[v], 1e-9) << v;
   }
@@ -84,7 +88,8 @@ void expect_sound(const Head& head, const smas::Result& smas) {
     const auto at = head.inputs.landmarks.find(name);
     ASSERT_NE(at, head.inputs.landmarks.end()) << name;
     double nearest = 1.0;
-    for (const Vec3& p : smas.mesh.vertices) nearest = std::min(nearest, (p - at->second).norm());
+    for (const Vec3& p : smas.mesh.vertices)
+      nearest = std::min(nearest, (p - at->second).norm());
     EXPECT_GT(nearest, 0.0015) << name;
   }
 }
@@ -99,8 +104,9 @@ TEST_P(MeasuredHead, HasASoundSmas) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, MeasuredHead,
-                         ::testing::Values("ict/neutral.glb", "ict/person_0.glb", "ict/person_1.glb", "ict/person_2.glb",
-                                           "ict/person_3.glb", "ict/person_4.glb", "ict/person_5.glb", "heads/makehuman_body.obj"));
+                         ::testing::Values("ict/neutral.glb", "ict/person_0.glb", "ict/person_1.glb",
+                                           "ict/person_2.glb", "ict/person_3.glb", "ict/person_4.glb",
+                                           "ict/person_5.glb", "heads/makehuman_body.obj"));
 
 TEST(EmbeddedHeadSmas, IsSoundInEitherFormAndAsFarAsAsked) {
   const Head head(embedded_head());
@@ -113,13 +119,15 @@ TEST(EmbeddedHeadSmas, IsSoundInEitherFormAndAsFarAsAsked) {
   expect_sound(head, told_gradients);
   const spatial::SurfaceQuery surface(usual.mesh);
   double apart = 0.0;
-  for (const Vec3& p : told_gradients.mesh.vertices) apart += surface.closest(p).distance / told_gradients.mesh.vertex_count();
+  for (const Vec3& p : told_gradients.mesh.vertices)
+    apart += surface.closest(p).distance / told_gradients.mesh.vertex_count();
   EXPECT_LT(apart, 0.0005);
 
   smas::Options face_alone, scalp_and_neck;
   face_alone.reach.galea = 0.0, face_alone.reach.neck = 0.0;
   scalp_and_neck.reach.galea = 0.8, scalp_and_neck.reach.neck = 0.045;
-  const smas::Result small = smas::build(head.inputs, face_alone), large = smas::build(head.inputs, scalp_and_neck);
+  const smas::Result small = smas::build(head.inputs, face_alone),
+                     large = smas::build(head.inputs, scalp_and_neck);
   expect_sound(head, small);
   expect_sound(head, large);
   const Bounds least = bounds(small.mesh.vertices), most = bounds(large.mesh.vertices);

@@ -26,7 +26,8 @@ const Heads& heads() {
     fs::create_directories(folder);
     cli::write_embedded_head(folder / "head.obj", folder / "landmarks.json");
     const formats::Scene scene = formats::read(folder / "head.obj");
-    rigging::BuildResult built = rigging::build_rig(scene, formats::read_landmarks(folder / "landmarks.json"), anatomy::load_generic());
+    rigging::BuildResult built = rigging::build_rig(scene, formats::read_landmarks(folder / "landmarks.json"),
+                                                    anatomy::load_generic());
     fs::remove_all(folder);
     const auto source = rigging::gltf_source(scene, built.report.input_to_metres);
     Heads made;
@@ -41,7 +42,9 @@ const Heads& heads() {
   return heads;
 }
 
-std::shared_ptr<const runtime::Asset> embedded_head() { return heads().whole; }
+std::shared_ptr<const runtime::Asset> embedded_head() {
+  return heads().whole;
+}
 
 /// How many lines of sight from the front reach an eyeball.
 int seen_of_the_eye(const SweptFace& face, const rig::Eye& eye) {
@@ -60,7 +63,8 @@ int seen_of_the_eye(const SweptFace& face, const rig::Eye& eye) {
 
 void show(SweptFace& face, const std::vector<std::string>& names) {
   face.relax();
-  for (const std::string& name : names) face.add(name, 1.0F);
+  for (const std::string& name : names)
+    face.add(name, 1.0F);
   face.pose();
 }
 
@@ -73,13 +77,15 @@ TEST(Lids, AFullBlinkShutsTheEyesAndGoesNoFarther) {
     // The blink of the table, and lids driven together by all that closes them.
     for (const std::vector<std::string>& names :
          {std::vector<std::string>{"arkit:eyeBlinkLeft", "arkit:eyeBlinkRight"},
-          {"lid_upper_left", "lid_lower_left", "orbicularis_oculi_pretarsal_upper_left", "lid_upper_right", "lid_lower_right", "orbicularis_oculi_pretarsal_upper_right"}}) {
+          {"lid_upper_left", "lid_lower_left", "orbicularis_oculi_pretarsal_upper_left", "lid_upper_right",
+           "lid_lower_right", "orbicularis_oculi_pretarsal_upper_right"}}) {
       show(face, names);
       EXPECT_LE(seen_of_the_eye(face, skull.eye_left), 3) << names[0];  // beside the caruncle
       EXPECT_LE(seen_of_the_eye(face, skull.eye_right), 3) << names[0];
       const SweptFace::State state = face.state(1e-3);
       for (const size_t eye : {1, 2}) {
-        // Edges may overlap by 0.3 mm, and the contact is a penalty: driven together they lap over by a millimetre.
+        // Edges may overlap by 0.3 mm, and the contact is a penalty: driven together they lap over by a
+        // millimetre.
         EXPECT_LT(state.lattice[eye].depth, names.size() == 2 ? 7e-4 : 1.3e-3) << names[0];
         EXPECT_LE(state.rendered[eye].count, 4) << names[0];  // at the outer canthus
       }
@@ -87,7 +93,8 @@ TEST(Lids, AFullBlinkShutsTheEyesAndGoesNoFarther) {
   }
 }
 
-/// Every third ARKit shape, then drives by chance: static poses, and steps in time that jump from one to the next.
+/// Every third ARKit shape, then drives by chance: static poses, and steps in time that jump from one to the
+/// next.
 SweptFace::State swept(SweptFace& face) {
   SweptFace::State all;
   const std::vector<std::string> shapes = face.shapes();
@@ -110,7 +117,8 @@ SweptFace::State swept(SweptFace& face) {
 }
 
 TEST(Sweep, NeitherLipsNorLidsPassThroughEachOther) {
-  SweptFace face(embedded_head(), 0), bare(heads().without_contact, 0, embedded_head()->rig().tissue.levels[0]);
+  SweptFace face(embedded_head(), 0),
+      bare(heads().without_contact, 0, embedded_head()->rig().tissue.levels[0]);
   const SweptFace::State state = swept(face), without = swept(bare);
   EXPECT_TRUE(state.is_finite);
   EXPECT_EQ(state.turned_prisms, 0);

@@ -14,16 +14,20 @@ constexpr uint32_t least_members = 2, most_members = 5;
 /// The columns' skin as a mesh.
 TriangleMesh skin_layer(const rig::TissueLevel& level) {
   TriangleMesh mesh;
-  for (uint32_t c = 0; c < level.columns; ++c) mesh.vertices.push_back(level.rest[c].cast<double>());
-  for (const auto& t : level.triangles) mesh.triangles.push_back({static_cast<int>(t[0]), static_cast<int>(t[1]), static_cast<int>(t[2])});
+  for (uint32_t c = 0; c < level.columns; ++c)
+    mesh.vertices.push_back(level.rest[c].cast<double>());
+  for (const auto& t : level.triangles)
+    mesh.triangles.push_back({static_cast<int>(t[0]), static_cast<int>(t[1]), static_cast<int>(t[2])});
   return mesh;
 }
 
 }  // namespace
 
 SweptFace::SweptFace(std::shared_ptr<const runtime::Asset> asset, size_t level, const rig::TissueLevel& marks)
-    : asset_(std::move(asset)), model_(&asset_->model(level)),
-      face_(asset_->realtime_model(level), asset_->channel_names.size()), values_(asset_->channel_rest),
+    : asset_(std::move(asset)),
+      model_(&asset_->model(level)),
+      face_(asset_->realtime_model(level), asset_->channel_names.size()),
+      values_(asset_->channel_rest),
       displacements_(model_->rest().size(), sim::Vec3f::Zero()) {
   bones_.displacements = displacements_;
   lattice_ = std::make_unique<Crossings>(skin_layer(marks), column_sides(marks, 0));
@@ -36,18 +40,24 @@ SweptFace::SweptFace(std::shared_ptr<const runtime::Asset> asset, size_t level, 
     const std::vector<uint8_t> own = vertex_sides(*binding, marks);
     sides.insert(sides.end(), own.begin(), own.end());
     for (const auto& t : asset_->primitives()[i].triangles)
-      triangles_.push_back({first + static_cast<int>(t[0]), first + static_cast<int>(t[1]), first + static_cast<int>(t[2])});
+      triangles_.push_back(
+          {first + static_cast<int>(t[0]), first + static_cast<int>(t[1]), first + static_cast<int>(t[2])});
   }
   rendered_ = std::make_unique<Crossings>(skin(), sides);
 }
 
-void SweptFace::relax() { values_ = asset_->channel_rest; }
+void SweptFace::relax() {
+  values_ = asset_->channel_rest;
+}
 
 void SweptFace::add(const runtime::Target& target, float value) {
-  if (target.kind == runtime::Target::Kind::channel) values_[target.index] += value;
+  if (target.kind == runtime::Target::Kind::channel)
+    values_[target.index] += value;
   else
-    for (const auto& [channel, weight] : asset_->members()[target.index].entries) values_[channel] += weight * value;
-  for (size_t c = 0; c < values_.size(); ++c) values_[c] = std::clamp(values_[c], asset_->channel_minimum[c], asset_->channel_maximum[c]);
+    for (const auto& [channel, weight] : asset_->members()[target.index].entries)
+      values_[channel] += weight * value;
+  for (size_t c = 0; c < values_.size(); ++c)
+    values_[c] = std::clamp(values_[c], asset_->channel_minimum[c], asset_->channel_maximum[c]);
 }
 
 void SweptFace::add(const std::string& name, float value) {
@@ -60,7 +70,8 @@ std::vector<std::string> SweptFace::shapes() const {
   std::vector<std::string> names;
   for (const rig::NamedSet& set : asset_->rig().actuation.sets)
     if (set.name == "arkit")
-      for (const std::string& member : set.members) names.push_back("arkit:" + member);
+      for (const std::string& member : set.members)
+        names.push_back("arkit:" + member);
   return names;
 }
 
@@ -69,7 +80,8 @@ void SweptFace::draw(std::mt19937& random) {
   relax();
   if (random() % 2U == 0) {
     const std::vector<std::string> names = shapes();
-    const uint32_t count = least_members + static_cast<uint32_t>(random() % (most_members - least_members + 1));
+    const uint32_t count =
+        least_members + static_cast<uint32_t>(random() % (most_members - least_members + 1));
     for (uint32_t k = 0; !names.empty() && k < count; ++k) {
       const std::string& name = names[random() % names.size()];
       add(name, chance());
@@ -78,18 +90,24 @@ void SweptFace::draw(std::mt19937& random) {
   }
   for (size_t c = 0; c < values_.size(); ++c) {
     const bool is_active = random() % 4U == 0;
-    const float value = asset_->channel_minimum[c] + chance() * (asset_->channel_maximum[c] - asset_->channel_minimum[c]);
+    const float value =
+        asset_->channel_minimum[c] + chance() * (asset_->channel_maximum[c] - asset_->channel_minimum[c]);
     if (is_active) values_[c] = value;
   }
 }
 
 sim::JawPose SweptFace::wanted_jaw() const {
   const runtime::BoneChannels& bones = asset_->bones();
-  const auto value = [&](int32_t channel) { return channel < 0 ? 0.0F : values_[static_cast<size_t>(channel)]; };
-  return sim::clamped(asset_->jaw_muscles().moved({value(bones.jaw_open), value(bones.jaw_forward), value(bones.jaw_lateral)}, values_));
+  const auto value = [&](int32_t channel) {
+    return channel < 0 ? 0.0F : values_[static_cast<size_t>(channel)];
+  };
+  return sim::clamped(asset_->jaw_muscles().moved(
+      {value(bones.jaw_open), value(bones.jaw_forward), value(bones.jaw_lateral)}, values_));
 }
 
-void SweptFace::pass(double seconds) { jaw_ = sim::approached(jaw_, wanted_jaw(), seconds); }
+void SweptFace::pass(double seconds) {
+  jaw_ = sim::approached(jaw_, wanted_jaw(), seconds);
+}
 
 sim::Drive SweptFace::drive() const {
   sim::Drive drive;
@@ -103,7 +121,8 @@ sim::Drive SweptFace::drive() const {
 void SweptFace::follow() {
   face_.displacements(displacements_);
   bones_.jaw = sim::jaw_transform(model_->jaw(), jaw_);
-  for (runtime::BoundMesh& mesh : meshes_) mesh.follow(bones_);
+  for (runtime::BoundMesh& mesh : meshes_)
+    mesh.follow(bones_);
 }
 
 void SweptFace::pose() {
@@ -124,13 +143,15 @@ bool SweptFace::step(double seconds) {
 TriangleMesh SweptFace::skin() const {
   TriangleMesh mesh{{}, triangles_};
   for (runtime::BoundMesh& part : meshes_)
-    for (const sim::Vec3f& p : part.positions(bones_)) mesh.vertices.push_back(p.cast<double>());
+    for (const sim::Vec3f& p : part.positions(bones_))
+      mesh.vertices.push_back(p.cast<double>());
   return mesh;
 }
 
 int SweptFace::turned_prisms() const {
   std::vector<Vec3> now(displacements_.size());
-  for (size_t i = 0; i < now.size(); ++i) now[i] = model_->rest()[i] + displacements_[i].cast<double>();
+  for (size_t i = 0; i < now.size(); ++i)
+    now[i] = model_->rest()[i] + displacements_[i].cast<double>();
   int turned = 0;
   for (const sim::Prism& prism : model_->prisms())
     if (!(sim::prism_volume(prism.nodes, now.data()) > 0.0)) ++turned;
@@ -140,10 +161,12 @@ int SweptFace::turned_prisms() const {
 SweptFace::State SweptFace::state(double tolerance) const {
   State state;
   std::vector<Vec3> columns(model_->lattice().columns);
-  for (size_t i = 0; i < displacements_.size(); ++i) state.is_finite = state.is_finite && displacements_[i].allFinite();
+  for (size_t i = 0; i < displacements_.size(); ++i)
+    state.is_finite = state.is_finite && displacements_[i].allFinite();
   if (!state.is_finite) return state;
   state.turned_prisms = turned_prisms();
-  for (size_t c = 0; c < columns.size(); ++c) columns[c] = model_->rest()[c] + displacements_[c].cast<double>();
+  for (size_t c = 0; c < columns.size(); ++c)
+    columns[c] = model_->rest()[c] + displacements_[c].cast<double>();
   const std::vector<Vec3> vertices = skin().vertices;
   for (int opening = 0; opening < 3; ++opening) {
     state.lattice[static_cast<size_t>(opening)] = lattice_->find(columns, opening, tolerance);

@@ -15,12 +15,13 @@ namespace fascia::testing {
 class SweptFace {
  public:
   /// `level` is an index into the rig's levels of detail.
-  SweptFace(std::shared_ptr<const runtime::Asset> asset, size_t level) : SweptFace(asset, level, asset->rig().tissue.levels[level]) {}
+  SweptFace(std::shared_ptr<const runtime::Asset> asset, size_t level)
+      : SweptFace(asset, level, asset->rig().tissue.levels[level]) {}
   /// The same; what faces what is read from `marks`, of the same columns.
   SweptFace(std::shared_ptr<const runtime::Asset> asset, size_t level, const rig::TissueLevel& marks);
 
-  /// A drive by chance: half of the time a few members of the ARKit set together, else a quarter of all channels, each anywhere
-  /// in its range. Stays as it is until the next.
+  /// A drive by chance: half of the time a few members of the ARKit set together, else a quarter of all
+  /// channels, each anywhere in its range. Stays as it is until the next.
   void draw(std::mt19937& random);
   /// More of a channel or a set's member, such as "arkit:jawOpen", as what drives it.
   void add(const std::string& name, float value);
@@ -31,15 +32,17 @@ class SweptFace {
   /// Lets the jaw go towards where the drive wants it; `step` does it itself.
   void pass(double seconds);
 
-  void pose();                         ///< where the drive's forces balance
-  bool step(double seconds);           ///< false when the watchdog put the face back
-  void add_force(const sim::Vec3& acceleration) { acceleration_ = acceleration; }  ///< on all loose tissue, m/s^2
+  void pose();                ///< where the drive's forces balance
+  bool step(double seconds);  ///< false when the watchdog put the face back
+  void add_force(const sim::Vec3& acceleration) {
+    acceleration_ = acceleration;
+  }  ///< on all loose tissue, m/s^2
   void touch(std::span<const sim::NodeForce> touches) { touches_ = touches; }
 
   struct State {
     bool is_finite = true;
-    int turned_prisms = 0;                                 ///< of negative volume
-    std::array<Crossings::Worst, 3> lattice, rendered;     ///< lips, left lids, right lids
+    int turned_prisms = 0;                              ///< of negative volume
+    std::array<Crossings::Worst, 3> lattice, rendered;  ///< lips, left lids, right lids
     void take(const State& other);
   };
   /// `tolerance` as in Crossings::find.
@@ -67,7 +70,7 @@ class SweptFace {
   std::vector<sim::Vec3f> displacements_;
   runtime::BonePose bones_;
   mutable std::vector<runtime::BoundMesh> meshes_;  ///< the skin's primitives
-  std::vector<Triangle> triangles_;         ///< of all of them
+  std::vector<Triangle> triangles_;                 ///< of all of them
   std::unique_ptr<Crossings> lattice_, rendered_;
 };
 

@@ -22,7 +22,8 @@ class Tool : public ::testing::Test {
     fs::remove_all(*folder);
     fs::create_directories(*folder);
     write_embedded_head(at("head.obj"), at("landmarks.json"));
-    built = new Outcome(run("build " + at("head.obj") + " --landmarks " + at("landmarks.json") + " --detail low -o " + at("rig.glb") + " --json"));
+    built = new Outcome(run("build " + at("head.obj") + " --landmarks " + at("landmarks.json") +
+                            " --detail low -o " + at("rig.glb") + " --json"));
   }
   static void TearDownTestSuite() {
     fs::remove_all(*folder);
@@ -32,9 +33,7 @@ class Tool : public ::testing::Test {
 
   static std::string at(const std::string& name) { return (*folder / name).string(); }
 
-  static Outcome run(const std::string& arguments) {
-    return run_tool(*folder, arguments);
-  }
+  static Outcome run(const std::string& arguments) { return run_tool(*folder, arguments); }
 
   static void expect_input_error(const std::string& arguments, const std::string& says) {
     const Outcome outcome = run(arguments);
@@ -69,26 +68,35 @@ TEST_F(Tool, BuildReportsOneJsonObject) {
   EXPECT_GT(report["smas"]["min_angle_deg"].get<double>(), 10.0);
   EXPECT_GT(report["tissue"]["low"]["nodes"].get<int>(), 500);
   std::set<std::string> names;
-  for (const json& muscle : report["muscles"]) names.insert(muscle["name"].get<std::string>());
-  for (const char* name : {"zygomaticus_major_left", "frontalis_medial_right", "mentalis_left", "depressor_anguli_oris_right",
-                           "orbicularis_oculi_left", "orbicularis_oris_marginal_upper_left", "corrugator_supercilii_left", "levator_labii_superioris_right"})
-    EXPECT_TRUE(names.count(name) || names.count(std::string(name).substr(0, std::string(name).rfind('_')))) << name;
+  for (const json& muscle : report["muscles"])
+    names.insert(muscle["name"].get<std::string>());
+  for (const char* name :
+       {"zygomaticus_major_left", "frontalis_medial_right", "mentalis_left", "depressor_anguli_oris_right",
+        "orbicularis_oculi_left", "orbicularis_oris_marginal_upper_left", "corrugator_supercilii_left",
+        "levator_labii_superioris_right"})
+    EXPECT_TRUE(names.count(name) || names.count(std::string(name).substr(0, std::string(name).rfind('_'))))
+        << name;
 }
 
 TEST_F(Tool, BuildWritesOnePageThatNeedsNothingElse) {
-  const Outcome outcome = run("build " + at("head.obj") + " --detail low -o " + at("shown.glb") + " --report " + at("shown"));
+  const Outcome outcome =
+      run("build " + at("head.obj") + " --detail low -o " + at("shown.glb") + " --report " + at("shown"));
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const std::string page = text_of(at("shown/report.html"));
   ASSERT_GT(page.size(), 10000u);
   EXPECT_EQ(page.find("http"), std::string::npos) << "no network";
-  EXPECT_EQ(page.find("src=\"") != std::string::npos, page.find("data:image/png;base64,iVBORw0KGgo") != std::string::npos);
-  for (const char* part : {"Warnings", "Landmarks", "zygion_left", "SMAS", "Muscles", "+1 SD", "skull", "</html>"})
+  EXPECT_EQ(page.find("src=\"") != std::string::npos,
+            page.find("data:image/png;base64,iVBORw0KGgo") != std::string::npos);
+  for (const char* part :
+       {"Warnings", "Landmarks", "zygion_left", "SMAS", "Muscles", "+1 SD", "skull", "</html>"})
     EXPECT_NE(page.find(part), std::string::npos) << part;
   size_t pictures = 0;
-  for (size_t p = page.find("<img "); p != std::string::npos; p = page.find("<img ", p + 1)) ++pictures;
+  for (size_t p = page.find("<img "); p != std::string::npos; p = page.find("<img ", p + 1))
+    ++pictures;
   EXPECT_TRUE(pictures == 15 || page.find("No pictures: ") != std::string::npos) << pictures;
   size_t files = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(at("shown"))) files += entry.is_regular_file();
+  for (const auto& entry : std::filesystem::directory_iterator(at("shown")))
+    files += entry.is_regular_file();
   EXPECT_EQ(files, 1u) << "nothing half written is left";
   // What fails before the page leaves no page.
   EXPECT_EQ(run("build " + at("nobody.obj") + " -o " + at("none.glb") + " --report " + at("none")).code, 1);
@@ -112,7 +120,10 @@ TEST_F(Tool, FaultyInputIsOneAndNamed) {
   const std::string rig = text_of(at("rig.glb"));
   std::ofstream(at("cut.glb"), std::ios::binary) << rig.substr(0, rig.size() / 2);
   for (const char* command : {"info ", "pose ", "render ", "bake "}) {
-    const std::string tail = std::string(command) == "info " ? "" : std::string(" -o ") + at(std::string(command) == "render " ? "x.png" : "x.glb");
+    const std::string tail =
+        std::string(command) == "info "
+            ? ""
+            : std::string(" -o ") + at(std::string(command) == "render " ? "x.png" : "x.glb");
     expect_input_error(command + at("missing.glb") + tail, "missing.glb");
     expect_input_error(command + at("empty.glb") + tail, "empty");
     expect_input_error(command + at("text.glb") + tail, "text.glb");
@@ -120,15 +131,21 @@ TEST_F(Tool, FaultyInputIsOneAndNamed) {
     expect_input_error(command + at("head.obj") + tail, "head.obj");
   }
   expect_input_error("build " + at("missing.obj") + " -o " + at("x.glb"), "missing.obj");
-  std::ofstream(at("cube.obj")) << ("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\nv 1 1 1\n"
-                        "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n");
+  std::ofstream(at("cube.obj"))
+      << ("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\nv 1 1 1\n"
+          "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n");
   expect_input_error("build " + at("cube.obj") + " -o " + at("x.glb"), "no face was found");
-  expect_input_error("build " + at("head.obj") + " --landmarks " + at("text.glb") + " -o " + at("x.glb"), "text.glb");
-  expect_input_error("build " + at("head.obj") + " --landmarks " + at("landmarks.json") + " -o " + at("x.fbx"), ".glb");
+  expect_input_error("build " + at("head.obj") + " --landmarks " + at("text.glb") + " -o " + at("x.glb"),
+                     "text.glb");
+  expect_input_error(
+      "build " + at("head.obj") + " --landmarks " + at("landmarks.json") + " -o " + at("x.fbx"), ".glb");
   expect_input_error("pose " + at("rig.glb") + " --set no_such_muscle=1 -o " + at("x.glb"), "no_such_muscle");
   expect_input_error("pose " + at("rig.glb") + " --set jaw_open -o " + at("x.glb"), "NAME=VALUE");
-  expect_input_error("pose " + at("rig.glb") + " --activations " + at("landmarks.json") + " -o " + at("x.glb"), "activations");
-  expect_input_error("play " + at("rig.glb") + " --curves " + at("landmarks.json") + " -o " + at("x.glb"), "landmarks.json");
+  expect_input_error(
+      "pose " + at("rig.glb") + " --activations " + at("landmarks.json") + " -o " + at("x.glb"),
+      "activations");
+  expect_input_error("play " + at("rig.glb") + " --curves " + at("landmarks.json") + " -o " + at("x.glb"),
+                     "landmarks.json");
   expect_input_error("render " + at("rig.glb") + " --layers liver -o " + at("x.png"), "liver");
   expect_input_error("render " + at("rig.glb") + " --view inside -o " + at("x.png"), "inside");
   expect_input_error("fit " + at("rig.glb"), "yet to come");
@@ -156,7 +173,8 @@ int differing_lines(const std::string& a, const std::string& b, bool* only_verti
   *only_vertices = true;
   std::string x, y;
   while (true) {
-    const bool more_left = static_cast<bool>(std::getline(left, x)), more_right = static_cast<bool>(std::getline(right, y));
+    const bool more_left = static_cast<bool>(std::getline(left, x)),
+               more_right = static_cast<bool>(std::getline(right, y));
     if (more_left != more_right) *only_vertices = false;
     if (!more_left || !more_right) return count;
     if (x == y) continue;
@@ -202,13 +220,16 @@ TEST_F(Tool, LandmarksGoOutAndComeBackIn) {
   const json out = json::parse(text_of(at("out_landmarks.json")));
   EXPECT_EQ(out["units"], "mm");
   EXPECT_TRUE(out["landmarks"]["nasion"].contains("bone"));
-  const Outcome again = run("build " + at("head.obj") + " --landmarks " + at("out_landmarks.json") + " --detail low -o " + at("again.glb"));
+  const Outcome again = run("build " + at("head.obj") + " --landmarks " + at("out_landmarks.json") +
+                            " --detail low -o " + at("again.glb"));
   EXPECT_EQ(again.code, 0) << again.err;
 }
 
 TEST_F(Tool, PlaysCurvesIntoWeightsAndPointers) {
-  std::ofstream(at("curves.csv")) << "time,jaw_open,arkit:mouthSmileLeft,nobody_knows_me\n0,0,0,0\n0.25,0.5,0,1\n0.5,0,1,0\n";
-  const Outcome outcome = run("play " + at("rig.glb") + " --curves " + at("curves.csv") + " --fps 30 -o " + at("play.glb") + " --json");
+  std::ofstream(at("curves.csv"))
+      << "time,jaw_open,arkit:mouthSmileLeft,nobody_knows_me\n0,0,0,0\n0.25,0.5,0,1\n0.5,0,1,0\n";
+  const Outcome outcome = run("play " + at("rig.glb") + " --curves " + at("curves.csv") + " --fps 30 -o " +
+                              at("play.glb") + " --json");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const json report = json::parse(outcome.out);
   EXPECT_EQ(report["frames"], 16);
@@ -229,7 +250,9 @@ TEST_F(Tool, BakesArkitByItsNames) {
 
 TEST_F(Tool, Draws) {
   for (const char* view : {"front", "side", "three-quarter", "back"}) {
-    const Outcome outcome = run("render " + at("rig.glb") + " --set jaw_open=0.5 --layers skin,skull,muscles,smas --size 200 --view " + view + " -o " + at("picture.png"));
+    const Outcome outcome = run("render " + at("rig.glb") +
+                                " --set jaw_open=0.5 --layers skin,skull,muscles,smas --size 200 --view " +
+                                view + " -o " + at("picture.png"));
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_GT(fs::file_size(at("picture.png")), 2000u);
   }

@@ -28,7 +28,8 @@ class Edits : public ::testing::Test {
     write_embedded_head(at("head.obj"), at("landmarks.json"));
     skin = new std::vector<Vec3>();
     const anatomy::GenericAnatomy anatomy = anatomy::load_generic();
-    for (const Vec3& p : anatomy.head_object("skin")->mesh.vertices) skin->push_back(1e3 * p);
+    for (const Vec3& p : anatomy.head_object("skin")->mesh.vertices)
+      skin->push_back(1e3 * p);
     plain = new json(build(json()));
   }
   static void TearDownTestSuite() {
@@ -44,16 +45,17 @@ class Edits : public ::testing::Test {
   /// Builds with the edits; the report.
   static json build(const json& edits, const std::string& more = "", const std::string& out = "rig.glb") {
     std::ofstream(at("edits.json")) << edits.dump(1);
-    const Outcome outcome = run("build " + at("head.obj") + " --landmarks " + at("landmarks.json") + " --detail low --json -o " + at(out) +
-                                (edits.is_null() ? "" : " --edits " + at("edits.json")) + " " + more);
+    const Outcome outcome =
+        run("build " + at("head.obj") + " --landmarks " + at("landmarks.json") + " --detail low --json -o " +
+            at(out) + (edits.is_null() ? "" : " --edits " + at("edits.json")) + " " + more);
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     return json::parse(outcome.out, nullptr, false);
   }
 
   static void expect_refused(const std::string& edits, const std::string& says) {
     std::ofstream(at("wrong.json")) << edits;
-    const Outcome outcome = run("build " + at("head.obj") + " --landmarks " + at("landmarks.json") + " --detail low -o " + at("wrong.glb") + " --edits " +
-                                at("wrong.json"));
+    const Outcome outcome = run("build " + at("head.obj") + " --landmarks " + at("landmarks.json") +
+                                " --detail low -o " + at("wrong.glb") + " --edits " + at("wrong.json"));
     EXPECT_EQ(outcome.code, 1) << edits << "\n" << outcome.err;
     EXPECT_NE(outcome.err.find(says), std::string::npos) << edits << "\n" << outcome.err;
     EXPECT_FALSE(fs::exists(at("wrong.glb"))) << edits;
@@ -71,7 +73,8 @@ class Edits : public ::testing::Test {
   }
   static json patch(double x, double y, double half) {
     json points = json::array();
-    for (const auto& [dx, dy] : {std::pair(-half, -half), std::pair(half, -half), std::pair(half, half), std::pair(-half, half)}) {
+    for (const auto& [dx, dy] :
+         {std::pair(-half, -half), std::pair(half, -half), std::pair(half, half), std::pair(-half, half)}) {
       const Vec3 p = front(x + dx, y + dy);
       points.push_back({p[0], p[1], p[2]});
     }
@@ -101,7 +104,8 @@ class Edits : public ::testing::Test {
       } else if (word == "l") {
         std::string line;
         std::getline(file, line);
-        if (here) ends.push_back(points[std::stoul(line.substr(line.rfind(' ', line.find_last_not_of(' ')))) - 1]);
+        if (here)
+          ends.push_back(points[std::stoul(line.substr(line.rfind(' ', line.find_last_not_of(' ')))) - 1]);
       }
     }
     return ends;
@@ -137,11 +141,15 @@ TEST_F(Edits, SurviveARebuild) {
   ASSERT_TRUE(first.is_object());
   EXPECT_EQ(first["edits"]["added"], json::array({"cheek_strap_left"}));
   EXPECT_EQ(first["edits"]["absent"], json::array({"risorius_right"}));
-  const auto strength = [](const json& report, const char* name) { return (*muscle(report, name))["strength_n"].get<double>(); };
+  const auto strength = [](const json& report, const char* name) {
+    return (*muscle(report, name))["strength_n"].get<double>();
+  };
   for (const char* name : {"zygomaticus_major_superior_right", "zygomaticus_major_inferior_left"})
     EXPECT_NEAR(strength(first, name) / strength(*plain, name), 2.0, 1e-9) << name;
   // What is said of a part comes on top of what is said of the whole.
-  EXPECT_NEAR(strength(first, "zygomaticus_major_superior_left") / strength(*plain, "zygomaticus_major_superior_left"), 3.0, 1e-9);
+  EXPECT_NEAR(strength(first, "zygomaticus_major_superior_left") /
+                  strength(*plain, "zygomaticus_major_superior_left"),
+              3.0, 1e-9);
   EXPECT_EQ(muscle(first, "risorius_right"), nullptr);
   EXPECT_NE(muscle(first, "risorius_left"), nullptr);
   ASSERT_NE(muscle(first, "cheek_strap_left"), nullptr);
@@ -157,16 +165,20 @@ TEST_F(Edits, SurviveARebuild) {
   EXPECT_EQ(second["edits"]["changed"], first["edits"]["changed"]);
   for (const char* rig : {"rig.glb", "again.glb"})
     for (const double side : {1.0, -1.0}) {
-      const std::vector<Vec3> ends = fibre_ends(rig, side > 0 ? "levator_labii_superioris_lateral_left" : "levator_labii_superioris_lateral_right");
+      const std::vector<Vec3> ends = fibre_ends(
+          rig, side > 0 ? "levator_labii_superioris_lateral_left" : "levator_labii_superioris_lateral_right");
       ASSERT_GE(ends.size(), 3u);
       const Vec3 middle = front(30 * side, -20);
       double reach = 0.0;
       for (const json& p : patch(30 * side, -20, 3))
         reach = std::max(reach, std::hypot(p[0].get<double>() - middle[0], p[1].get<double>() - middle[1]));
-      for (const Vec3& end : ends) EXPECT_LT((end - middle).head<2>().norm(), reach + 4.0) << rig;  // through the fat, aslant; 17 without edits
+      for (const Vec3& end : ends)
+        EXPECT_LT((end - middle).head<2>().norm(), reach + 4.0)
+            << rig;  // through the fat, aslant; 17 without edits
     }
   // The new muscle has a channel like any other.
-  const Outcome posed = run("pose " + at("rig.glb") + " --set cheek_strap_left=1 --json -o " + at("posed.obj"));
+  const Outcome posed =
+      run("pose " + at("rig.glb") + " --set cheek_strap_left=1 --json -o " + at("posed.obj"));
   EXPECT_EQ(posed.code, 0) << posed.err;
   EXPECT_NE(text_of(at("posed.obj")), text_of(at("head.obj")));
 }
@@ -180,15 +192,23 @@ TEST_F(Edits, WrongOnesAreRefusedWithAReason) {
   expect_refused(R"({"muscles":{"zygomaticus_mayor_left":{}}})", "did you mean 'zygomaticus_major_left'?");
   expect_refused(R"({"muscles":{"risorius_left":{"strenght":2}}})", "\"strenght\" is not known here");
   expect_refused(R"({"muscles":{"risorius_left":{"strength":-1}}})", "a factor from 0 to 100");
-  expect_refused(R"({"muscles":{"risorius_left":{"variant":"threefold"}}})", "there is no variant 'threefold'");
+  expect_refused(R"({"muscles":{"risorius_left":{"variant":"threefold"}}})",
+                 "there is no variant 'threefold'");
   expect_refused(R"({"muscles":{"risorius_left":{"origin":{"curve":[]}}}})", "needs three points or more");
-  expect_refused(R"({"muscles":{"risorius_left":{"origin":{"points":[[1,2],[3,4],[5,6]]}}}})", "three numbers");
+  expect_refused(R"({"muscles":{"risorius_left":{"origin":{"points":[[1,2],[3,4],[5,6]]}}}})",
+                 "three numbers");
   expect_refused(R"({"muscles":{"risorius_left":{"origin":{}}}})", "\"points\"");
-  expect_refused(R"({"muscles":{"zygomaticus_major":{"waypoints":[[1,2,3]]}}})", "stands for several muscles");
+  expect_refused(R"({"muscles":{"zygomaticus_major":{"waypoints":[[1,2,3]]}}})",
+                 "stands for several muscles");
   expect_refused(R"({"landmarks":{"nose_tip":[0,0,0]}})", "there is no landmark 'nose_tip'");
-  expect_refused(R"({"new_muscles":[{"name":"jaw_open","origin":{"on":"smas","points":[[1,2,3],[1,2,4],[1,3,3]]},"insertion":{"on":"smas","points":[[1,2,3],[1,2,4],[1,3,3]]}}]})", "jaw_open");
-  expect_refused(R"({"new_muscles":[{"name":"mine_left","origin":{"on":"moon","points":[[1,2,3],[1,2,4],[1,3,3]]},"insertion":{"on":"smas","points":[[1,2,3],[1,2,4],[1,3,3]]}}]})", "\"on\" must be");
-  const Outcome missing = run("build " + at("head.obj") + " -o " + at("wrong.glb") + " --edits " + at("nowhere.json"));
+  expect_refused(
+      R"({"new_muscles":[{"name":"jaw_open","origin":{"on":"smas","points":[[1,2,3],[1,2,4],[1,3,3]]},"insertion":{"on":"smas","points":[[1,2,3],[1,2,4],[1,3,3]]}}]})",
+      "jaw_open");
+  expect_refused(
+      R"({"new_muscles":[{"name":"mine_left","origin":{"on":"moon","points":[[1,2,3],[1,2,4],[1,3,3]]},"insertion":{"on":"smas","points":[[1,2,3],[1,2,4],[1,3,3]]}}]})",
+      "\"on\" must be");
+  const Outcome missing =
+      run("build " + at("head.obj") + " -o " + at("wrong.glb") + " --edits " + at("nowhere.json"));
   EXPECT_EQ(missing.code, 1);
   EXPECT_NE(missing.err.find("cannot be read"), std::string::npos) << missing.err;
 }
@@ -196,29 +216,39 @@ TEST_F(Edits, WrongOnesAreRefusedWithAReason) {
 TEST_F(Edits, RegionsOffTheHeadAreRefused) {
   json off = patch(30, -20, 3);
   off[2][2] = off[2][2].get<double>() + 30.0;
-  expect_refused(json{{"muscles", {{"risorius_left", {{"insertion", {{"curve", off}}}}}}}}.dump(), "point 3 lies");
+  expect_refused(json{{"muscles", {{"risorius_left", {{"insertion", {{"curve", off}}}}}}}}.dump(),
+                 "point 3 lies");
 }
 
 TEST_F(Edits, VariantsDensityAndMuscleFilesAreOptions) {
   // In the form of anatomy/data/muscles.json, on the generic head: both sides come of one entry.
-  std::ofstream(at("more.json")) << R"({"units":"mm","frame":"generic head","muscles":[{"name":"malaris","title":"Malaris","group":"mimic",
+  std::ofstream(at("more.json"))
+      << R"({"units":"mm","frame":"generic head","muscles":[{"name":"malaris","title":"Malaris","group":"mimic",
     "kind":"sheet","origin":{"on":"smas","polygon":[[50,20,70],[55,20,65],[55,26,62],[50,26,68]]},
     "insertion":{"on":"smas","polygon":[[40,-20,85],[45,-20,80],[45,-14,80],[40,-14,86]]},"depth_fraction":[0.5],"layer":"F1",
     "peak_shortening":0.2,"cross_section_mm2":10,"action_units":[6],"source":"test"}]})";
-  const json report = build(json(), "--variant risorius=absent --variant zygomaticus_major=bifid --fibre-spacing 1 --least-prevalence 0.5 --muscles " + at("more.json"));
+  const json report = build(json(),
+                            "--variant risorius=absent --variant zygomaticus_major=bifid --fibre-spacing 1 "
+                            "--least-prevalence 0.5 --muscles " +
+                                at("more.json"));
   EXPECT_EQ(muscle(report, "risorius_left"), nullptr);
   EXPECT_EQ(muscle(report, "risorius_right"), nullptr);
   ASSERT_NE(muscle(report, "malaris_left"), nullptr);
   ASSERT_NE(muscle(report, "malaris_right"), nullptr);
-  const auto figure = [](const json& from, const char* name, const char* key) { return (*muscle(from, name))[key].get<double>(); };
-  for (const char* name : {"frontalis_medial_left", "depressor_anguli_oris_right", "orbicularis_oris_peripheral_upper_left"})
+  const auto figure = [](const json& from, const char* name, const char* key) {
+    return (*muscle(from, name))[key].get<double>();
+  };
+  for (const char* name :
+       {"frontalis_medial_left", "depressor_anguli_oris_right", "orbicularis_oris_peripheral_upper_left"})
     EXPECT_GT(figure(report, name, "fibres"), 1.5 * figure(*plain, name, "fibres")) << name;
   // The lower slip of a bifid muscle inserts lower.
-  EXPECT_GT(figure(report, "zygomaticus_major_inferior_left", "length_mm"), figure(*plain, "zygomaticus_major_inferior_left", "length_mm") + 1.5);
+  EXPECT_GT(figure(report, "zygomaticus_major_inferior_left", "length_mm"),
+            figure(*plain, "zygomaticus_major_inferior_left", "length_mm") + 1.5);
   EXPECT_NE(muscle(report, "zygomaticus_major_superior_left"), nullptr);
   EXPECT_EQ(muscle(report, "zygomaticus_minor_left"), nullptr) << "fewer than half of the people have it";
   EXPECT_EQ(run("build " + at("head.obj") + " -o " + at("x.glb") + " --variant risorius").code, 1);
-  EXPECT_EQ(run("build " + at("head.obj") + " -o " + at("x.glb") + " --muscles " + at("nowhere.json")).code, 1);
+  EXPECT_EQ(run("build " + at("head.obj") + " -o " + at("x.glb") + " --muscles " + at("nowhere.json")).code,
+            1);
 }
 
 TEST_F(Edits, SchemaTakesWhatTheToolTakes) {

@@ -24,7 +24,8 @@ inline std::string text_of(const std::filesystem::path& path) {
 /// Runs the tool as a user would, with what it says caught in files of `folder`.
 inline Outcome run_tool(const std::filesystem::path& folder, const std::string& arguments) {
   const std::string out = (folder / "stdout.txt").string(), err = (folder / "stderr.txt").string();
-  const int status = std::system((std::string(FASCIA_TOOL) + " " + arguments + " >" + out + " 2>" + err + " </dev/null").c_str());
+  const int status = std::system(
+      (std::string(FASCIA_TOOL) + " " + arguments + " >" + out + " 2>" + err + " </dev/null").c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(out), text_of(err)};
 }
 

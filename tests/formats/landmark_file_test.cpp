@@ -23,14 +23,16 @@ LandmarkFile read_text(const std::string& text) {
 }
 
 TEST(LandmarkFile, ReadsThePlainFormWithAndWithoutBone) {
-  const LandmarkFile file = read_text(R"({"units":"mm","landmarks":{"nasion":[1,2,3],"menton":{"skin":[4,5,6],"bone":[0,0,0]}}})");
+  const LandmarkFile file =
+      read_text(R"({"units":"mm","landmarks":{"nasion":[1,2,3],"menton":{"skin":[4,5,6],"bone":[0,0,0]}}})");
   EXPECT_EQ(file.units, "mm");
   EXPECT_EQ(file.points.at("nasion"), Vec3(1, 2, 3));
   EXPECT_EQ(file.points.at("menton"), Vec3(4, 5, 6));
 }
 
 TEST(LandmarkFile, TurnsRasAndKeepsLps) {
-  const char* form = R"({"markups":[{"coordinateSystem":"%","controlPoints":[{"label":"nasion","position":[1,2,3]}]}]})";
+  const char* form =
+      R"({"markups":[{"coordinateSystem":"%","controlPoints":[{"label":"nasion","position":[1,2,3]}]}]})";
   std::string ras = form, lps = form;
   ras.replace(ras.find('%'), 1, "RAS");
   lps.replace(lps.find('%'), 1, "LPS");
@@ -39,8 +41,9 @@ TEST(LandmarkFile, TurnsRasAndKeepsLps) {
 }
 
 TEST(LandmarkFile, SaysWhatIsWrong) {
-  for (const char* text : {"", "[]", "{", R"({"landmarks":{}})", R"({"units":"ell","landmarks":{"a":[1,2,3]}})",
-                           R"({"landmarks":{"a":[1,2]}})", R"({"landmarks":{"a":["x",2,3]}})", R"({"points":1})"})
+  for (const char* text :
+       {"", "[]", "{", R"({"landmarks":{}})", R"({"units":"ell","landmarks":{"a":[1,2,3]}})",
+        R"({"landmarks":{"a":[1,2]}})", R"({"landmarks":{"a":["x",2,3]}})", R"({"points":1})"})
     EXPECT_THROW(read_text(text), Error) << text;
 }
 

@@ -1,5 +1,5 @@
-#include <Eigen/LU>
 #include <gtest/gtest.h>
+#include <Eigen/LU>
 
 #include <cmath>
 #include <filesystem>
@@ -13,7 +13,9 @@
 namespace fascia::formats {
 namespace {
 
-std::vector<uint8_t> bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
+std::vector<uint8_t> bytes_of(const std::string& text) {
+  return {text.begin(), text.end()};
+}
 
 std::string message_of(const std::string& name, const std::string& text) {
   try {
@@ -25,7 +27,8 @@ std::string message_of(const std::string& name, const std::string& text) {
 }
 
 const char* two_quads =
-    "# comment\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 9\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\no front\nf 1/1 2/2 3/3 4/4\n"
+    "# comment\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 9\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\no front\nf 1/1 "
+    "2/2 3/3 4/4\n"
     "o back\nf 1/1 4/4 3/3 2/2\n";
 
 TEST(ReadObj, KeepsObjectsQuadsAndSourceVertices) {
@@ -39,7 +42,8 @@ TEST(ReadObj, KeepsObjectsQuadsAndSourceVertices) {
 }
 
 TEST(ReadObj, NamesAFaceBeyondTheVertices) {
-  EXPECT_NE(message_of("bad.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n").find("vertex 9 of 3"), std::string::npos);
+  EXPECT_NE(message_of("bad.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n").find("vertex 9 of 3"),
+            std::string::npos);
 }
 
 TEST(Read, RefusesWhatIsNoMesh) {
@@ -98,8 +102,10 @@ std::string gltf_with(const std::string& nodes) {
 }
 
 TEST(ReadGltf, AppliesNodeTransformsInOrder) {
-  const Scene scene = read("tree.gltf", bytes_of(gltf_with(
-      R"([{"children":[1],"translation":[0,5,0]},{"mesh":0,"scale":[2,2,2],"rotation":[0,0,0.70710678,0.70710678]}])")));
+  const Scene scene = read(
+      "tree.gltf",
+      bytes_of(gltf_with(
+          R"([{"children":[1],"translation":[0,5,0]},{"mesh":0,"scale":[2,2,2],"rotation":[0,0,0.70710678,0.70710678]}])")));
   ASSERT_EQ(scene.meshes.size(), 1u);
   EXPECT_EQ(scene.meshes[0].name, "head");
   // (1,0,0) scaled by two, turned a quarter about z, lifted by five.
@@ -107,7 +113,9 @@ TEST(ReadGltf, AppliesNodeTransformsInOrder) {
 }
 
 TEST(ReadGltf, RefusesACycleAndARangeError) {
-  EXPECT_NE(message_of("cycle.gltf", gltf_with(R"([{"children":[1]},{"mesh":0,"children":[0]}])")).find("cycle"), std::string::npos);
+  EXPECT_NE(
+      message_of("cycle.gltf", gltf_with(R"([{"children":[1]},{"mesh":0,"children":[0]}])")).find("cycle"),
+      std::string::npos);
   std::string short_buffer = gltf_with(R"([{"mesh":0}])");
   short_buffer.replace(short_buffer.find("\"count\":3"), 9, "\"count\":9");
   EXPECT_NE(message_of("short.gltf", short_buffer).find("past the end"), std::string::npos);
@@ -118,7 +126,8 @@ TEST(ReadGltf, EveryTruncationIsAnErrorNotACrash) {
   write(path, tetrahedron());
   const std::vector<uint8_t> whole = read_bytes(path);
   for (size_t size = 1; size < whole.size(); size += 7)
-    EXPECT_THROW(read("cut.glb", std::vector<uint8_t>(whole.begin(), whole.begin() + long(size))), Error) << size;
+    EXPECT_THROW(read("cut.glb", std::vector<uint8_t>(whole.begin(), whole.begin() + long(size))), Error)
+        << size;
   std::filesystem::remove(path);
 }
 

@@ -10,7 +10,8 @@ namespace {
 
 Drawing two_fibres() {
   Drawing drawing;
-  drawing.lines.push_back({"zygomaticus_major_left", {{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(2, 0, 0)}}, Vec3(1, 0, 0)});
+  drawing.lines.push_back(
+      {"zygomaticus_major_left", {{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(2, 0, 0)}}, Vec3(1, 0, 0)});
   drawing.lines.push_back({"mentalis_left", {{Vec3(0, 1, 0), Vec3(1, 1, 0)}}, Vec3(1, 0, 0)});
   return drawing;
 }
@@ -42,7 +43,8 @@ TEST(Write, LeavesNothingHalfDone) {
   std::filesystem::create_directories(folder / "taken.obj");  // a folder in the way
   EXPECT_THROW(write_text(folder / "taken.obj", "x"), Error);
   int files = 0;
-  for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder)) ++files;
+  for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder))
+    ++files;
   EXPECT_EQ(files, 1);
   std::filesystem::remove_all(folder);
 }

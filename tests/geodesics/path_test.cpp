@@ -12,7 +12,8 @@ namespace {
 
 double polyline_length(const Path& path) {
   double sum = 0.0;
-  for (size_t i = 0; i + 1 < path.positions.size(); ++i) sum += (path.positions[i + 1] - path.positions[i]).norm();
+  for (size_t i = 0; i + 1 < path.positions.size(); ++i)
+    sum += (path.positions[i + 1] - path.positions[i]).norm();
   return sum;
 }
 
@@ -95,7 +96,8 @@ TEST(Connect, FollowsTheHelixOfAPrism) {
   const Surface surface = make_surface(cylinder(around, 31, radius, height));
   const double chord = 2 * radius * std::sin(kPi / around);
   for (int steps : {5, 12, 20}) {
-    const Path path = connect(surface, at_vertex(surface.mesh, 3 * around), at_vertex(surface.mesh, 28 * around + steps));
+    const Path path =
+        connect(surface, at_vertex(surface.mesh, 3 * around), at_vertex(surface.mesh, 28 * around + steps));
     expect_sound(surface, path);
     EXPECT_NEAR(path.length, std::hypot(steps * chord, 25.0 / 31 * height), 1e-12);
     EXPECT_NEAR(path.length, std::hypot(steps * 2 * kPi / around, 25.0 / 31 * height), 2e-3);
@@ -129,8 +131,8 @@ TEST(Connect, PassesThroughTheVertexOfASaddle) {
   const Surface surface = make_surface(saddle());
   EXPECT_NEAR(total_angle(surface, 0), 3 * kPi, 1e-12);
   // 4.5 triangles apart on both sides: 3π/2 each, so the geodesic must pass the vertex.
-  const SurfacePoint a = at(0, 0.4, 0.6, 0.0);            // on spoke 1, at 0.6 of it
-  const SurfacePoint b = at(4, 0.5, 0.25, 0.25);          // middle of triangle 4's wedge
+  const SurfacePoint a = at(0, 0.4, 0.6, 0.0);    // on spoke 1, at 0.6 of it
+  const SurfacePoint b = at(4, 0.5, 0.25, 0.25);  // middle of triangle 4's wedge
   const Path path = connect(surface, a, b);
   expect_sound(surface, path);
   const double spoke = std::sqrt(2.0);
@@ -152,7 +154,8 @@ TEST(Connect, TurnsBesideTheVertexOfACone) {
   for (int i = 0; i < 5; ++i)
     cone.vertices.push_back(Vec3(radius * std::cos(2 * kPi * i / 5), radius * std::sin(2 * kPi * i / 5),
                                  -std::sqrt(1 - radius * radius)));
-  for (int i = 0; i < 5; ++i) cone.triangles.push_back({0, 1 + i, 1 + (i + 1) % 5});
+  for (int i = 0; i < 5; ++i)
+    cone.triangles.push_back({0, 1 + i, 1 + (i + 1) % 5});
   const Surface surface = make_surface(cone);
   const Path path = connect(surface, at(0, 0.2, 0.8, 0.0), at(2, 0.2, 0.4, 0.4));
   expect_sound(surface, path);
@@ -185,7 +188,8 @@ TEST(Connect, DoesNotDependOnWhereTheSurfaceStands) {
       grid(24, 24, [](double u, double v) { return Vec3(u, v, 0.2 * std::sin(6 * u) * std::sin(5 * v)); });
   TriangleMesh moved = mesh;
   const Mat3 turn = Eigen::AngleAxisd(1.1, Vec3(1, 2, -0.5).normalized()).toRotationMatrix();
-  for (Vec3& p : moved.vertices) p = turn * p + Vec3(3, -1, 2);
+  for (Vec3& p : moved.vertices)
+    p = turn * p + Vec3(3, -1, 2);
   const Surface first = make_surface(mesh), second = make_surface(moved);
   const SurfacePoint a = below(mesh, 0.13, 0.2), b = below(mesh, 0.91, 0.77);
   EXPECT_NEAR(connect(first, a, b).length, connect(second, a, b).length, 1e-12);
@@ -212,10 +216,12 @@ TEST(Connect, IsLocallyShortest) {
         const SurfacePoint& point = path.points[k];
         if (point.barycentric.maxCoeff() > 1 - 1e-9) continue;
         int e = 0;
-        while (point.barycentric[(e + 2) % 3] != 0.0) ++e;
+        while (point.barycentric[(e + 2) % 3] != 0.0)
+          ++e;
         const int h = 3 * point.triangle + e;
         const Vec3 along =
-            (surface.mesh.vertices[surface.target(h)] - surface.mesh.vertices[surface.origin(h)]).normalized();
+            (surface.mesh.vertices[surface.target(h)] - surface.mesh.vertices[surface.origin(h)])
+                .normalized();
         const double in = (path.positions[k] - path.positions[k - 1]).normalized().dot(along);
         const double out = (path.positions[k + 1] - path.positions[k]).normalized().dot(along);
         EXPECT_NEAR(in, out, 1e-6);
@@ -226,12 +232,11 @@ TEST(Connect, IsLocallyShortest) {
 }
 
 TEST(Connect, CutsOrSearchesWhereTheTraceStalls) {
-  const Surface surface = make_surface(
-      grid(60, 60, [](double u, double v) {
-        // Steep bowls, in which the projected trace gets caught.
-        const double x = std::sin(12 * u), y = std::sin(11 * v);
-        return Vec3(u, v, 0.3 * x * x * y * y * y * y);
-      }));
+  const Surface surface = make_surface(grid(60, 60, [](double u, double v) {
+    // Steep bowls, in which the projected trace gets caught.
+    const double x = std::sin(12 * u), y = std::sin(11 * v);
+    return Vec3(u, v, 0.3 * x * x * y * y * y * y);
+  }));
   std::mt19937 random(4);
   std::uniform_real_distribution<double> unit(0.05, 0.95);
   int cut = 0;
@@ -284,12 +289,14 @@ TEST(Connect, EndsOnVerticesEdgesAndInTheSameTriangle) {
         names.push_back(p);
       }
   for (const SurfacePoint& p : names)
-    for (const SurfacePoint& q : names) EXPECT_EQ(connect(surface, p, q).length, 0.0);
+    for (const SurfacePoint& q : names)
+      EXPECT_EQ(connect(surface, p, q).length, 0.0);
 }
 
 TEST(Connect, TakesTrianglesWithoutArea) {
   TriangleMesh mesh = plane(10);
-  for (int v : {48, 49, 60}) mesh.vertices[v] = mesh.vertices[v + 1];   // zero edges
+  for (int v : {48, 49, 60})
+    mesh.vertices[v] = mesh.vertices[v + 1];  // zero edges
   mesh.vertices[82] = 0.5 * (mesh.vertices[81] + mesh.vertices[83]);
   const Surface surface = make_surface(mesh);
   EXPECT_GT(surface.mollification, 0.0);
@@ -300,7 +307,8 @@ TEST(Connect, TakesTrianglesWithoutArea) {
     const Path path = connect(surface, a, b);
     EXPECT_TRUE(path.counters.converged);
     EXPECT_TRUE(std::isfinite(path.length));
-    for (const Vec3& p : path.positions) EXPECT_TRUE(p.allFinite());
+    for (const Vec3& p : path.positions)
+      EXPECT_TRUE(p.allFinite());
     EXPECT_GE(path.length, (position(mesh, a) - position(mesh, b)).norm() - 1e-6);
     EXPECT_LE(path.length, 1.6);
   }
@@ -309,7 +317,8 @@ TEST(Connect, TakesTrianglesWithoutArea) {
 TEST(Connect, NamesPartsThatDoNotHangTogether) {
   TriangleMesh mesh = plane(3);
   const int first = mesh.triangle_count(), offset = mesh.vertex_count();
-  for (const Vec3& p : plane(3).vertices) mesh.vertices.push_back(p + Vec3(5, 0, 0));
+  for (const Vec3& p : plane(3).vertices)
+    mesh.vertices.push_back(p + Vec3(5, 0, 0));
   for (const Triangle& t : plane(3).triangles)
     mesh.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
   const Surface surface = make_surface(mesh);

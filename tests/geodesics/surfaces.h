@@ -11,11 +11,13 @@ namespace fascia::geodesics {
 constexpr double kPi = 3.14159265358979323846;
 
 /// A grid of `nu` by `nv` cells over [0,1]², carried by `place`; closed in u when `wrap`.
-inline TriangleMesh grid(int nu, int nv, const std::function<Vec3(double, double)>& place, bool wrap = false) {
+inline TriangleMesh grid(int nu, int nv, const std::function<Vec3(double, double)>& place,
+                         bool wrap = false) {
   TriangleMesh mesh;
   const int columns = wrap ? nu : nu + 1;
   for (int j = 0; j <= nv; ++j)
-    for (int i = 0; i < columns; ++i) mesh.vertices.push_back(place(double(i) / nu, double(j) / nv));
+    for (int i = 0; i < columns; ++i)
+      mesh.vertices.push_back(place(double(i) / nu, double(j) / nv));
   for (int j = 0; j < nv; ++j)
     for (int i = 0; i < nu; ++i) {
       const int a = j * columns + i, b = j * columns + (i + 1) % columns, c = a + columns, d = b + columns;
@@ -45,10 +47,20 @@ inline TriangleMesh cylinder(int around, int along, double radius, double height
 
 /// Unit cube, each face in two triangles.
 inline TriangleMesh cube() {
-  return {{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0), Vec3(0, 0, 1), Vec3(1, 0, 1), Vec3(1, 1, 1),
-           Vec3(0, 1, 1)},
-          {{0, 2, 1}, {0, 3, 2}, {4, 5, 6}, {4, 6, 7}, {0, 1, 5}, {0, 5, 4}, {1, 2, 6}, {1, 6, 5}, {2, 3, 7},
-           {2, 7, 6}, {3, 0, 4}, {3, 4, 7}}};
+  return {{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0), Vec3(0, 0, 1), Vec3(1, 0, 1),
+           Vec3(1, 1, 1), Vec3(0, 1, 1)},
+          {{0, 2, 1},
+           {0, 3, 2},
+           {4, 5, 6},
+           {4, 6, 7},
+           {0, 1, 5},
+           {0, 5, 4},
+           {1, 2, 6},
+           {1, 6, 5},
+           {2, 3, 7},
+           {2, 7, 6},
+           {3, 0, 4},
+           {3, 4, 7}}};
 }
 
 inline TriangleMesh tetrahedron() {
@@ -60,8 +72,10 @@ inline TriangleMesh tetrahedron() {
 /// are a closed walk of nine steps between neighbouring corners of a cuboctahedron, 60° each.
 inline TriangleMesh saddle() {
   TriangleMesh mesh;
-  mesh.vertices = {Vec3(0, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, -1), Vec3(-1, 0, -1), Vec3(-1, -1, 0), Vec3(-1, 0, 1), Vec3(0, -1, 1), Vec3(1, -1, 0), Vec3(0, -1, -1), Vec3(1, 0, -1)};
-  for (int i = 0; i < 9; ++i) mesh.triangles.push_back({0, 1 + i, 1 + (i + 1) % 9});
+  mesh.vertices = {Vec3(0, 0, 0),  Vec3(1, 1, 0),  Vec3(0, 1, -1), Vec3(-1, 0, -1), Vec3(-1, -1, 0),
+                   Vec3(-1, 0, 1), Vec3(0, -1, 1), Vec3(1, -1, 0), Vec3(0, -1, -1), Vec3(1, 0, -1)};
+  for (int i = 0; i < 9; ++i)
+    mesh.triangles.push_back({0, 1 + i, 1 + (i + 1) % 9});
   return mesh;
 }
 
@@ -77,7 +91,9 @@ inline SurfacePoint at_vertex(const TriangleMesh& mesh, int vertex) {
   return {};
 }
 
-inline SurfacePoint at(int triangle, double a, double b, double c) { return {triangle, Vec3(a, b, c)}; }
+inline SurfacePoint at(int triangle, double a, double b, double c) {
+  return {triangle, Vec3(a, b, c)};
+}
 
 /// The point of `mesh` whose place along +Z from (x, y) it is; for height fields.
 inline SurfacePoint below(const TriangleMesh& mesh, double x, double y) {
@@ -94,8 +110,9 @@ inline SurfacePoint below(const TriangleMesh& mesh, double x, double y) {
 
 /// A geodesic sphere: an octahedron divided `levels` times, radius 1.
 inline TriangleMesh sphere(int levels) {
-  TriangleMesh mesh{{Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0), Vec3(0, 0, 1), Vec3(0, 0, -1)},
-                    {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}}};
+  TriangleMesh mesh{
+      {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0), Vec3(0, 0, 1), Vec3(0, 0, -1)},
+      {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}}};
   for (int level = 0; level < levels; ++level) {
     std::vector<Triangle> finer;
     std::vector<std::array<int, 3>> middles;  // low, high, middle; small meshes only

@@ -27,12 +27,15 @@ TEST(Trace, IsALineOnAPlane) {
 
 TEST(Trace, StartsFromVerticesAndEdgesInAnyDirection) {
   const Surface surface = make_surface(plane(10));
-  for (const SurfacePoint& start : {at_vertex(surface.mesh, 60), at(110, 0.5, 0.5, 0.0), at(110, 0.0, 0.3, 0.7)})
+  for (const SurfacePoint& start :
+       {at_vertex(surface.mesh, 60), at(110, 0.5, 0.5, 0.0), at(110, 0.0, 0.3, 0.7)})
     for (int i = 0; i < 48; ++i) {
       const Vec3 direction(std::cos(i * kPi / 24), std::sin(i * kPi / 24), 0.0);
       const TraceResult result = trace(surface, start, direction, 0.33);
       ASSERT_FALSE(result.reached_boundary) << i;
-      EXPECT_LT((result.path.positions.back() - position(surface.mesh, start) - 0.33 * direction).norm(), 1e-12) << i;
+      EXPECT_LT((result.path.positions.back() - position(surface.mesh, start) - 0.33 * direction).norm(),
+                1e-12)
+          << i;
     }
 }
 

@@ -13,7 +13,8 @@ TriangleMesh tetrahedron() {
 TEST(Connectivity, ClosedSurfaceHasANeighbourAcrossEveryEdge) {
   const Connectivity links = connectivity(tetrahedron());
   for (const auto& row : links.neighbours)
-    for (int neighbour : row) EXPECT_GE(neighbour, 0);
+    for (int neighbour : row)
+      EXPECT_GE(neighbour, 0);
   EXPECT_EQ(links.irregular_edges, 0);
   EXPECT_TRUE(boundary_loops(tetrahedron(), links).empty());
 }
@@ -34,8 +35,9 @@ TEST(Connectivity, ThreeTrianglesOnAnEdgeAreIrregular) {
 }
 
 TEST(Weld, MergesSeamVerticesAndDropsSlivers) {
-  TriangleMesh seam{{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(1, 0, 1e-9), Vec3(1, 1, 0), Vec3(0, 1, 0)},
-                    {{0, 1, 2}, {3, 4, 5}, {1, 3, 4}}};
+  TriangleMesh seam{
+      {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(1, 0, 1e-9), Vec3(1, 1, 0), Vec3(0, 1, 0)},
+      {{0, 1, 2}, {3, 4, 5}, {1, 3, 4}}};
   std::vector<int> map;
   const TriangleMesh welded = weld(seam, 1e-6, &map);
   EXPECT_EQ(welded.vertex_count(), 4);
@@ -46,8 +48,10 @@ TEST(Weld, MergesSeamVerticesAndDropsSlivers) {
 
 TEST(Components, CountsSeparateShells) {
   TriangleMesh two = tetrahedron();
-  for (const Vec3& v : tetrahedron().vertices) two.vertices.push_back(v + Vec3(5, 0, 0));
-  for (Triangle t : tetrahedron().triangles) two.triangles.push_back({t[0] + 4, t[1] + 4, t[2] + 4});
+  for (const Vec3& v : tetrahedron().vertices)
+    two.vertices.push_back(v + Vec3(5, 0, 0));
+  for (Triangle t : tetrahedron().triangles)
+    two.triangles.push_back({t[0] + 4, t[1] + 4, t[2] + 4});
   int count = 0;
   const auto component = components(two, &count);
   EXPECT_EQ(count, 2);

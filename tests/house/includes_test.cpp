@@ -82,7 +82,8 @@ TEST(House, EigenStaysOutOfTheRuntimeHeader) {
   const fs::path header = fs::path(FASCIA_SOURCE) / "runtime/include/fascia/fascia.h";
   std::ifstream file(header);
   ASSERT_TRUE(file.good());
-  for (std::string line; std::getline(file, line);) EXPECT_EQ(line.find("Eigen"), std::string::npos);
+  for (std::string line; std::getline(file, line);)
+    EXPECT_EQ(line.find("Eigen"), std::string::npos);
 }
 
 }  // namespace

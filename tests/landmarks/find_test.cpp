@@ -44,30 +44,37 @@ TriangleMesh star_shape(Distance distance) {
 }
 
 /// The embedded head as a file would bring it.
-formats::Scene embedded_scene(const Mat3& rotation, double units_per_metre, const Vec3& shift, bool is_inside_out = false) {
+formats::Scene embedded_scene(const Mat3& rotation, double units_per_metre, const Vec3& shift,
+                              bool is_inside_out = false) {
   formats::Scene scene;
   scene.kind = formats::FileKind::obj;
   scene.path = "embedded.obj";
   for (const anatomy::MeshObject& object : generic_anatomy().head) {
     formats::SceneMesh mesh;
     mesh.name = "part_" + std::to_string(scene.meshes.size());  // no help from names
-    for (const Vec3& p : object.mesh.vertices) mesh.positions.push_back(units_per_metre * (rotation * p + shift));
+    for (const Vec3& p : object.mesh.vertices)
+      mesh.positions.push_back(units_per_metre * (rotation * p + shift));
     mesh.triangles = object.mesh.triangles;
     if (is_inside_out)
-      for (Triangle& t : mesh.triangles) std::swap(t[0], t[1]);
+      for (Triangle& t : mesh.triangles)
+        std::swap(t[0], t[1]);
     scene.meshes.push_back(mesh);
   }
   return scene;
 }
 
-Mat3 turn(double degrees, const Vec3& axis) { return Eigen::AngleAxisd(degrees * EIGEN_PI / 180, axis.normalized()).toRotationMatrix(); }
+Mat3 turn(double degrees, const Vec3& axis) {
+  return Eigen::AngleAxisd(degrees * EIGEN_PI / 180, axis.normalized()).toRotationMatrix();
+}
 
 /// Largest distance in millimetres between the found landmarks of the face and the known ones.
-double largest_error_mm(const rigging::FoundLandmarks& found, const Mat3& rotation, double units_per_metre, const Vec3& shift) {
+double largest_error_mm(const rigging::FoundLandmarks& found, const Mat3& rotation, double units_per_metre,
+                        const Vec3& shift) {
   const Mat4 to_file = found.head.input_to_metres.inverse();
   double largest = 0.0;
-  for (const char* name : {"pronasale", "subnasale", "stomion", "cheilion_left", "cheilion_right", "exocanthion_left", "exocanthion_right",
-                           "endocanthion_left", "endocanthion_right", "labiale_superius", "menton", "glabella", "alare_left"}) {
+  for (const char* name : {"pronasale", "subnasale", "stomion", "cheilion_left", "cheilion_right",
+                           "exocanthion_left", "exocanthion_right", "endocanthion_left", "endocanthion_right",
+                           "labiale_superius", "menton", "glabella", "alare_left"}) {
     const Vec3 known = rotation * *generic_anatomy().landmark(name)->skin + shift;
     const Vec3 here = transform_point(to_file, found.landmarks.at(name).position) / units_per_metre;
     largest = std::max(largest, 1e3 * (here - known).norm());
@@ -84,10 +91,13 @@ TEST(FitBall, RecoversASphere) {
 
 TEST(RoundLumps, FindTheBallOnTheStick) {
   TriangleMesh mesh = star_shape([](const Vec3&) { return 0.1; });
-  TriangleMesh stick = star_shape([](const Vec3& d) { return 0.05 / std::max(0.06, std::hypot(d[0], d[2])); });
+  TriangleMesh stick =
+      star_shape([](const Vec3& d) { return 0.05 / std::max(0.06, std::hypot(d[0], d[2])); });
   const int base = mesh.vertex_count();
-  for (const Vec3& p : stick.vertices) mesh.vertices.push_back(p - Vec3(0, 0.9, 0));
-  for (const Triangle& t : stick.triangles) mesh.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
+  for (const Vec3& p : stick.vertices)
+    mesh.vertices.push_back(p - Vec3(0, 0.9, 0));
+  for (const Triangle& t : stick.triangles)
+    mesh.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
   const Samples samples = sample_evenly(mesh, 6000);
   const std::vector<Ball> lumps = round_lumps(samples, 4);
   ASSERT_FALSE(lumps.empty());
@@ -104,7 +114,8 @@ TEST(GenericFace, IsSymmetricAndDenseWhereFacesDiffer) {
     EXPECT_LT((Vec3(-p[0], p[1], p[2]) - q).norm(), 1e-9);
   }
   EXPECT_EQ(generic.region_of_triangle.size(), generic.skin.triangles.size());
-  for (int region : generic.region_of_triangle) EXPECT_GE(region, 0);
+  for (int region : generic.region_of_triangle)
+    EXPECT_GE(region, 0);
 }
 
 TEST(RefinePlacement, ComesBackFromNearby) {
@@ -120,7 +131,8 @@ TEST(RefinePlacement, ComesBackFromNearby) {
 
 TEST(LidOpening, IsSeenWhereTheLidsAreOpenAndNowhereElse) {
   const auto point = [](const char* name) { return *generic_anatomy().landmark(name)->skin; };
-  const EyeRegion eye = {point("exocanthion_left"), point("endocanthion_left"), Vec3::UnitZ(), Vec3::UnitY(), face().eye_left};
+  const EyeRegion eye = {point("exocanthion_left"), point("endocanthion_left"), Vec3::UnitZ(), Vec3::UnitY(),
+                         face().eye_left};
   const spatial::SurfaceQuery skin(face().skin);
   const auto open = lid_opening(skin, eye);
   ASSERT_TRUE(open.has_value());
@@ -129,7 +141,8 @@ TEST(LidOpening, IsSeenWhereTheLidsAreOpenAndNowhereElse) {
   EXPECT_LT((open->upper - point("palpebrale_superius_left")).norm(), 0.004);
   EXPECT_LT((open->lower - point("palpebrale_inferius_left")).norm(), 0.004);
   EyeRegion cheek = eye;
-  for (Vec3* p : {&cheek.outer, &cheek.inner, &cheek.ball.centre}) (*p)[1] -= 0.03;
+  for (Vec3* p : {&cheek.outer, &cheek.inner, &cheek.ball.centre})
+    (*p)[1] -= 0.03;
   EXPECT_FALSE(lid_opening(skin, cheek).has_value());
 }
 
@@ -141,24 +154,27 @@ TEST(FindLandmarks, OnTheEmbeddedHeadInAnyPoseAndUnit) {
     bool is_inside_out;
   };
   const std::vector<Case> cases = {{Mat3::Identity(), 1.0, "m", false},
-                                   {turn(180, Vec3::UnitZ()), 1000.0, "mm", false},                        // upside down
-                                   {turn(180, Vec3::UnitY()), 100.0, "cm", false},                         // back to the viewer
+                                   {turn(180, Vec3::UnitZ()), 1000.0, "mm", false},  // upside down
+                                   {turn(180, Vec3::UnitY()), 100.0, "cm", false},   // back to the viewer
                                    {turn(130, Vec3(1, 2, 3)), 100.0, "cm", true}};
   const Vec3 shift(0.3, -1.2, 0.7);
   for (const Case& c : cases) {
     const rigging::FoundLandmarks found =
-        rigging::find_landmarks(embedded_scene(c.rotation, c.units_per_metre, shift, c.is_inside_out), {}, generic_anatomy(), {}, true);
+        rigging::find_landmarks(embedded_scene(c.rotation, c.units_per_metre, shift, c.is_inside_out), {},
+                                generic_anatomy(), {}, true);
     EXPECT_EQ(found.head.units, c.units);
     EXPECT_EQ(found.is_inside_out, c.is_inside_out);
     EXPECT_LT(largest_error_mm(found, c.rotation, c.units_per_metre, shift), 2.0);
     // The face looks along +Z with the subject's left at +X, whatever the file's axes.
-    EXPECT_GT(found.landmarks.at("exocanthion_left").position[0], found.landmarks.at("exocanthion_right").position[0] + 0.05);
+    EXPECT_GT(found.landmarks.at("exocanthion_left").position[0],
+              found.landmarks.at("exocanthion_right").position[0] + 0.05);
     EXPECT_GT(found.landmarks.at("glabella").position[1], found.landmarks.at("menton").position[1] + 0.08);
     for (const auto& [name, landmark] : found.landmarks) {
       EXPECT_GE(landmark.confidence, 0.0) << name;
       EXPECT_LE(landmark.confidence, 1.0) << name;
     }
-    for (const char* name : {"pronasale", "cheilion_left", "exocanthion_right"}) EXPECT_GT(found.landmarks.at(name).confidence, 0.5) << name;
+    for (const char* name : {"pronasale", "cheilion_left", "exocanthion_right"})
+      EXPECT_GT(found.landmarks.at(name).confidence, 0.5) << name;
     ASSERT_TRUE(found.head.eye_left && found.head.eye_right);
     ASSERT_TRUE(found.regions);
     EXPECT_EQ(found.regions->of_vertex.size(), found.head.skin.vertices.size());
@@ -175,13 +191,19 @@ TEST(FindLandmarks, KeepsGivenOnesAndBendsTheRestTowardThem) {
   EXPECT_TRUE(steered.landmarks.at("cheilion_left").is_given);
   EXPECT_EQ(steered.landmarks.at("cheilion_left").confidence, 1.0);
   EXPECT_LT((steered.landmarks.at("cheilion_left").position - moved).norm(), 0.002);
-  const double drawn = steered.landmarks.at("labiale_superius_laterale_left").position[0] - free.landmarks.at("labiale_superius_laterale_left").position[0];
+  const double drawn = steered.landmarks.at("labiale_superius_laterale_left").position[0] -
+                       free.landmarks.at("labiale_superius_laterale_left").position[0];
   EXPECT_GT(drawn, 0.0005);
-  EXPECT_LT((steered.landmarks.at("exocanthion_right").position - free.landmarks.at("exocanthion_right").position).norm(), 0.002);
+  EXPECT_LT(
+      (steered.landmarks.at("exocanthion_right").position - free.landmarks.at("exocanthion_right").position)
+          .norm(),
+      0.002);
 }
 
 TEST(FindHead, LooksOnlyWhereTheCrownMayBe) {
-  const auto crown = [](const std::optional<Vec3>& up) -> Vec3 { return find_head(face(), face().skin, "head.obj", std::nullopt, up).placement().rotation.col(1); };
+  const auto crown = [](const std::optional<Vec3>& up) -> Vec3 {
+    return find_head(face(), face().skin, "head.obj", std::nullopt, up).placement().rotation.col(1);
+  };
   EXPECT_GT(crown(Vec3::UnitY()).dot(Vec3::UnitY()), 0.98);
   // Told wrongly it must not be found the right way up.
   try {
@@ -205,12 +227,17 @@ TEST(FindHead, RefusesWhatIsNoFace) {
   };
   EXPECT_TRUE(refused(star_shape([](const Vec3&) { return 0.1; })));
   EXPECT_TRUE(refused(star_shape([](const Vec3& d) { return 0.1 / d.cwiseAbs().maxCoeff(); })));
-  EXPECT_TRUE(refused(star_shape([](const Vec3& d) { return 0.1 + 0.012 * std::sin(5 * d[0] + 1) + 0.01 * std::sin(4 * d[1] - 3 * d[2]); })));
+  EXPECT_TRUE(refused(star_shape([](const Vec3& d) {
+    return 0.1 + 0.012 * std::sin(5 * d[0] + 1) + 0.01 * std::sin(4 * d[1] - 3 * d[2]);
+  })));
   // A ball with a beak: one bump is not a face.
-  EXPECT_TRUE(refused(star_shape([](const Vec3& d) { return 0.1 + 0.03 * std::exp(-std::pow(std::acos(std::min(1.0, d[2])) / 0.2, 2)); })));
+  EXPECT_TRUE(refused(star_shape([](const Vec3& d) {
+    return 0.1 + 0.03 * std::exp(-std::pow(std::acos(std::min(1.0, d[2])) / 0.2, 2));
+  })));
   // The back of the head alone.
   TriangleMesh back = face().skin;
-  std::erase_if(back.triangles, [&](const Triangle& t) { return back.vertices[static_cast<size_t>(t[0])][2] > 0.0; });
+  std::erase_if(back.triangles,
+                [&](const Triangle& t) { return back.vertices[static_cast<size_t>(t[0])][2] > 0.0; });
   EXPECT_TRUE(refused(back));
 }
 

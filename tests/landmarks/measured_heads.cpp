@@ -22,9 +22,10 @@ namespace {
 /// Multi-PIE numbers of the landmarks that shape defines.
 const std::map<std::string, int>& multi_pie_numbers() {
   static const std::map<std::string, int> numbers = {
-      {"gnathion", 8},          {"pronasale", 30},        {"subnasale", 33},        {"exocanthion_right", 36},
-      {"endocanthion_right", 39}, {"endocanthion_left", 42}, {"exocanthion_left", 45}, {"cheilion_right", 48},
-      {"labiale_superius", 51}, {"cheilion_left", 54},    {"labiale_inferius", 57}, {"stomion", 62}};
+      {"gnathion", 8},           {"pronasale", 30},          {"subnasale", 33},
+      {"exocanthion_right", 36}, {"endocanthion_right", 39}, {"endocanthion_left", 42},
+      {"exocanthion_left", 45},  {"cheilion_right", 48},     {"labiale_superius", 51},
+      {"cheilion_left", 54},     {"labiale_inferius", 57},   {"stomion", 62}};
   return numbers;
 }
 
@@ -37,8 +38,10 @@ size_t head_mesh(const formats::Scene& scene) {
 template <class Change>
 MeasuredHead changed(MeasuredHead head, const std::string& how, Change change) {
   for (formats::SceneMesh& mesh : head.scene.meshes)
-    for (Vec3& p : mesh.positions) p = change(p);
-  for (auto& [name, p] : head.truth) p = change(p);
+    for (Vec3& p : mesh.positions)
+      p = change(p);
+  for (auto& [name, p] : head.truth)
+    p = change(p);
   head.name += " " + how;
   return head;
 }
@@ -60,7 +63,9 @@ std::map<std::string, int> ict_landmark_vertices() {
     for (const auto& [name, number] : multi_pie_numbers()) {
       const auto& p = positions.at(static_cast<size_t>(number));
       const Vec3 at(p[0], p[1], p[2]);
-      const auto nearest = std::min_element(all.begin(), all.end(), [&](const Vec3& a, const Vec3& b) { return (a - at).norm() < (b - at).norm(); });
+      const auto nearest = std::min_element(all.begin(), all.end(), [&](const Vec3& a, const Vec3& b) {
+        return (a - at).norm() < (b - at).norm();
+      });
       found[name] = static_cast<int>(nearest - all.begin());
     }
     return found;
@@ -100,7 +105,8 @@ MeasuredHead moved(MeasuredHead head, const Mat3& rotation, const Vec3& shift) {
 
 MeasuredHead in_units(MeasuredHead head, double units_per_metre) {
   head.millimetres /= units_per_metre;
-  return changed(std::move(head), "in " + std::to_string(static_cast<int>(units_per_metre)) + "ths of a metre",
+  return changed(std::move(head),
+                 "in " + std::to_string(static_cast<int>(units_per_metre)) + "ths of a metre",
                  [&](const Vec3& p) { return Vec3(units_per_metre * p); });
 }
 
@@ -122,20 +128,26 @@ MeasuredHead noisy(MeasuredHead head, double millimetres, unsigned seed) {
 
 MeasuredHead decimated(MeasuredHead head, int triangles) {
   size_t total = 0;
-  for (const formats::SceneMesh& mesh : head.scene.meshes) total += mesh.triangles.size();
+  for (const formats::SceneMesh& mesh : head.scene.meshes)
+    total += mesh.triangles.size();
   const double ratio = static_cast<double>(triangles) / static_cast<double>(total);
   for (formats::SceneMesh& mesh : head.scene.meshes) {
     std::vector<float> positions;
     std::vector<unsigned> indices;
     for (const Vec3& p : mesh.positions)
-      for (int axis = 0; axis < 3; ++axis) positions.push_back(static_cast<float>(p[axis]));
+      for (int axis = 0; axis < 3; ++axis)
+        positions.push_back(static_cast<float>(p[axis]));
     for (const Triangle& t : mesh.triangles)
-      for (int v : t) indices.push_back(static_cast<unsigned>(v));
-    const size_t goal = std::max<size_t>(12, static_cast<size_t>(ratio * static_cast<double>(mesh.triangles.size()))) * 3;
-    indices.resize(meshopt_simplify(indices.data(), indices.data(), indices.size(), positions.data(), mesh.positions.size(), 12, goal, 1.0f));
+      for (int v : t)
+        indices.push_back(static_cast<unsigned>(v));
+    const size_t goal =
+        std::max<size_t>(12, static_cast<size_t>(ratio * static_cast<double>(mesh.triangles.size()))) * 3;
+    indices.resize(meshopt_simplify(indices.data(), indices.data(), indices.size(), positions.data(),
+                                    mesh.positions.size(), 12, goal, 1.0f));
     mesh.triangles.clear();
     for (size_t i = 0; i + 2 < indices.size(); i += 3)
-      mesh.triangles.push_back({static_cast<int>(indices[i]), static_cast<int>(indices[i + 1]), static_cast<int>(indices[i + 2])});
+      mesh.triangles.push_back(
+          {static_cast<int>(indices[i]), static_cast<int>(indices[i + 1]), static_cast<int>(indices[i + 2])});
   }
   head.name += " decimated";
   return head;
@@ -147,8 +159,11 @@ MeasuredHead subdivided(MeasuredHead head, int rounds) {
     std::map<std::pair<int, int>, int> middles;
     std::vector<Triangle> finer;
     const auto middle = [&](int a, int b) {
-      const auto [at, is_new] = middles.try_emplace({std::min(a, b), std::max(a, b)}, static_cast<int>(mesh.positions.size()));
-      if (is_new) mesh.positions.push_back(0.5 * (mesh.positions[static_cast<size_t>(a)] + mesh.positions[static_cast<size_t>(b)]));
+      const auto [at, is_new] =
+          middles.try_emplace({std::min(a, b), std::max(a, b)}, static_cast<int>(mesh.positions.size()));
+      if (is_new)
+        mesh.positions.push_back(
+            0.5 * (mesh.positions[static_cast<size_t>(a)] + mesh.positions[static_cast<size_t>(b)]));
       return at->second;
     };
     for (const Triangle& t : mesh.triangles) {
@@ -179,17 +194,21 @@ MeasuredHead without_lining(MeasuredHead head) {
       const int base = all.vertex_count();
       first.push_back(all.triangles.size());
       all.vertices.insert(all.vertices.end(), mesh.positions.begin(), mesh.positions.end());
-      for (const Triangle& t : mesh.triangles) all.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
+      for (const Triangle& t : mesh.triangles)
+        all.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
     }
     const spatial::SurfaceQuery surface(all);
     const formats::SceneMesh& skin = scene.meshes[head_mesh(scene)];
     std::vector<bool> lining(skin.triangles.size(), true);
     for (size_t t = 0; t < lining.size(); ++t) {
       const int index = static_cast<int>(first[head_mesh(scene)] + t);
-      const Vec3 centre = position(all, {index, Vec3::Constant(1.0 / 3.0)}), normal = triangle_normal(all, index);
+      const Vec3 centre = position(all, {index, Vec3::Constant(1.0 / 3.0)}),
+                 normal = triangle_normal(all, index);
       for (int d = 0; d < 27 && lining[t]; ++d) {
         const Vec3 direction(d % 3 - 1, d / 3 % 3 - 1, d / 9 - 1);
-        if (direction.norm() > 0 && direction.normalized().dot(normal) > 0.2 && !surface.blocked(centre + 2e-5 * normal, direction)) lining[t] = false;
+        if (direction.norm() > 0 && direction.normalized().dot(normal) > 0.2 &&
+            !surface.blocked(centre + 2e-5 * normal, direction))
+          lining[t] = false;
       }
     }
     return lining;
@@ -212,7 +231,8 @@ struct FaceAxes {
 
 FaceAxes face_axes(const MeasuredHead& head) {
   const auto at = [&](const char* name) { return head.truth.at(name); };
-  const Vec3 eyes = 0.5 * (at("exocanthion_left") + at("exocanthion_right")), mouth = 0.5 * (at("cheilion_left") + at("cheilion_right"));
+  const Vec3 eyes = 0.5 * (at("exocanthion_left") + at("exocanthion_right")),
+             mouth = 0.5 * (at("cheilion_left") + at("cheilion_right"));
   FaceAxes axes;
   axes.middle = 0.5 * (eyes + mouth);
   axes.left = (at("exocanthion_left") - at("exocanthion_right")).normalized();
@@ -224,7 +244,8 @@ FaceAxes face_axes(const MeasuredHead& head) {
 template <class Keeps>
 MeasuredHead kept(MeasuredHead head, const std::string& how, Keeps keeps) {
   formats::SceneMesh& mesh = head.scene.meshes[0];
-  std::erase_if(mesh.triangles, [&](const Triangle& t) { return !keeps(mesh.positions[static_cast<size_t>(t[0])]); });
+  std::erase_if(mesh.triangles,
+                [&](const Triangle& t) { return !keeps(mesh.positions[static_cast<size_t>(t[0])]); });
   // Points that no triangle uses are not part of what was scanned.
   std::vector<int> place(mesh.positions.size(), -1);
   std::vector<Vec3> used;
@@ -257,7 +278,8 @@ MeasuredHead face_alone(MeasuredHead head, double radius_mm) {
 MeasuredHead cut_above_brows(MeasuredHead head) {
   const FaceAxes axes = face_axes(head);
   const double unit = 1.0 / head.millimetres;
-  return kept(without_lining(std::move(head)), " cut above the brows", [&](const Vec3& p) { return (p - axes.middle).dot(axes.up) < 62 * unit; });
+  return kept(without_lining(std::move(head)), " cut above the brows",
+              [&](const Vec3& p) { return (p - axes.middle).dot(axes.up) < 62 * unit; });
 }
 
 MeasuredHead with_holes(MeasuredHead head, double radius_mm, int count, unsigned seed) {

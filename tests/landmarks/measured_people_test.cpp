@@ -31,7 +31,8 @@ class MeasuredPeople : public ::testing::Test {
     std::string worst;
     for (const auto& [name, truth] : head.truth) {
       Vec3 position = found.landmarks.at(name).position;
-      if (has_ict_definitions) position += offset_of_definition(name, *generic_anatomy().landmark(name)->skin);
+      if (has_ict_definitions)
+        position += offset_of_definition(name, *generic_anatomy().landmark(name)->skin);
       const double error = head.millimetres * (transform_point(to_file, position) - truth).norm();
       sum += error;
       if (error > most) worst = name;
@@ -44,25 +45,32 @@ class MeasuredPeople : public ::testing::Test {
 };
 
 TEST_F(MeasuredPeople, AsTheyCome) {
-  for (const char* name : {"neutral", "person_0", "person_4"}) expect_found(ict_head(name));
+  for (const char* name : {"neutral", "person_0", "person_4"})
+    expect_found(ict_head(name));
 }
 
 TEST_F(MeasuredPeople, TurnedAndInOtherUnits) {
-  const Mat3 turned = (Eigen::AngleAxisd(0.6, Vec3::UnitY()) * Eigen::AngleAxisd(0.45, Vec3::UnitX())).toRotationMatrix();
+  const Mat3 turned =
+      (Eigen::AngleAxisd(0.6, Vec3::UnitY()) * Eigen::AngleAxisd(0.45, Vec3::UnitX())).toRotationMatrix();
   expect_found(in_units(moved(ict_head("person_1"), turned, Vec3(1, 2, 3)), 1000));
 }
 
-TEST_F(MeasuredPeople, DecimatedTo3000Triangles) { expect_found(decimated(ict_head("person_5"), 3000)); }
+TEST_F(MeasuredPeople, DecimatedTo3000Triangles) {
+  expect_found(decimated(ict_head("person_5"), 3000));
+}
 
 TEST_F(MeasuredPeople, SubdividedTo400000Triangles) {
   const MeasuredHead head = subdivided(ict_head("person_0"), 2);
   size_t triangles = 0;
-  for (const auto& mesh : head.scene.meshes) triangles += mesh.triangles.size();
+  for (const auto& mesh : head.scene.meshes)
+    triangles += mesh.triangles.size();
   ASSERT_GT(triangles, 400000u);
   expect_found(head);
 }
 
-TEST_F(MeasuredPeople, WithAMillimetreOfNoise) { expect_found(noisy(ict_head("person_0"), 1.0, 3)); }
+TEST_F(MeasuredPeople, WithAMillimetreOfNoise) {
+  expect_found(noisy(ict_head("person_0"), 1.0, 3));
+}
 
 TEST_F(MeasuredPeople, WithoutEyesAndMouthLiningAndWithHoles) {
   expect_found(without_lining(ict_head("person_2")));
@@ -70,7 +78,8 @@ TEST_F(MeasuredPeople, WithoutEyesAndMouthLiningAndWithHoles) {
 }
 
 TEST_F(MeasuredPeople, AFaceAloneInAnyPose) {
-  const Mat3 turned = (Eigen::AngleAxisd(2.2, Vec3::UnitY()) * Eigen::AngleAxisd(-0.7, Vec3::UnitX())).toRotationMatrix();
+  const Mat3 turned =
+      (Eigen::AngleAxisd(2.2, Vec3::UnitY()) * Eigen::AngleAxisd(-0.7, Vec3::UnitX())).toRotationMatrix();
   expect_found(in_units(moved(face_alone(ict_head("person_2"), 95.0), turned, Vec3(1, 0, 2)), 1000));
   expect_found(face_alone(ict_head("person_4"), 85.0));
   // Here a small face fits a patch of the cheek fairly well.
@@ -79,37 +88,48 @@ TEST_F(MeasuredPeople, AFaceAloneInAnyPose) {
 }
 
 TEST_F(MeasuredPeople, CutAboveTheBrows) {
-  const Mat3 turned = (Eigen::AngleAxisd(-1.0, Vec3::UnitY()) * Eigen::AngleAxisd(1.4, Vec3::UnitX())).toRotationMatrix();
+  const Mat3 turned =
+      (Eigen::AngleAxisd(-1.0, Vec3::UnitY()) * Eigen::AngleAxisd(1.4, Vec3::UnitX())).toRotationMatrix();
   expect_found(in_units(moved(cut_above_brows(ict_head("person_0")), turned), 100));
 }
 
 TEST_F(MeasuredPeople, WhatAFaceAloneLacksHasLittleConfidence) {
-  const rigging::FoundLandmarks found = rigging::find_landmarks(face_alone(ict_head("person_2"), 85.0).scene, {}, generic_anatomy());
+  const rigging::FoundLandmarks found =
+      rigging::find_landmarks(face_alone(ict_head("person_2"), 85.0).scene, {}, generic_anatomy());
   EXPECT_LT(found.landmarks.at("tragion_left").confidence, 0.5);
   EXPECT_GT(found.landmarks.at("exocanthion_left").confidence, 0.5);
   // Beside the mesh where the ear would be, not drawn to the mesh's edge.
-  EXPECT_GT(found.landmarks.at("tragion_left").position[0], found.landmarks.at("exocanthion_left").position[0] + 0.015);
+  EXPECT_GT(found.landmarks.at("tragion_left").position[0],
+            found.landmarks.at("exocanthion_left").position[0] + 0.015);
 }
 
-TEST_F(MeasuredPeople, TheHeadOfAWholeBody) { expect_found(makehuman(), false); }
+TEST_F(MeasuredPeople, TheHeadOfAWholeBody) {
+  expect_found(makehuman(), false);
+}
 
 /// Whether regions `a` and `b` are the two lips, or the two lids of one eye, or skin of the face and lining.
 bool may_never_meet(const std::string& a, const std::string& b) {
   static const std::set<std::pair<std::string, std::string>> opposite = {
-      {"lip_lower", "lip_upper"}, {"lid_lower_left", "lid_upper_left"}, {"lid_lower_right", "lid_upper_right"},
-      {"cheek", "mouth_lining"},  {"mouth_lining", "perioral"},          {"chin", "mouth_lining"}};
+      {"lip_lower", "lip_upper"},
+      {"lid_lower_left", "lid_upper_left"},
+      {"lid_lower_right", "lid_upper_right"},
+      {"cheek", "mouth_lining"},
+      {"mouth_lining", "perioral"},
+      {"chin", "mouth_lining"}};
   return opposite.count({std::min(a, b), std::max(a, b)}) > 0;
 }
 
 TEST_F(MeasuredPeople, LipsLidsAndLiningKeepTheirPlacesVertexByVertex) {
   // Where upper and lower meet round a corner is a matter of definition for a few millimetres.
   const auto is_at_corner = [](const MeasuredHead& head, const Vec3& p) {
-    for (const char* corner : {"exocanthion_left", "exocanthion_right", "endocanthion_left", "endocanthion_right", "cheilion_left", "cheilion_right"})
+    for (const char* corner : {"exocanthion_left", "exocanthion_right", "endocanthion_left",
+                               "endocanthion_right", "cheilion_left", "cheilion_right"})
       if (head.millimetres * (head.truth.at(corner) - p).norm() < 6.0) return true;
     return false;
   };
   const auto regions_of = [](const MeasuredHead& head) {
-    const rigging::FoundLandmarks found = rigging::find_landmarks(head.scene, {}, generic_anatomy(), {}, true);
+    const rigging::FoundLandmarks found =
+        rigging::find_landmarks(head.scene, {}, generic_anatomy(), {}, true);
     // By vertex of the `head` mesh, which is the same one in every person.
     std::vector<std::string> names;
     for (size_t m = 0; m < head.scene.meshes.size(); ++m) {
@@ -123,29 +143,37 @@ TEST_F(MeasuredPeople, LipsLidsAndLiningKeepTheirPlacesVertexByVertex) {
   };
   const std::vector<std::string> mean = regions_of(ict_head("neutral"));
   size_t lip_vertices = 0;
-  for (const std::string& name : mean) lip_vertices += name == "lip_upper" || name == "lip_lower";
+  for (const std::string& name : mean)
+    lip_vertices += name == "lip_upper" || name == "lip_lower";
   ASSERT_GT(lip_vertices, 300u);
   for (const char* person : {"person_0", "person_1", "person_2", "person_3", "person_4", "person_5"}) {
     const MeasuredHead head = ict_head(person);
     const std::vector<std::string> here = regions_of(head);
-    const auto skin = std::find_if(head.scene.meshes.begin(), head.scene.meshes.end(), [](const auto& mesh) { return mesh.name == "head"; });
+    const auto skin = std::find_if(head.scene.meshes.begin(), head.scene.meshes.end(),
+                                   [](const auto& mesh) { return mesh.name == "head"; });
     ASSERT_EQ(here.size(), mean.size());
     std::map<std::string, int> mixed;
     for (size_t v = 0; v < here.size(); ++v)
-      if (may_never_meet(mean[v], here[v]) && !is_at_corner(head, skin->positions[v])) ++mixed[mean[v] + " taken for " + here[v]];
-    // Of some 9,400 vertices a face; on the margins themselves one or two sit between the regions on the mean head already.
-    for (const auto& [what, count] : mixed) EXPECT_LE(count, 3) << person << ": " << count << " vertices, " << what;
+      if (may_never_meet(mean[v], here[v]) && !is_at_corner(head, skin->positions[v]))
+        ++mixed[mean[v] + " taken for " + here[v]];
+    // Of some 9,400 vertices a face; on the margins themselves one or two sit between the regions on the mean
+    // head already.
+    for (const auto& [what, count] : mixed)
+      EXPECT_LE(count, 3) << person << ": " << count << " vertices, " << what;
   }
 }
 
 TEST_F(MeasuredPeople, EyesTeethAndTongueOfTheBodyByShapeAndPlace) {
   MeasuredHead body = makehuman();
-  for (size_t m = 0; m < body.scene.meshes.size(); ++m) body.scene.meshes[m].name = "object_" + std::to_string(m);
+  for (size_t m = 0; m < body.scene.meshes.size(); ++m)
+    body.scene.meshes[m].name = "object_" + std::to_string(m);
   const rigging::FoundLandmarks found = rigging::find_landmarks(body.scene, {}, generic_anatomy());
   std::set<prepare::Part> parts;
-  for (const prepare::PreparedMesh& mesh : found.head.meshes) parts.insert(mesh.parts.begin(), mesh.parts.end());
+  for (const prepare::PreparedMesh& mesh : found.head.meshes)
+    parts.insert(mesh.parts.begin(), mesh.parts.end());
   using prepare::Part;
-  for (Part part : {Part::skin, Part::eye_left, Part::eye_right, Part::teeth_upper, Part::teeth_lower, Part::tongue})
+  for (Part part :
+       {Part::skin, Part::eye_left, Part::eye_right, Part::teeth_upper, Part::teeth_lower, Part::tongue})
     EXPECT_TRUE(parts.count(part)) << prepare::part_name(part);
 }
 

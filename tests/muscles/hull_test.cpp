@@ -24,7 +24,8 @@ struct Bench {
 
   Hull hull(const std::vector<Vec3>& points) {
     std::vector<SurfacePoint> places;
-    for (const Vec3& p : points) places.push_back(carrier.closest(p));
+    for (const Vec3& p : points)
+      places.push_back(carrier.closest(p));
     return geodesic_hull(carrier, places, "test region");
   }
 };
@@ -32,7 +33,8 @@ struct Bench {
 std::vector<Vec3> circle(double x, double y, double radius, int count) {
   std::vector<Vec3> points;
   for (int i = 0; i < count; ++i)
-    points.emplace_back(x + radius * std::cos(2 * kPi * i / count), y + radius * std::sin(2 * kPi * i / count), 0.0);
+    points.emplace_back(x + radius * std::cos(2 * kPi * i / count),
+                        y + radius * std::sin(2 * kPi * i / count), 0.0);
   return points;
 }
 
@@ -49,17 +51,20 @@ TEST(GeodesicHull, IsTheConvexHullOnAPlane) {
   const Hull hull = bench.hull(shape);
   ASSERT_EQ(hull.size(), 5);
   EXPECT_FALSE(has_corner(hull, shape[3]));
-  for (int i : {0, 1, 2, 4, 5}) EXPECT_TRUE(has_corner(hull, shape[i]));
+  for (int i : {0, 1, 2, 4, 5})
+    EXPECT_TRUE(has_corner(hull, shape[i]));
   EXPECT_NEAR(hull.turning, 2 * kPi, 1e-9);
   double girth = 0.0;
-  for (double side : hull.sides) girth += side;
+  for (double side : hull.sides)
+    girth += side;
   EXPECT_NEAR(girth, .6 + .2 + std::sqrt(.32) + .2 + .6, 1e-12);
 }
 
 TEST(GeodesicHull, KeepsATriangleOnTheSphere) {
   Bench bench(geodesics::sphere(5));
   // Points that lie outside the chords but inside the great circles between the corners.
-  const Vec3 a = Vec3(1, .2, .2).normalized(), b = Vec3(.2, 1, .2).normalized(), c = Vec3(.2, .2, 1).normalized();
+  const Vec3 a = Vec3(1, .2, .2).normalized(), b = Vec3(.2, 1, .2).normalized(),
+             c = Vec3(.2, .2, 1).normalized();
   const Vec3 inner = ((a + b).normalized() + 0.02 * c).normalized();
   const Hull hull = bench.hull({a, b, c, inner, (a + b + c).normalized()});
   EXPECT_EQ(hull.size(), 3);
@@ -72,7 +77,8 @@ TEST(GeodesicHull, KeepsATriangleOnTheSphere) {
 TEST(GeodesicHull, RefusesHalfASphere) {
   Bench bench(geodesics::sphere(3));
   std::vector<Vec3> belt;
-  for (const Vec3& p : circle(0, 0, 1, 12)) belt.push_back((p - Vec3(0, 0, 0.001)).normalized());
+  for (const Vec3& p : circle(0, 0, 1, 12))
+    belt.push_back((p - Vec3(0, 0, 0.001)).normalized());
   belt.push_back(Vec3(0, 0, 1));
   try {
     bench.hull(belt);
@@ -89,8 +95,9 @@ TEST(MutualTangent, HasTheLengthsOfTwoCircles) {
   const double outer = std::sqrt(distance * distance - (r1 - r2) * (r1 - r2));
   const double inner = std::sqrt(distance * distance - (r1 + r2) * (r1 + r2));
   for (const auto& [first, second, length] :
-       {std::tuple(HullSide::right, HullSide::right, outer), std::tuple(HullSide::left, HullSide::left, outer),
-        std::tuple(HullSide::right, HullSide::left, inner), std::tuple(HullSide::left, HullSide::right, inner)}) {
+       {std::tuple(HullSide::right, HullSide::right, outer),
+        std::tuple(HullSide::left, HullSide::left, outer), std::tuple(HullSide::right, HullSide::left, inner),
+        std::tuple(HullSide::left, HullSide::right, inner)}) {
     const auto tangent = mutual_tangent(bench.carrier, a, b, first, second);
     ASSERT_TRUE(tangent.has_value());
     EXPECT_NEAR(tangent->length, length, 0.02);

@@ -20,12 +20,15 @@ constexpr double kSkin = 0.1, kSmas = 0.095, kBone = 0.088;
 
 TriangleMesh shell(double radius) {
   TriangleMesh mesh = geodesics::sphere(5);
-  for (Vec3& p : mesh.vertices) p *= radius;
+  for (Vec3& p : mesh.vertices)
+    p *= radius;
   return mesh;
 }
 
 /// The point of the front of a sphere seen at (x, y).
-Vec3 front(double radius, double x, double y) { return Vec3(x, y, std::sqrt(radius * radius - x * x - y * y)); }
+Vec3 front(double radius, double x, double y) {
+  return Vec3(x, y, std::sqrt(radius * radius - x * x - y * y));
+}
 
 std::vector<Vec3> patch(double radius, double x, double y, double half_width, double half_height) {
   return {front(radius, x - half_width, y - half_height), front(radius, x + half_width, y - half_height),
@@ -45,13 +48,15 @@ anatomy::Muscle strap(const std::string& name, double side) {
   return muscle;
 }
 
-anatomy::Muscle ring(const std::string& name, MuscleKind kind, double inner, double outer, double begin, double end) {
+anatomy::Muscle ring(const std::string& name, MuscleKind kind, double inner, double outer, double begin,
+                     double end) {
   anatomy::Muscle muscle;
   muscle.name = muscle.whole = name;
   muscle.group = "mimic";
   muscle.kind = kind;
   muscle.band = anatomy::OrificeBand{"mouth", inner, outer, begin, end};
-  muscle.depth_fraction = kind == MuscleKind::compressor ? std::vector<double>{0.1, 0.9} : std::vector<double>{0.4, 0.4};
+  muscle.depth_fraction =
+      kind == MuscleKind::compressor ? std::vector<double>{0.1, 0.9} : std::vector<double>{0.4, 0.4};
   muscle.cross_section = 1e-5;
   return muscle;
 }
@@ -88,8 +93,9 @@ int front_crossings(const Muscle& muscle) {
     for (size_t j = i + 1; j < muscle.fibres.size(); ++j)
       for (size_t k = 0; k + 1 < muscle.fibres[i].points.size(); ++k)
         for (size_t l = 0; l + 1 < muscle.fibres[j].points.size(); ++l)
-          count += segments_cross(muscle.fibres[i].points[k].position, muscle.fibres[i].points[k + 1].position,
-                                  muscle.fibres[j].points[l].position, muscle.fibres[j].points[l + 1].position);
+          count +=
+              segments_cross(muscle.fibres[i].points[k].position, muscle.fibres[i].points[k + 1].position,
+                             muscle.fibres[j].points[l].position, muscle.fibres[j].points[l + 1].position);
   return count;
 }
 
@@ -115,8 +121,10 @@ TEST(BuildMuscles, LaysAStrapFromBoneToTheModiolus) {
     for (const FibrePoint& point : fibre.points) {
       if (!point.bound) continue;
       const spatial::SurfaceQuery smas(head.smas);
-      EXPECT_LT((position(head.smas, point.smas) + point.offset * smas.smooth_normal(point.smas) - point.position).norm(),
-                1e-12);
+      EXPECT_LT(
+          (position(head.smas, point.smas) + point.offset * smas.smooth_normal(point.smas) - point.position)
+              .norm(),
+          1e-12);
     }
   }
   // Great circle between the regions' middles at the mean radius.
@@ -128,7 +136,8 @@ TEST(BuildMuscles, AreMirroredOnTheOtherSide) {
   BallHead head;
   head.muscles = {strap("left", 1.0), strap("right", -1.0)};
   const Result result = build(head.inputs());
-  EXPECT_NEAR(result.muscles[0].mean_length, result.muscles[1].mean_length, 0.02 * result.muscles[0].mean_length);
+  EXPECT_NEAR(result.muscles[0].mean_length, result.muscles[1].mean_length,
+              0.02 * result.muscles[0].mean_length);
   EXPECT_EQ(result.muscles[0].fibres.size(), result.muscles[1].fibres.size());
 }
 
@@ -143,7 +152,8 @@ TEST(BuildMuscles, PassesItsWaypoints) {
   EXPECT_EQ(muscle.crossings, 0);
   double nearest = 1.0;
   for (const Fibre& fibre : muscle.fibres)
-    for (const FibrePoint& point : fibre.points) nearest = std::min(nearest, (point.position - waypoint).norm());
+    for (const FibrePoint& point : fibre.points)
+      nearest = std::min(nearest, (point.position - waypoint).norm());
   EXPECT_LT(nearest, 0.005);
 }
 
@@ -154,7 +164,7 @@ TEST(BuildMuscles, RingsKeepTheirDistanceFromTheMouth) {
   const Result result = build(head.inputs());
   for (const Muscle& muscle : result.muscles) {
     EXPECT_EQ(front_crossings(muscle), 0);
-  EXPECT_EQ(muscle.crossings, 0);
+    EXPECT_EQ(muscle.crossings, 0);
     const size_t count = muscle.fibres.size();
     for (size_t i = 0; i < count; ++i) {
       const double distance = 0.004 + 0.008 * (i + 0.5) / count;
@@ -162,9 +172,10 @@ TEST(BuildMuscles, RingsKeepTheirDistanceFromTheMouth) {
         // To the lip line, over the sphere: within a fifth of the distance.
         double nearest = 1.0;
         for (int k = 0; k <= 100; ++k)
-          nearest = std::min(nearest,
-                             std::acos(std::min(1.0, front(kSkin, -0.025 + 0.05 * k / 100, -0.03).normalized().dot(
-                                                         point.position.normalized()))) * 0.0975);
+          nearest = std::min(nearest, std::acos(std::min(1.0, front(kSkin, -0.025 + 0.05 * k / 100, -0.03)
+                                                                  .normalized()
+                                                                  .dot(point.position.normalized()))) *
+                                          0.0975);
         EXPECT_NEAR(nearest, distance, 0.2 * distance + 2e-4);
         EXPECT_NEAR(point.position.norm(), kSkin - 0.4 * (kSkin - kBone), 1e-3);
       }
@@ -201,7 +212,8 @@ TEST(BuildMuscles, DeepMusclesRunFromBoneToBone) {
   for (const Fibre& fibre : muscle.fibres) {
     EXPECT_NEAR(fibre.points.front().position.norm(), kBone, 2e-4);
     EXPECT_NEAR(fibre.points.back().position.norm(), kBone, 2e-4);
-    for (const FibrePoint& point : fibre.points) EXPECT_GT(point.position.norm(), kBone - 2e-4);
+    for (const FibrePoint& point : fibre.points)
+      EXPECT_GT(point.position.norm(), kBone - 2e-4);
   }
 }
 
@@ -239,7 +251,8 @@ TEST(Crossings, AreCountedAndPutInOrder) {
     const spatial::ClosestPoint closest = smas.closest(p);
     return FibrePoint{closest.position, closest.surface, 0.0, true};
   };
-  std::vector<Fibre> fibres = {straight(smas, 0.0, 0.0), straight(smas, 0.004, 0.004), straight(smas, 0.008, 0.008)};
+  std::vector<Fibre> fibres = {straight(smas, 0.0, 0.0), straight(smas, 0.004, 0.004),
+                               straight(smas, 0.008, 0.008)};
   EXPECT_EQ(crossings(fibres, smas), 0);
   std::swap(fibres[0].points, fibres[2].points);  // in another order, but side by side
   EXPECT_EQ(crossings(fibres, smas), 0);
@@ -267,8 +280,10 @@ TEST(Crossings, AreCountedAndPutInOrder) {
 
 TEST(Modiolus, GathersWhatInsertsThereAndTheRingsOfTheMouth) {
   BallHead head;
-  head.muscles = {strap("above", 1.0), strap("below", 1.0), ring("upper", MuscleKind::sphincter_ring, 0.004, 0.02, 0.0, kPi / 2)};
-  for (auto& muscle : head.muscles) muscle.side = anatomy::Side::left;
+  head.muscles = {strap("above", 1.0), strap("below", 1.0),
+                  ring("upper", MuscleKind::sphincter_ring, 0.004, 0.02, 0.0, kPi / 2)};
+  for (auto& muscle : head.muscles)
+    muscle.side = anatomy::Side::left;
   head.muscles[0].insertion.polygon = patch(kSmas, 0.032, -0.022, 0.004, 0.004);
   head.muscles[1].insertion.polygon = patch(kSmas, 0.034, -0.040, 0.004, 0.004);
   head.muscles[1].origin.polygon = patch(kBone, 0.03, -0.06, 0.006, 0.004);
@@ -312,9 +327,11 @@ TEST(BuildMuscles, RunAcrossRegionsThatOverlapOrContainEachOther) {
   }
   // Across both: all fibres run towards the insertion.
   for (const Fibre& fibre : result.muscles[0].fibres)
-    EXPECT_GT((fibre.points.back().position - fibre.points.front().position).dot(Vec3(0.006, -0.004, 0.0)), 0.0);
+    EXPECT_GT((fibre.points.back().position - fibre.points.front().position).dot(Vec3(0.006, -0.004, 0.0)),
+              0.0);
   // From all sides inward: fibres end within the inner region.
-  for (const Fibre& fibre : result.muscles[1].fibres) EXPECT_LT((fibre.points.back().position - front(kSmas, -0.03, 0.0)).norm(), 0.006);
+  for (const Fibre& fibre : result.muscles[1].fibres)
+    EXPECT_LT((fibre.points.back().position - front(kSmas, -0.03, 0.0)).norm(), 0.006);
 }
 
 TEST(Sketches, StandForRegionsOrSayWhyNot) {
@@ -336,11 +353,13 @@ TEST(Sketches, StandForRegionsOrSayWhyNot) {
   };
   const std::vector<Vec3> square = patch(kSkin, 0.03, 0.04, 0.005, 0.005);
   std::vector<Vec3> cloud = {square[2], square[0], front(kSkin, 0.03, 0.04), square[3], square[1]};
-  // A curve round the region and points in it, in any order, are the same region; on the skin, they are brought to the bone.
+  // A curve round the region and points in it, in any order, are the same region; on the skin, they are
+  // brought to the bone.
   const Muscle curve = built({square, true}), points = built({cloud, false});
   ASSERT_EQ(curve.fibres.size(), points.fibres.size());
   EXPECT_NEAR(curve.mean_length, points.mean_length, 1e-4);
-  for (const Fibre& fibre : curve.fibres) EXPECT_NEAR(fibre.points.front().position.norm(), kBone, 2e-4);
+  for (const Fibre& fibre : curve.fibres)
+    EXPECT_NEAR(fibre.points.front().position.norm(), kBone, 2e-4);
   refused({{}, true}, "three or more");
   refused({{square[0], square[0], square[1]}, true}, "2 different points");
   refused({{square[0], square[2], square[1], square[3]}, true}, "crosses itself");
@@ -358,12 +377,14 @@ TEST(BuildMuscles, CarriesRegionsByTheWarp) {
   head.muscles = {strap("a", 1.0)};
   const std::vector<Vec3> from = {Vec3(0, 0, 0), Vec3(.1, 0, 0), Vec3(0, .1, 0), Vec3(0, 0, .1)};
   std::vector<Vec3> to = from;
-  for (Vec3& p : to) p[0] = -p[0];  // the mirror: the muscle comes out on the right
+  for (Vec3& p : to)
+    p[0] = -p[0];  // the mirror: the muscle comes out on the right
   const splines::Warp warp = splines::fit_warp(from, to);
   Inputs inputs = head.inputs();
   inputs.warp = &warp;
   const Result result = build(inputs);
-  for (const Fibre& fibre : result.muscles[0].fibres) EXPECT_LT(fibre.points[0].position[0], -0.03);
+  for (const Fibre& fibre : result.muscles[0].fibres)
+    EXPECT_LT(fibre.points[0].position[0], -0.03);
 }
 
 TEST(BuildMuscles, SaysWhatIsMissing) {

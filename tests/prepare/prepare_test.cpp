@@ -22,7 +22,8 @@ formats::SceneMesh seamed_sphere(const std::string& name, const Vec3& centre, do
   for (int r = 0; r <= rings; ++r)
     for (int s = 0; s <= sectors; ++s) {
       const double theta = EIGEN_PI * r / rings, phi = 2 * EIGEN_PI * (s % sectors) / sectors;
-      mesh.positions.push_back(centre + radius * Vec3(std::sin(theta) * std::cos(phi), std::cos(theta), -std::sin(theta) * std::sin(phi)));
+      mesh.positions.push_back(centre + radius * Vec3(std::sin(theta) * std::cos(phi), std::cos(theta),
+                                                      -std::sin(theta) * std::sin(phi)));
     }
   const auto at = [&](int r, int s) { return r * (sectors + 1) + s; };
   for (int r = 0; r < rings; ++r)
@@ -45,9 +46,11 @@ formats::Scene scene_in(const Mat4& to_file) {
   formats::Scene scene;
   scene.kind = formats::FileKind::obj;
   scene.path = "sphere.obj";
-  scene.meshes = {seamed_sphere("head", Vec3(0, 0, 0), 0.11), seamed_sphere("l-eye", Vec3(0.031, 0.035, 0.09), 0.012)};
+  scene.meshes = {seamed_sphere("head", Vec3(0, 0, 0), 0.11),
+                  seamed_sphere("l-eye", Vec3(0.031, 0.035, 0.09), 0.012)};
   for (auto& mesh : scene.meshes)
-    for (Vec3& p : mesh.positions) p = transform_point(to_file, p);
+    for (Vec3& p : mesh.positions)
+      p = transform_point(to_file, p);
   return scene;
 }
 
@@ -70,7 +73,8 @@ TEST(Prepare, FindsUnitsAndAxesFromLandmarks) {
     const PreparedHead head = prepare(scene_in(to_file), landmarks_in(to_file, 1.0, ""), reference(), {});
     EXPECT_EQ(head.units, name);
     EXPECT_NEAR((head.input_to_metres * to_file - Mat4::Identity()).norm(), 0.0, 1e-12);
-    EXPECT_NEAR(head.landmarks.at("exocanthion_left")[0], 0.11 * reference()["exocanthion_left"].normalized()[0], 2e-3);
+    EXPECT_NEAR(head.landmarks.at("exocanthion_left")[0],
+                0.11 * reference()["exocanthion_left"].normalized()[0], 2e-3);
   }
 }
 
@@ -114,7 +118,8 @@ TEST(Prepare, TouchingLipsStayTwo) {
   // Two closed tubes that share the position of a vertex are not one surface.
   formats::Scene scene;
   scene.path = "lips.obj";
-  scene.meshes = {seamed_sphere("upper", Vec3(0, 0.1, 0), 0.1), seamed_sphere("lower", Vec3(0, -0.1, 0), 0.1)};
+  scene.meshes = {seamed_sphere("upper", Vec3(0, 0.1, 0), 0.1),
+                  seamed_sphere("lower", Vec3(0, -0.1, 0), 0.1)};
   const WeldedScene welded = weld_scene(scene, Mat4::Identity());
   // The poles are on the open edges of collapsed triangles and may merge; the surfaces' own rings may not.
   scene.meshes[0].positions[30] = scene.meshes[1].positions[40];
@@ -160,19 +165,27 @@ TEST(PartNames, AreReadByTheirWords) {
   EXPECT_EQ(part("Hair_Brown"), Part::hair);
   EXPECT_EQ(part("SunGlasses 02"), Part::glasses);
   EXPECT_EQ(part("T_Shirt"), Part::clothes);
-  for (const char* nothing : {"brown_leather", "student", "accident", "splash", "chair", "flash", "gumboot", "head", ""}) EXPECT_FALSE(part(nothing)) << nothing;
+  for (const char* nothing :
+       {"brown_leather", "student", "accident", "splash", "chair", "flash", "gumboot", "head", ""})
+    EXPECT_FALSE(part(nothing)) << nothing;
   EXPECT_TRUE(part_by_name("l-eye").says_eye);
   EXPECT_FALSE(part_by_name("eye_blend").says_eye);
 }
 
 /// Landmarks of an ordinary face, rig frame.
 std::map<std::string, Vec3> face_landmarks() {
-  return {{"exocanthion_left", Vec3(0.045, 0.035, 0.08)},   {"exocanthion_right", Vec3(-0.045, 0.035, 0.08)},
-          {"endocanthion_left", Vec3(0.017, 0.034, 0.09)},  {"endocanthion_right", Vec3(-0.017, 0.034, 0.09)},
-          {"cheilion_left", Vec3(0.025, -0.035, 0.095)},    {"cheilion_right", Vec3(-0.025, -0.035, 0.095)},
-          {"stomion", Vec3(0, -0.035, 0.11)},               {"glabella", Vec3(0, 0.055, 0.105)},
-          {"nasion", Vec3(0, 0.04, 0.10)},                  {"menton", Vec3(0, -0.085, 0.09)},
-          {"tragion_left", Vec3(0.072, 0.02, 0.0)},         {"tragion_right", Vec3(-0.072, 0.02, 0.0)}};
+  return {{"exocanthion_left", Vec3(0.045, 0.035, 0.08)},
+          {"exocanthion_right", Vec3(-0.045, 0.035, 0.08)},
+          {"endocanthion_left", Vec3(0.017, 0.034, 0.09)},
+          {"endocanthion_right", Vec3(-0.017, 0.034, 0.09)},
+          {"cheilion_left", Vec3(0.025, -0.035, 0.095)},
+          {"cheilion_right", Vec3(-0.025, -0.035, 0.095)},
+          {"stomion", Vec3(0, -0.035, 0.11)},
+          {"glabella", Vec3(0, 0.055, 0.105)},
+          {"nasion", Vec3(0, 0.04, 0.10)},
+          {"menton", Vec3(0, -0.085, 0.09)},
+          {"tragion_left", Vec3(0.072, 0.02, 0.0)},
+          {"tragion_right", Vec3(-0.072, 0.02, 0.0)}};
 }
 
 /// What a stretched ball of this name, middle and half sizes is taken for beside a head.
@@ -181,7 +194,8 @@ Part taken_for(const std::string& name, const Vec3& centre, const Vec3& half_siz
   scene.kind = formats::FileKind::obj;
   scene.path = "parts.obj";
   scene.meshes = {seamed_sphere("head", Vec3::Zero(), 0.11), seamed_sphere(name, Vec3::Zero(), 1.0)};
-  for (Vec3& p : scene.meshes[1].positions) p = centre + half_size.cwiseProduct(p);
+  for (Vec3& p : scene.meshes[1].positions)
+    p = centre + half_size.cwiseProduct(p);
   const WeldedScene welded = weld_scene(scene, Mat4::Identity());
   const Parts parts = recognise_parts(scene, welded, face_landmarks(), {});
   for (size_t t = 0; t < welded.component.size(); ++t)
@@ -210,19 +224,22 @@ TEST(Parts, GlassesClothesAndHairByShapeAndPlace) {
 TEST(Eyeballs, LookThroughTheirCornea) {
   formats::SceneMesh eye = seamed_sphere("e", Vec3::Zero(), 0.012);
   const Vec3 gaze = Vec3(0.2, -0.1, 1).normalized();
-  for (Vec3& p : eye.positions) p *= 1.0 + 0.1 * std::exp(-std::pow(std::acos(std::clamp(p.normalized().dot(gaze), -1.0, 1.0)) / 0.3, 2));
+  for (Vec3& p : eye.positions)
+    p *= 1.0 + 0.1 * std::exp(-std::pow(std::acos(std::clamp(p.normalized().dot(gaze), -1.0, 1.0)) / 0.3, 2));
   const Eyeball ball = fit_sphere(eye.positions, nullptr);
   EXPECT_GT(gaze_axis(ball, eye.positions, eye.triangles).dot(gaze), std::cos(0.1));
 }
 
 TEST(Eyeballs, LookThroughTheirPole) {
   formats::SceneMesh eye = seamed_sphere("e", Vec3::Zero(), 0.012);
-  const Mat3 turn = (Eigen::AngleAxisd(0.3, Vec3::UnitY()) * Eigen::AngleAxisd(EIGEN_PI / 2, Vec3::UnitX())).toRotationMatrix();
+  const Mat3 turn = (Eigen::AngleAxisd(0.3, Vec3::UnitY()) * Eigen::AngleAxisd(EIGEN_PI / 2, Vec3::UnitX()))
+                        .toRotationMatrix();
   TriangleMesh mesh;
   std::vector<int> map;
   mesh.vertices = eye.positions;
   mesh.triangles = eye.triangles;
-  for (Vec3& p : mesh.vertices) p = turn * p;
+  for (Vec3& p : mesh.vertices)
+    p = turn * p;
   mesh = weld(mesh, 1e-9, &map);
   EXPECT_GT(gaze_axis({Vec3::Zero(), 0.012}, mesh.vertices, mesh.triangles).dot(turn * Vec3::UnitY()), 0.999);
   EXPECT_EQ(gaze_axis({Vec3::Zero(), 0.012}, {}, {}), Vec3::UnitZ());

@@ -34,9 +34,13 @@ std::string refusal(const std::function<void(Json&)>& change) {
   return message_of([&] { rig::read(bytes, "head.glb"); });
 }
 
-Json& extension(Json& root, const char* name) { return root["extensions"][name]; }
+Json& extension(Json& root, const char* name) {
+  return root["extensions"][name];
+}
 
-Json& accessor_of(Json& root, const Json& index) { return root["accessors"][index.get<std::size_t>()]; }
+Json& accessor_of(Json& root, const Json& index) {
+  return root["accessors"][index.get<std::size_t>()];
+}
 
 #define EXPECT_SAYS(message, part) EXPECT_NE((message).find(part), std::string::npos) << (message)
 
@@ -45,7 +49,8 @@ TEST(Refusal, NothingIsWrongWithTheUnchangedFile) {
 }
 
 TEST(Refusal, UnknownVersion) {
-  for (const char* name : {"FASCIA_skull", "FASCIA_smas", "FASCIA_muscles", "FASCIA_tissue", "FASCIA_actuation"}) {
+  for (const char* name :
+       {"FASCIA_skull", "FASCIA_smas", "FASCIA_muscles", "FASCIA_tissue", "FASCIA_actuation"}) {
     const std::string message = refusal([&](Json& root) { extension(root, name)["specVersion"] = "7.3"; });
     EXPECT_SAYS(message, std::string(name) + "/specVersion");
     EXPECT_SAYS(message, "7.3");
@@ -54,7 +59,8 @@ TEST(Refusal, UnknownVersion) {
 }
 
 TEST(Refusal, NamesFileExtensionAndProperty) {
-  const std::string message = refusal([](Json& root) { extension(root, "FASCIA_smas")["depthToSkin"] = 100000; });
+  const std::string message =
+      refusal([](Json& root) { extension(root, "FASCIA_smas")["depthToSkin"] = 100000; });
   EXPECT_SAYS(message, "head.glb: FASCIA_smas/depthToSkin");
 }
 
@@ -62,7 +68,8 @@ TEST(Refusal, WrongAccessors) {
   const auto level = [](Json& root) -> Json& { return extension(root, "FASCIA_tissue")["levels"][0]; };
   const std::string path = "FASCIA_tissue/levels/0/";
   // A length that does not fit the others.
-  EXPECT_SAYS(refusal([&](Json& root) { level(root)["masses"] = level(root)["skinBending"]; }), path + "masses");
+  EXPECT_SAYS(refusal([&](Json& root) { level(root)["masses"] = level(root)["skinBending"]; }),
+              path + "masses");
   EXPECT_SAYS(refusal([&](Json& root) { level(root).erase("masses"); }), path + "masses");
   // Floats where whole numbers are due, and the other way round.
   EXPECT_SAYS(refusal([&](Json& root) { level(root)["kinds"] = level(root)["masses"]; }), path + "kinds");
@@ -85,8 +92,10 @@ TEST(Refusal, ValuesOutOfRange) {
   // Claiming one column less makes indices point past the nodes.
   EXPECT_NE(refusal([](Json& root) { extension(root, "FASCIA_tissue")["levels"][0]["columns"] = 288; }), "");
   EXPECT_NE(refusal([](Json& root) { extension(root, "FASCIA_tissue")["levels"][0]["columns"] = -1; }), "");
-  EXPECT_NE(refusal([](Json& root) { extension(root, "FASCIA_tissue")["levels"][0]["columns"] = 289.5; }), "");
-  EXPECT_SAYS(refusal([](Json& root) { extension(root, "FASCIA_muscles")["muscles"].erase(1); }), "FASCIA_muscles");
+  EXPECT_NE(refusal([](Json& root) { extension(root, "FASCIA_tissue")["levels"][0]["columns"] = 289.5; }),
+            "");
+  EXPECT_SAYS(refusal([](Json& root) { extension(root, "FASCIA_muscles")["muscles"].erase(1); }),
+              "FASCIA_muscles");
   EXPECT_SAYS(refusal([](Json& root) { extension(root, "FASCIA_muscles")["muscles"][0]["origin"] = "nose"; }),
               "FASCIA_muscles/muscles/0/origin");
   EXPECT_SAYS(refusal([](Json& root) { extension(root, "FASCIA_actuation")["channels"][0]["muscle"] = 2; }),
@@ -103,14 +112,15 @@ TEST(Refusal, ValuesOutOfRange) {
 TEST(Refusal, AChangedMeshIsFoundOut) {
   rig::GltfSource file = rig::glb_source(test::tiny_rig_file());
   file.bin[4] ^= 1;  // a bit of the first vertex
-  const std::string moved =
-      message_of([&] { rig::read(rig::glb_bytes(file.json, file.bin), "head.glb"); });
+  const std::string moved = message_of([&] { rig::read(rig::glb_bytes(file.json, file.bin), "head.glb"); });
   EXPECT_SAYS(moved, "FASCIA_tissue/levels/0/bindings/0");
   EXPECT_SAYS(moved, "face");
   EXPECT_SAYS(moved, "build the rig again");
-  EXPECT_SAYS(refusal([](Json& root) { root["accessors"][0]["count"] = 288; }), "FASCIA_tissue/levels/0/bindings/0");
-  EXPECT_SAYS(refusal([](Json& root) { extension(root, "FASCIA_tissue")["levels"][0]["bindings"][0]["mesh"] = 3; }),
-              "mesh 3");
+  EXPECT_SAYS(refusal([](Json& root) { root["accessors"][0]["count"] = 288; }),
+              "FASCIA_tissue/levels/0/bindings/0");
+  EXPECT_SAYS(
+      refusal([](Json& root) { extension(root, "FASCIA_tissue")["levels"][0]["bindings"][0]["mesh"] = 3; }),
+      "mesh 3");
 }
 
 TEST(Refusal, APlainHeadIsNoRig) {
@@ -165,7 +175,8 @@ TEST(Refusal, AnInconsistentRigIsNotWritten) {
     return message_of([&] { rig::write(test::tiny_head(), rig); });
   };
   EXPECT_EQ(written([](rig::Rig&) {}), "");
-  EXPECT_SAYS(written([](rig::Rig& r) { r.tissue.levels[0].masses.pop_back(); }), "FASCIA_tissue/levels/0/masses");
+  EXPECT_SAYS(written([](rig::Rig& r) { r.tissue.levels[0].masses.pop_back(); }),
+              "FASCIA_tissue/levels/0/masses");
   EXPECT_SAYS(written([](rig::Rig& r) { r.tissue.levels[0].spring_nodes[3][1] = 9999; }), "springNodes");
   EXPECT_SAYS(written([](rig::Rig& r) { r.smas.depth_to_skin[5] = std::numeric_limits<float>::quiet_NaN(); }),
               "FASCIA_smas/depthToSkin: element 5");

@@ -178,7 +178,8 @@ TEST(RoundTrip, BulkNumbersLieInAccessorsOfTheirOwn) {
   EXPECT_EQ(springs["componentType"], 5123);
   EXPECT_EQ(springs["type"], "VEC2");
   EXPECT_NE(rest["bufferView"], kinds["bufferView"]);
-  EXPECT_EQ(root["bufferViews"][rest["bufferView"].get<std::size_t>()]["byteOffset"].get<std::size_t>() % 4, 0U);
+  EXPECT_EQ(root["bufferViews"][rest["bufferView"].get<std::size_t>()]["byteOffset"].get<std::size_t>() % 4,
+            0U);
   // The whole of the JSON is small beside the numbers.
   EXPECT_LT(file.json.size(), 40000U);
 }
@@ -190,25 +191,24 @@ TEST(RoundTrip, PrimitivesComeWithTheRig) {
   EXPECT_EQ(file.primitives[0].positions.size(), 289U);
   EXPECT_EQ(file.primitives[0].triangles.size(), 512U);
   const rig::Binding& binding = file.rig.tissue.bindings[0][0];
-  const rig::Vec3f in_rig =
-      (binding.to_rig * file.primitives[0].positions[7].homogeneous()).head<3>();
+  const rig::Vec3f in_rig = (binding.to_rig * file.primitives[0].positions[7].homogeneous()).head<3>();
   EXPECT_LT((in_rig - file.rig.tissue.levels[0].rest[7]).norm(), 1e-6F);
 }
 
 TEST(Embed, JoinsExternalAndDataBuffersAndTakesImagesIn) {
   rig::GltfSource source;
-  source.json =
-      R"({"asset":{"version":"2.0"},"buffers":[{"uri":"a%20b.bin","byteLength":5},)"
-      R"({"uri":"data:application/octet-stream;base64,AQIDBA==","byteLength":4,"name":"second"}],)"
-      R"("bufferViews":[{"buffer":0,"byteLength":5},{"buffer":1,"byteOffset":1,"byteLength":3}],)"
-      R"("images":[{"uri":"t.png"},{"uri":"missing.png"}]})";
+  source.json = R"({"asset":{"version":"2.0"},"buffers":[{"uri":"a%20b.bin","byteLength":5},)"
+                R"({"uri":"data:application/octet-stream;base64,AQIDBA==","byteLength":4,"name":"second"}],)"
+                R"("bufferViews":[{"buffer":0,"byteLength":5},{"buffer":1,"byteOffset":1,"byteLength":3}],)"
+                R"("images":[{"uri":"t.png"},{"uri":"missing.png"}]})";
   source.resolve = [](const std::string& uri) -> std::optional<std::vector<uint8_t>> {
     if (uri == "a b.bin") return std::vector<uint8_t>{9, 8, 7, 6, 5};
     if (uri == "t.png") return std::vector<uint8_t>{0x89, 'P', 'N', 'G', 1};
     return std::nullopt;
   };
   const rig::GltfSource joined = rig::embed(source);
-  const std::vector<uint8_t> expected = {9, 8, 7, 6, 5, 0, 0, 0, 1, 2, 3, 4, 0, 0, 0, 0, 0x89, 'P', 'N', 'G', 1};
+  const std::vector<uint8_t> expected = {9, 8, 7, 6, 5, 0,    0,   0,   1,   2, 3,
+                                         4, 0, 0, 0, 0, 0x89, 'P', 'N', 'G', 1};
   EXPECT_EQ(joined.bin, expected);
   const Json root = Json::parse(joined.json);
   EXPECT_EQ(root["buffers"], Json::parse(R"([{"byteLength":21}])"));

@@ -49,7 +49,9 @@ const Json* schema_file(const std::string& uri) {
   return nullptr;
 }
 
-const Json& root_schema(const std::string& extension) { return *schema_file("glTF." + extension + ".schema.json"); }
+const Json& root_schema(const std::string& extension) {
+  return *schema_file("glTF." + extension + ".schema.json");
+}
 
 /// What the schema of `extension` finds wrong with `object`, or nothing.
 std::string faults(const std::string& extension, const Json& object) {

@@ -46,7 +46,9 @@ bool on_rim(uint32_t column) {
   return x == 0 || y == 0 || x == side - 1 || y == side - 1;
 }
 
-bool on_jaw(uint32_t column) { return column / side < side / 2 - 1; }
+bool on_jaw(uint32_t column) {
+  return column / side < side / 2 - 1;
+}
 
 rig::Skull tiny_skull() {
   rig::Skull skull;
@@ -211,7 +213,10 @@ rig::Actuation tiny_actuation() {
                         {"jaw_open", "jaw", 0, 1, 0, -1, "1"},
                         {"buccal_pressure_left", "pressure", -1, 1, 0, -1, "1"},
                         {"eye_yaw_left", "eye", -0.6F, 0.6F, 0, -1, "rad"}};
-  actuation.sets = {{"arkit", {"mouthSmileLeft", "mouthSmileRight", "jawOpen"}, {0, 1, 2, 2}, {0, 1, 2, 3},
+  actuation.sets = {{"arkit",
+                     {"mouthSmileLeft", "mouthSmileRight", "jawOpen"},
+                     {0, 1, 2, 2},
+                     {0, 1, 2, 3},
                      {0.9F, 0.9F, 1.0F, 0.1F}},
                     {"au", {"12"}, {0, 0}, {0, 1}, {0.8F, 0.8F}}};
   return actuation;
@@ -276,13 +281,15 @@ rig::GltfSource tiny_head() {
       R"({"path":"pointer","extensions":{"KHR_animation_pointer":)"
       R"({"pointer":"/extensions/FASCIA_actuation/channels/0/value"}}}}]}],)"
       R"("bufferViews":[{"buffer":0,"byteLength":)" +
-      std::to_string(triangles_at) + R"(,"target":34962},{"buffer":0,"byteOffset":)" + std::to_string(triangles_at) +
-      R"(,"byteLength":)" + std::to_string(times_at - triangles_at) +
+      std::to_string(triangles_at) + R"(,"target":34962},{"buffer":0,"byteOffset":)" +
+      std::to_string(triangles_at) + R"(,"byteLength":)" + std::to_string(times_at - triangles_at) +
       R"(,"target":34963},{"buffer":0,"byteOffset":)" + std::to_string(times_at) +
       R"(,"byteLength":16}],"buffers":[{"byteLength":)" + std::to_string(source.bin.size()) + "}]}";
   return source;
 }
 
-std::vector<uint8_t> tiny_rig_file() { return rig::write(tiny_head(), tiny_rig()); }
+std::vector<uint8_t> tiny_rig_file() {
+  return rig::write(tiny_head(), tiny_rig());
+}
 
 }  // namespace fascia::test

@@ -227,7 +227,8 @@ TEST(FaceTest, ValuesThatAreNoNumbersDoNoHarm) {
   const Loaded rig;
   const Face face(rig.asset);
   float* values = fascia_face_values(face.face);
-  for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 1e30F}) {
+  for (const float bad :
+       {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 1e30F}) {
     for (int c = 0; c < 5; ++c)
       values[c] = bad;
     for (int i = 0; i < 5; ++i)
@@ -281,8 +282,10 @@ TEST(FaceTest, WritesIntoTheHostsMemory) {
             FASCIA_OK);
   EXPECT_EQ(vertices[5].position[1], positions[16]);
   EXPECT_EQ(vertices[5].colour[0], 0.0F);
-  EXPECT_EQ(fascia_face_write_positions(face.face, 0, vertices.data(), sizeof(Vertex), 5), FASCIA_ERROR_ARGUMENT);
-  EXPECT_EQ(fascia_face_write_positions(face.face, 1, vertices.data(), sizeof(Vertex), 500), FASCIA_ERROR_ARGUMENT);
+  EXPECT_EQ(fascia_face_write_positions(face.face, 0, vertices.data(), sizeof(Vertex), 5),
+            FASCIA_ERROR_ARGUMENT);
+  EXPECT_EQ(fascia_face_write_positions(face.face, 1, vertices.data(), sizeof(Vertex), 500),
+            FASCIA_ERROR_ARGUMENT);
 }
 
 TEST(FaceTest, TheAssetMayGoFirst) {
@@ -327,7 +330,8 @@ struct Threads {
   }
   static void finish(void* task, void* user) {
     auto* threads = static_cast<std::vector<std::thread>*>(task);
-    for (std::thread& thread : *threads) thread.join();
+    for (std::thread& thread : *threads)
+      thread.join();
     delete threads;
     ++static_cast<Threads*>(user)->finished;
   }
@@ -348,14 +352,17 @@ TEST(FaceTest, ACrowdThroughTheHostsTasksIsEachFaceAlone) {
     const fascia_tasks tasks{sizeof(fascia_tasks), 0, Threads::begin, Threads::finish, &host};
     for (int frame = 0; frame < 5; ++frame) {
       if (way == 0)
-        for (fascia_face* face : handles) EXPECT_EQ(fascia_face_step(face, 1.0F / 60.0F), FASCIA_OK);
+        for (fascia_face* face : handles)
+          EXPECT_EQ(fascia_face_step(face, 1.0F / 60.0F), FASCIA_OK);
       else
-        EXPECT_EQ(fascia_faces_step(handles.data(), count, 1.0F / 60.0F, way == 1 ? nullptr : &tasks), FASCIA_OK);
+        EXPECT_EQ(fascia_faces_step(handles.data(), count, 1.0F / 60.0F, way == 1 ? nullptr : &tasks),
+                  FASCIA_OK);
     }
     EXPECT_EQ(host.begun, way == 2 ? 5 : 0);
     EXPECT_EQ(host.finished, host.begun);
     std::vector<std::vector<float>> positions;
-    for (const auto& face : faces) positions.push_back(face->positions());
+    for (const auto& face : faces)
+      positions.push_back(face->positions());
     return positions;
   };
   const auto alone = run(0);
@@ -469,9 +476,11 @@ TEST(CurvesTest, TheRigsOwnAnimationPlays) {
 
 TEST(Log, HearsEveryFailure) {
   std::vector<std::string> heard;
-  fascia_set_log([](void* user, fascia_result, const char* message) {
-    static_cast<std::vector<std::string>*>(user)->push_back(message);
-  }, &heard);
+  fascia_set_log(
+      [](void* user, fascia_result, const char* message) {
+        static_cast<std::vector<std::string>*>(user)->push_back(message);
+      },
+      &heard);
   fascia_asset* asset = nullptr;
   fascia_asset_load("nothing", 7, &asset);
   fascia_set_log(nullptr, nullptr);

@@ -18,7 +18,8 @@ int main(void) {
   const fascia_face_options options = fascia_default_face_options();
   expect(fascia_version() == (FASCIA_VERSION_MAJOR << 16 | FASCIA_VERSION_MINOR << 8 | FASCIA_VERSION_PATCH),
          "header and library are of one version");
-  expect(sizeof(fascia_result) == 4 && sizeof(fascia_space) == 4 && sizeof(fascia_solver) == 4, "enums are 32 bits");
+  expect(sizeof(fascia_result) == 4 && sizeof(fascia_space) == 4 && sizeof(fascia_solver) == 4,
+         "enums are 32 bits");
   expect(options.struct_size == sizeof options && options.level == -1, "default options");
   expect(strcmp(fascia_last_message(), "") == 0, "no message before a failure");
   expect(fascia_asset_load("glTF", 4, &asset) == FASCIA_ERROR_FORMAT, "four bytes are no rig");

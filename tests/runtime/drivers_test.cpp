@@ -92,9 +92,9 @@ TEST(Json, ReadsSampledAndKeyedChannels) {
   const Curves sampled = read(R"({"fps":30,"channels":{"a":[0,1,0.5]}})");
   EXPECT_NEAR(sampled.duration(), 2.0 / 30, 1e-12);
   EXPECT_FLOAT_EQ(curve(sampled, "a").at(1.5 / 30), 0.75F);
-  const Curves keyed = read(
-      R"({"a":{"times":[0,2],"values":[0,1]},"b":{"times":[0,1],"values":[0,1],"interpolation":"step"},)"
-      R"("c":{"times":[0,1,2],"values":[0,1,2],"interpolation":"cubic"}})");
+  const Curves keyed =
+      read(R"({"a":{"times":[0,2],"values":[0,1]},"b":{"times":[0,1],"values":[0,1],"interpolation":"step"},)"
+           R"("c":{"times":[0,1,2],"values":[0,1,2],"interpolation":"cubic"}})");
   EXPECT_FLOAT_EQ(curve(keyed, "a").at(1), 0.5F);
   EXPECT_FLOAT_EQ(curve(keyed, "b").at(0.9), 0.0F);
   EXPECT_FLOAT_EQ(curve(keyed, "c").at(1.5), 1.5F);
@@ -105,7 +105,8 @@ TEST(Json, SaysWhereItIsWrong) {
   EXPECT_NE(message_of("{}").find("no channel"), std::string::npos);
   EXPECT_NE(message_of(R"({"channels":{"a":[1]}})").find("fps"), std::string::npos);
   EXPECT_NE(message_of(R"({"fps":30,"channels":{"a":[1,"x"]}})").find("channel a"), std::string::npos);
-  EXPECT_NE(message_of(R"({"a":{"times":[0,1],"values":[0]}})").find("channel a: 2 times but 1"), std::string::npos);
+  EXPECT_NE(message_of(R"({"a":{"times":[0,1],"values":[0]}})").find("channel a: 2 times but 1"),
+            std::string::npos);
   EXPECT_NE(message_of(R"({"a":{"times":[1,0],"values":[0,1]}})").find("rise"), std::string::npos);
   EXPECT_NE(message_of(R"({"a":{"times":[0],"values":[0],"interpolation":"wild"}})").find("interpolation"),
             std::string::npos);

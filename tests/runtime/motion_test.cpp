@@ -1,4 +1,5 @@
-// What a host tells a face of the world around it: a head that moves, a finger, and what comes back for wrinkle shaders.
+// What a host tells a face of the world around it: a head that moves, a finger, and what comes back for
+// wrinkle shaders.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +24,8 @@ struct Moved : ::testing::Test {
     ASSERT_EQ(fascia_asset_load(bytes.data(), bytes.size(), &asset), FASCIA_OK) << fascia_last_message();
   }
   void TearDown() override {
-    for (fascia_face* face : faces) fascia_face_release(face);
+    for (fascia_face* face : faces)
+      fascia_face_release(face);
     fascia_asset_release(asset);
   }
   fascia_face* face(fascia_solver solver = FASCIA_SOLVER_OWN) {
@@ -43,11 +45,14 @@ std::vector<float> vectors(fascia_result (*get)(fascia_face*, uint32_t, fascia_v
   EXPECT_EQ(get(face, 0, &out), FASCIA_OK) << fascia_last_message();
   return {out.data, out.data + 3 * out.count};
 }
-std::vector<float> positions(fascia_face* face) { return vectors(fascia_face_positions, face); }
+std::vector<float> positions(fascia_face* face) {
+  return vectors(fascia_face_positions, face);
+}
 
 double apart(const std::vector<float>& a, const std::vector<float>& b) {
   double most = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, std::abs(static_cast<double>(a[i]) - static_cast<double>(b[i])));
+  for (std::size_t i = 0; i < a.size(); ++i)
+    most = std::max(most, std::abs(static_cast<double>(a[i]) - static_cast<double>(b[i])));
   return most;
 }
 
@@ -74,7 +79,8 @@ TEST_F(Moved, AnAcceleratedHeadsTissueLagsAsIfPushedBackTimesTheScale) {
     const std::vector<float> rest = positions(moving);
     const double acceleration = 8.0;
     for (int k = 0; k < 24; ++k) {
-      // Half a t^2 has the same second difference at every step; the first two steps only tell place and speed.
+      // Half a t^2 has the same second difference at every step; the first two steps only tell place and
+      // speed.
       const double t = static_cast<double>(frame) * k;
       place(moving, 0.5 * acceleration * t * t, scale);
       ASSERT_EQ(fascia_face_step(moving, frame), FASCIA_OK);
@@ -139,7 +145,8 @@ TEST_F(Moved, AFingerPressesAlongItsForceAndInProportion) {
     const std::vector<float> now = positions(touched);
     sunk.push_back(static_cast<double>(rest[3 * middle + 2] - now[3 * middle + 2]));
     EXPECT_GT(sunk.back(), 1e-6);
-    EXPECT_NEAR(apart(now, rest), sunk.back(), 0.3 * sunk.back());  // nothing moves farther than what is pressed
+    EXPECT_NEAR(apart(now, rest), sunk.back(),
+                0.3 * sunk.back());  // nothing moves farther than what is pressed
   }
   EXPECT_NEAR(sunk[1] / sunk[0], 2.0, 0.3);
   ASSERT_EQ(fascia_face_clear_touches(touched), FASCIA_OK);
@@ -150,7 +157,8 @@ TEST_F(Moved, AFingerPressesAlongItsForceAndInProportion) {
   EXPECT_EQ(fascia_face_touch(touched, 0, side * side, force), FASCIA_ERROR_ARGUMENT);
   EXPECT_EQ(fascia_face_touch(touched, 9, 0, force), FASCIA_ERROR_ARGUMENT);
   int taken = 0;
-  while (taken < 1000 && fascia_face_touch(touched, 0, middle, force) == FASCIA_OK) ++taken;
+  while (taken < 1000 && fascia_face_touch(touched, 0, middle, force) == FASCIA_OK)
+    ++taken;
   EXPECT_GE(taken, 64);
   EXPECT_LT(taken, 1000);
 }
@@ -158,7 +166,8 @@ TEST_F(Moved, AFingerPressesAlongItsForceAndInProportion) {
 TEST_F(Moved, CompressionIsHowMuchShorterTheSkinIs) {
   fascia_face* const pulled = face();
   const std::vector<float> rest = positions(pulled);
-  for (const float value : vectors(fascia_face_compression, pulled)) EXPECT_EQ(value, 0.0F);
+  for (const float value : vectors(fascia_face_compression, pulled))
+    EXPECT_EQ(value, 0.0F);
   fascia_face_values(pulled)[0] = 1.0F;
   ASSERT_EQ(fascia_face_pose(pulled), FASCIA_OK);
   const std::vector<float> now = positions(pulled), compression = vectors(fascia_face_compression, pulled);
@@ -177,7 +186,8 @@ TEST_F(Moved, CompressionIsHowMuchShorterTheSkinIs) {
   double measured = 0.0;
   for (const uint32_t step : {1U, side, side + 1, side - 1}) {
     const auto length = [&](const std::vector<float>& p) {
-      return std::hypot(p[3 * (where + step)] - p[3 * (where - step)], p[3 * (where + step) + 1] - p[3 * (where - step) + 1],
+      return std::hypot(p[3 * (where + step)] - p[3 * (where - step)],
+                        p[3 * (where + step) + 1] - p[3 * (where - step) + 1],
                         p[3 * (where + step) + 2] - p[3 * (where - step) + 2]);
     };
     measured = std::max(measured, 1.0 - static_cast<double>(length(now) / length(rest)));
@@ -191,12 +201,14 @@ TEST_F(Moved, TheWatchdogPutsADivergedFaceBackAndSaysSo) {
   const float storm[3] = {3e6F, 0, 0};
   ASSERT_EQ(fascia_face_set_acceleration(torn, storm), FASCIA_OK);
   fascia_result result = FASCIA_OK;
-  for (int k = 0; k < 300 && result == FASCIA_OK; ++k) result = fascia_face_step(torn, frame);
+  for (int k = 0; k < 300 && result == FASCIA_OK; ++k)
+    result = fascia_face_step(torn, frame);
   ASSERT_EQ(result, FASCIA_ERROR_DIVERGED);
   EXPECT_NE(std::string(fascia_last_message()).find("put back"), std::string::npos);
   EXPECT_LT(apart(positions(torn), rest), 1e-6);
   ASSERT_EQ(fascia_face_set_acceleration(torn, nullptr), FASCIA_OK);
-  for (int k = 0; k < 30; ++k) ASSERT_EQ(fascia_face_step(torn, frame), FASCIA_OK) << fascia_last_message();
+  for (int k = 0; k < 30; ++k)
+    ASSERT_EQ(fascia_face_step(torn, frame), FASCIA_OK) << fascia_last_message();
   EXPECT_LT(apart(positions(torn), rest), 1e-5);
 }
 

@@ -9,7 +9,8 @@
 namespace fascia::sim {
 namespace {
 
-/// A patch on two bones with two fibres, carriers, a pressure and an eyeball, bent far from rest: what a face has.
+/// A patch on two bones with two fibres, carriers, a pressure and an eyeball, bent far from rest: what a face
+/// has.
 struct Patch {
   testing::PatchOptions options;
   rig::TissueLevel level;
@@ -22,7 +23,8 @@ struct Patch {
       testing::add_carrier(level, 2, column, rig::Vec3f(0, 0.02F, -0.02F), 0.2F, -0.1F);
     }
     for (uint32_t c = 0; c < level.columns; ++c)
-      if (level.kinds[level.columns + c] == rig::NodeKind::free) level.kinds[2 * level.columns + c] = rig::NodeKind::mucosa;
+      if (level.kinds[level.columns + c] == rig::NodeKind::free)
+        level.kinds[2 * level.columns + c] = rig::NodeKind::mucosa;
     for (uint32_t t = 40; t < 60; ++t) {
       level.pressure_channel.push_back(3);
       level.pressure_prism.push_back(t);
@@ -30,7 +32,8 @@ struct Patch {
     }
     for (size_t i = 0; i < level.rest.size(); ++i) {
       level.jaw_weights[i] = level.rest[i].y() < 0 ? std::min(1.0F, -level.rest[i].y() * 60.0F) : 0.0F;
-      if (level.kinds[i] == rig::NodeKind::fixed && level.rest[i].y() < -0.019F) level.kinds[i] = rig::NodeKind::fixed_mandible;
+      if (level.kinds[i] == rig::NodeKind::fixed && level.rest[i].y() < -0.019F)
+        level.kinds[i] = rig::NodeKind::fixed_mandible;
     }
     jaw.origin = Vec3(0, 0.05, -0.08);
     jaw.open_angle = 0.1;
@@ -46,14 +49,16 @@ TEST(Adjoint, GradientsMatchDifferencesOfThePose) {
   tight.solver = {400, 1e-10};
   const size_t nodes = patch.level.rest.size();
   Positions slope(nodes);
-  for (size_t i = 0; i < nodes; ++i) slope[i] = Vec3(std::sin(0.7 * static_cast<double>(i)), std::cos(1.3 * static_cast<double>(i)), 0.5);
+  for (size_t i = 0; i < nodes; ++i)
+    slope[i] = Vec3(std::sin(0.7 * static_cast<double>(i)), std::cos(1.3 * static_cast<double>(i)), 0.5);
   std::vector<float> at = {0.6F, 0.4F, 0.5F, 0.3F};
   JawPose jaw{0.3F, 0.2F, 0.1F};
   const auto loss = [&] {
     std::vector<Vec3f> ignored(nodes);
     EXPECT_TRUE(face.static_pose({at, jaw, Vec3::Zero()}, tight, ignored).converged);
     double sum = 0.0;
-    for (size_t i = 0; i < nodes; ++i) sum += slope[i].dot(face.pose()[i]);
+    for (size_t i = 0; i < nodes; ++i)
+      sum += slope[i].dot(face.pose()[i]);
     return sum;
   };
   loss();
@@ -78,7 +83,8 @@ TEST(Adjoint, GradientsMatchDifferencesOfThePose) {
     EXPECT_NEAR(by_channel[c], expected, 3e-3 * std::abs(expected)) << c;
   }
   const double expected_jaw[] = {difference(jaw.open), difference(jaw.forward), difference(jaw.lateral)};
-  for (size_t k = 0; k < 3; ++k) EXPECT_NEAR(by_jaw[k], expected_jaw[k], 3e-3 * std::abs(expected_jaw[k])) << k;
+  for (size_t k = 0; k < 3; ++k)
+    EXPECT_NEAR(by_jaw[k], expected_jaw[k], 3e-3 * std::abs(expected_jaw[k])) << k;
 }
 
 }  // namespace

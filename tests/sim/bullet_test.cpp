@@ -52,7 +52,8 @@ TEST(Bullet, AFullPatchUnderLargeStrainMovesAsOurs) {
   testing::add_fibre(level, o, 0, 4, 1, 5, 0.3F);
   for (size_t i = 0; i < level.rest.size(); ++i) {
     level.jaw_weights[i] = std::clamp(0.5F - 50.0F * level.rest[i].y(), 0.0F, 1.0F);
-    if (level.kinds[i] == rig::NodeKind::fixed_cranium && level.jaw_weights[i] > 0) level.kinds[i] = rig::NodeKind::fixed_mandible;
+    if (level.kinds[i] == rig::NodeKind::fixed_cranium && level.jaw_weights[i] > 0)
+      level.kinds[i] = rig::NodeKind::fixed_mandible;
   }
   Jaw jaw;
   jaw.origin = Vec3(0, 0.05, -0.08);
@@ -71,7 +72,8 @@ TEST(Bullet, ItsMandibleAgreesWithTheClosedForm) {
   const FaceModel model(lattice_of(level), jaw);
   BulletFace face(model, 0);
   const JawPose pose{0.8F, 0.3F, -0.5F};
-  for (int i = 0; i < 12; ++i) EXPECT_EQ(face.step(1.0 / 60, {{}, pose, Vec3::Zero()}).status, StepStatus::done);
+  for (int i = 0; i < 12; ++i)
+    EXPECT_EQ(face.step(1.0 / 60, {{}, pose, Vec3::Zero()}).status, StepStatus::done);
   const Vec3 chin(0, -0.07, 0.09);
   EXPECT_LT((face.mandible() * chin - jaw_transform(jaw, pose) * chin).norm(), 1e-4);
 }
@@ -83,7 +85,8 @@ TEST(Bullet, RestStaysAtRest) {
   face.step(0.1, {});
   std::vector<Vec3f> x(level.rest.size());
   face.positions(x);
-  for (size_t i = 0; i < x.size(); ++i) EXPECT_LT((x[i] - level.rest[i]).norm(), 1e-6F);
+  for (size_t i = 0; i < x.size(); ++i)
+    EXPECT_LT((x[i] - level.rest[i]).norm(), 1e-6F);
 }
 
 }  // namespace

@@ -27,7 +27,8 @@ void add_ball(rig::TissueLevel& level, uint8_t bone, const Vec3& centre, double 
     for (int j = 0; j <= 40; ++j)
       for (int i = 0; i <= 40; ++i) {
         const double distance = (spacing * Vec3(i - 20, j - 20, k - 20)).norm() - radius;
-        level.contact_field_values.push_back(static_cast<uint8_t>(std::clamp(std::round(128 + distance / 1e-4), 0.0, 255.0)));
+        level.contact_field_values.push_back(
+            static_cast<uint8_t>(std::clamp(std::round(128 + distance / 1e-4), 0.0, 255.0)));
       }
 }
 
@@ -48,7 +49,8 @@ TEST(Contact, AFieldGivesDistanceAndSlope) {
   PatchOptions o;
   const rig::TissueLevel level = patch_before_a_ball(o, 0);
   const DistanceField field(lattice_of(level), 0);
-  for (const Vec3& p : {Vec3(0.0043, 0.0032, -0.0077), Vec3(-0.0058, 0.0023, -0.0126), Vec3(0.0014, -0.0067, -0.0119)}) {
+  for (const Vec3& p :
+       {Vec3(0.0043, 0.0032, -0.0077), Vec3(-0.0058, 0.0023, -0.0126), Vec3(0.0014, -0.0067, -0.0119)}) {
     Vec3 gradient;
     const double distance = field.sample(p, gradient);
     const Vec3 arm = p - Vec3(0, 0, -0.019);
@@ -58,7 +60,8 @@ TEST(Contact, AFieldGivesDistanceAndSlope) {
       Vec3 ignored, ahead = p, behind = p;
       ahead[axis] += 1e-8;
       behind[axis] -= 1e-8;
-      EXPECT_NEAR((field.sample(ahead, ignored) - field.sample(behind, ignored)) / 2e-8, gradient[axis], 1e-5);
+      EXPECT_NEAR((field.sample(ahead, ignored) - field.sample(behind, ignored)) / 2e-8, gradient[axis],
+                  1e-5);
     }
   }
   Vec3 ignored;
@@ -133,29 +136,41 @@ struct TwoLips : ::testing::Test {
         const rig::Vec3f p = below.rest[layer * half + c];
         level.rest[layer * columns + c] = p;
         level.rest[layer * columns + half + c] = rig::Vec3f(p.x() + 0.0011F, p.y() - 0.0007F, 0.001F - p.z());
-        for (const uint32_t at : {c, half + c}) level.kinds[layer * columns + at] = below.kinds[layer * half + c];
+        for (const uint32_t at : {c, half + c})
+          level.kinds[layer * columns + at] = below.kinds[layer * half + c];
         level.jaw_weights[layer * columns + c] = 1.0F;  // the lower one goes with the jaw
-        if (level.kinds[layer * columns + c] == rig::NodeKind::fixed) level.kinds[layer * columns + c] = rig::NodeKind::fixed_mandible;
-        if (level.kinds[layer * columns + c] == rig::NodeKind::fixed_cranium) level.kinds[layer * columns + c] = rig::NodeKind::fixed_mandible;
+        if (level.kinds[layer * columns + c] == rig::NodeKind::fixed)
+          level.kinds[layer * columns + c] = rig::NodeKind::fixed_mandible;
+        if (level.kinds[layer * columns + c] == rig::NodeKind::fixed_cranium)
+          level.kinds[layer * columns + c] = rig::NodeKind::fixed_mandible;
       }
     const size_t prisms = below.triangles.size();
     for (size_t t = 0; t < prisms; ++t) {
       const auto& k = below.triangles[t];
       level.triangles.push_back({half + k[0], half + k[2], half + k[1]});
     }
-    for (auto* list : {&level.skin_membrane, &level.smas_membrane, &level.volume_stiffness, &level.inner_volume_stiffness}) list->resize(2 * prisms, list->front());
-    for (auto* list : {&level.skin_bending, &level.smas_bending}) list->resize(columns, list->front());
-    const auto shifted = [&](uint32_t node, bool upper) { return (node / half) * columns + node % half + (upper ? half : 0); };
+    for (auto* list :
+         {&level.skin_membrane, &level.smas_membrane, &level.volume_stiffness, &level.inner_volume_stiffness})
+      list->resize(2 * prisms, list->front());
+    for (auto* list : {&level.skin_bending, &level.smas_bending})
+      list->resize(columns, list->front());
+    const auto shifted = [&](uint32_t node, bool upper) {
+      return (node / half) * columns + node % half + (upper ? half : 0);
+    };
     level.spring_nodes.clear();
     for (const bool upper : {false, true})
-      for (const auto& s : below.spring_nodes) level.spring_nodes.push_back({shifted(s[0], upper), shifted(s[1], upper)});
-    for (auto* list : {&level.spring_stiffness, &level.spring_limit_strain, &level.spring_second_stiffness}) list->resize(2 * below.spring_nodes.size(), list->front());
+      for (const auto& s : below.spring_nodes)
+        level.spring_nodes.push_back({shifted(s[0], upper), shifted(s[1], upper)});
+    for (auto* list : {&level.spring_stiffness, &level.spring_limit_strain, &level.spring_second_stiffness})
+      list->resize(2 * below.spring_nodes.size(), list->front());
     level.spring_one_sided.assign(2 * below.spring_nodes.size(), 0);
     level.tether_nodes.clear();
     for (const bool upper : {false, true})
-      for (const uint32_t t : below.tether_nodes) level.tether_nodes.push_back(shifted(t, upper));
+      for (const uint32_t t : below.tether_nodes)
+        level.tether_nodes.push_back(shifted(t, upper));
     level.tether_normals.resize(2 * below.tether_nodes.size(), rig::Vec3f::UnitZ());
-    for (auto* list : {&level.tether_normal_stiffness, &level.tether_tangential_stiffness}) list->resize(2 * below.tether_nodes.size(), list->front());
+    for (auto* list : {&level.tether_normal_stiffness, &level.tether_tangential_stiffness})
+      list->resize(2 * below.tether_nodes.size(), list->front());
     for (uint32_t t = 0; t < 2 * prisms; ++t) {
       level.facing_prism.push_back(t);
       level.facing_side.push_back(t < prisms ? 1 : 0);
@@ -164,7 +179,8 @@ struct TwoLips : ::testing::Test {
     jaw.forward_drop = 0.0;
   }
   Jaw jaw;
-  /// The smallest gap between the two over the lower one's middle nodes, by the upper one's height beside them.
+  /// The smallest gap between the two over the lower one's middle nodes, by the upper one's height beside
+  /// them.
   double smallest_gap(const std::vector<Vec3f>& x) const {
     double gap = 1e9;
     for (uint32_t j = 1; j < o.along; ++j)
@@ -207,7 +223,10 @@ TEST_F(TwoLips, DoNotPassThroughEachOtherInTimeEither) {
   Face face(model, 0);
   std::vector<Vec3f> x(level.rest.size());
   for (int frame = 0; frame < 30; ++frame) {
-    ASSERT_EQ(face.step(1.0 / 60, {{}, {0, std::min(1.0F, 0.2F * static_cast<float>(frame)), 0}, Vec3::Zero()}).status, StepStatus::done);
+    ASSERT_EQ(
+        face.step(1.0 / 60, {{}, {0, std::min(1.0F, 0.2F * static_cast<float>(frame)), 0}, Vec3::Zero()})
+            .status,
+        StepStatus::done);
     face.positions(x);
     EXPECT_GT(smallest_gap(x), -5e-4) << frame;
   }
@@ -220,8 +239,10 @@ TEST_F(TwoLips, StickyOnesPartLater) {
     options.contact.stickiness = sticky;
     const FaceModel model(lattice_of(level), jaw, options);
     Face face(model, 0);
-    for (int frame = 0; frame < 15; ++frame) face.step(1.0 / 60, {{}, {0, 0.4F, 0}, Vec3::Zero()});
-    for (int frame = 0; frame < 20; ++frame) face.step(1.0 / 60, {{}, {}, Vec3::Zero()});
+    for (int frame = 0; frame < 15; ++frame)
+      face.step(1.0 / 60, {{}, {0, 0.4F, 0}, Vec3::Zero()});
+    for (int frame = 0; frame < 20; ++frame)
+      face.step(1.0 / 60, {{}, {}, Vec3::Zero()});
     std::vector<Vec3f> x(level.rest.size());
     face.positions(x);
     gap[sticky] = x[half + column_at(o, 4, 2)].z() - x[column_at(o, 4, 2)].z();
@@ -230,7 +251,8 @@ TEST_F(TwoLips, StickyOnesPartLater) {
   EXPECT_GT(gap[1], -3e-4);
 }
 
-/// A node on a flat bone, pressed by gravity at an angle: it slides where the slope is steeper than friction, else it stays.
+/// A node on a flat bone, pressed by gravity at an angle: it slides where the slope is steeper than friction,
+/// else it stays.
 TEST(Contact, FrictionHoldsUntilCoulombsLimit) {
   for (const double slope : {0.15, 0.9}) {
     PatchOptions o;
@@ -240,7 +262,8 @@ TEST(Contact, FrictionHoldsUntilCoulombsLimit) {
       for (int j = 0; j <= 40; ++j)
         for (int i = 0; i <= 40; ++i) {
           const double z = -0.019 - 0.02 + 0.001 * k;
-          level.contact_field_values.push_back(static_cast<uint8_t>(std::clamp(std::round(128 + (z + 0.0085) / 1e-4), 0.0, 255.0)));
+          level.contact_field_values.push_back(
+              static_cast<uint8_t>(std::clamp(std::round(128 + (z + 0.0085) / 1e-4), 0.0, 255.0)));
         }
     double slid[2];
     for (int rough = 0; rough < 2; ++rough) {
@@ -248,15 +271,19 @@ TEST(Contact, FrictionHoldsUntilCoulombsLimit) {
       options.contact.friction = rough * 0.5;
       const FaceModel model(lattice_of(level), {}, options);
       Face face(model, 0);
-      for (int i = 0; i < 15; ++i) face.step(1.0 / 60, {{}, {}, Vec3(0, 0, -150)});
+      for (int i = 0; i < 15; ++i)
+        face.step(1.0 / 60, {{}, {}, Vec3(0, 0, -150)});
       const uint32_t middle = 2 * level.columns + column_at(o, 4, 4);
       const double before = face.state()[middle].x();
-      for (int i = 0; i < 8; ++i) face.step(1.0 / 60, {{}, {}, Vec3(150 * slope, 0, -150)});
+      for (int i = 0; i < 8; ++i)
+        face.step(1.0 / 60, {{}, {}, Vec3(150 * slope, 0, -150)});
       slid[rough] = face.state()[middle].x() - before;
     }
     EXPECT_GT(slid[0], 1e-5);
-    if (slope < 0.5) EXPECT_LT(slid[1], 0.6 * slid[0]);
-    else EXPECT_LT(slid[1], slid[0]);
+    if (slope < 0.5)
+      EXPECT_LT(slid[1], 0.6 * slid[0]);
+    else
+      EXPECT_LT(slid[1], slid[0]);
   }
 }
 

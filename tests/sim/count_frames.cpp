@@ -14,7 +14,8 @@ using namespace fascia;
 
 void step_sheet(int frames) {
   sim::Sheet sheet(sim::SheetOptions{});
-  for (int frame = 0; frame < frames; ++frame) sheet.step(1.0F / 60.0F);
+  for (int frame = 0; frame < frames; ++frame)
+    sheet.step(1.0F / 60.0F);
 }
 
 void step_face(int frames) {
@@ -39,8 +40,11 @@ void step_face(int frames) {
 int main(int argc, char** argv) {
   const std::string what = argc > 1 ? argv[1] : "";
   const int frames = argc > 2 ? std::atoi(argv[2]) : 0;
-  if (what == "sheet") step_sheet(frames);
-  else if (what == "face") step_face(frames);
-  else return std::fprintf(stderr, "usage: count_frames face|sheet FRAMES\n"), 2;
+  if (what == "sheet")
+    step_sheet(frames);
+  else if (what == "face")
+    step_face(frames);
+  else
+    return std::fprintf(stderr, "usage: count_frames face|sheet FRAMES\n"), 2;
   return 0;
 }

@@ -1,4 +1,5 @@
-// The stand-in for the Hessian that Newton steps use: exact where no curvature is negative, never negative elsewhere.
+// The stand-in for the Hessian that Newton steps use: exact where no curvature is negative, never negative
+// elsewhere.
 
 #include "sim/curvature.h"
 
@@ -20,17 +21,21 @@ using Gradient = std::function<void(const Vec3*, Vec3*)>;
 Positions random_vectors(size_t count, double size, std::mt19937& random) {
   Positions v(count);
   for (Vec3& p : v)
-    for (int axis = 0; axis < 3; ++axis) p[axis] = size * (2.0 * random() / 4294967295.0 - 1.0);
+    for (int axis = 0; axis < 3; ++axis)
+      p[axis] = size * (2.0 * random() / 4294967295.0 - 1.0);
   return v;
 }
 
 /// Largest difference between curvature times a direction and central differences of the gradient, relative.
-double curvature_error(const Gradient& gradient, const Curvature& curvature, const Positions& x, const Positions& direction) {
+double curvature_error(const Gradient& gradient, const Curvature& curvature, const Positions& x,
+                       const Positions& direction) {
   Positions ahead(x.size(), Vec3::Zero()), behind = ahead, product = ahead, there = x;
   const double step = 1e-8;
-  for (size_t i = 0; i < x.size(); ++i) there[i] = x[i] + step * direction[i];
+  for (size_t i = 0; i < x.size(); ++i)
+    there[i] = x[i] + step * direction[i];
   gradient(there.data(), ahead.data());
-  for (size_t i = 0; i < x.size(); ++i) there[i] = x[i] - step * direction[i];
+  for (size_t i = 0; i < x.size(); ++i)
+    there[i] = x[i] - step * direction[i];
   gradient(there.data(), behind.data());
   curvature.times(direction.data(), product.data());
   double scale = 1e-30, error = 0.0;
@@ -41,13 +46,14 @@ double curvature_error(const Gradient& gradient, const Curvature& curvature, con
   return error / scale;
 }
 
-const Positions six = {Vec3(0, 0, 0),      Vec3(.005, 0, 0),      Vec3(.001, .004, .001),
+const Positions six = {Vec3(0, 0, 0),     Vec3(.005, 0, 0),     Vec3(.001, .004, .001),
                        Vec3(0, 0, -.003), Vec3(.005, 0, -.003), Vec3(.001, .004, -.002)};
 const Positions fan = {six[0], six[1], six[2], Vec3(.002, -.004, -.001)};
 
 Positions scaled(const Positions& rest, double factor) {
   Positions x = rest;
-  for (Vec3& p : x) p *= factor;
+  for (Vec3& p : x)
+    p *= factor;
   return x;
 }
 
@@ -62,7 +68,8 @@ TEST(CurvatureTerms, AreTheHessianWhereNothingIsCompressed) {
     const Positions v = random_vectors(6, 1.0, random), stretched = scaled(six, 1.03 + 0.025 * k);
     Curvature c;
     add_membrane(membrane, stretched.data(), c);
-    EXPECT_LT(curvature_error([&](auto p, auto g) { membrane_energy(membrane, p, g); }, c, stretched, v), 1e-5);
+    EXPECT_LT(curvature_error([&](auto p, auto g) { membrane_energy(membrane, p, g); }, c, stretched, v),
+              1e-5);
     c.clear();
     add_spring(spring, stretched.data(), c);
     EXPECT_LT(curvature_error([&](auto p, auto g) { spring_energy(spring, p, g); }, c, stretched, v), 1e-5);
@@ -74,25 +81,34 @@ TEST(CurvatureTerms, AreTheHessianWhereNothingIsCompressed) {
     EXPECT_LT(curvature_error([&](auto p, auto g) { prism_energy(prism, p, g); }, c, six, v), 1e-5);
     c.clear();
     add_tether(tether, tether.normal, c);
-    EXPECT_LT(curvature_error([&](auto p, auto g) { tether_energy(tether, six[2], tether.normal, p, g); }, c, stretched, v), 1e-5);
+    EXPECT_LT(curvature_error([&](auto p, auto g) { tether_energy(tether, six[2], tether.normal, p, g); }, c,
+                              stretched, v),
+              1e-5);
   }
 }
 
 TEST(CurvatureTerms, CrushedTrianglesAreExactToo) {
   std::mt19937 random(5);
   const Membrane membrane = make_membrane({0, 1, 2}, 20.0, 0.35, six.data());
-  // Shortened one way and drawn out the other, to 0.475 of its area: all modes in its plane are positive there.
+  // Shortened one way and drawn out the other, to 0.475 of its area: all modes in its plane are positive
+  // there.
   Positions x = six;
-  for (Vec3& p : x) p = Vec3(0.25 * p.x(), 1.9 * p.y(), 1.9 * p.z());
+  for (Vec3& p : x)
+    p = Vec3(0.25 * p.x(), 1.9 * p.y(), 1.9 * p.z());
   Positions v = random_vectors(6, 1.0, random);
   const Vec3 normal = (x[1] - x[0]).cross(x[2] - x[0]).normalized();
-  for (Vec3& p : v) p -= normal.dot(p) * normal;
+  for (Vec3& p : v)
+    p -= normal.dot(p) * normal;
   Curvature c;
   add_membrane(membrane, x.data(), c);
-  EXPECT_LT(curvature_error([&](auto p, auto g) {
-              membrane_energy(membrane, p, g);
-              for (size_t i = 0; i < 6; ++i) g[i] -= normal.dot(g[i]) * normal;
-            }, c, x, v), 1e-4);
+  EXPECT_LT(curvature_error(
+                [&](auto p, auto g) {
+                  membrane_energy(membrane, p, g);
+                  for (size_t i = 0; i < 6; ++i)
+                    g[i] -= normal.dot(g[i]) * normal;
+                },
+                c, x, v),
+            1e-4);
 }
 
 TEST(CurvatureTerms, AreNeverNegative) {
@@ -139,7 +155,8 @@ TEST(Newton, FindsThePoseThatQuasiNewtonFinds) {
   ASSERT_TRUE(first.converged);
   EXPECT_GT(first.iterations, 8);
   ASSERT_TRUE(face.static_pose({full, {}, Vec3::Zero()}, mostly_newton, quick).converged);
-  for (size_t i = 0; i < slow.size(); ++i) EXPECT_LT((slow[i] - quick[i]).norm(), 2e-6F);
+  for (size_t i = 0; i < slow.size(); ++i)
+    EXPECT_LT((slow[i] - quick[i]).norm(), 2e-6F);
 }
 
 }  // namespace

@@ -15,12 +15,14 @@ namespace {
 
 using Energy = std::function<double(const Vec3*, Vec3*)>;
 
-/// Largest difference between the gradient and central differences of the energy, relative to the largest entry.
+/// Largest difference between the gradient and central differences of the energy, relative to the largest
+/// entry.
 double gradient_error(const Energy& energy, Positions x) {
   Positions gradient(x.size(), Vec3::Zero()), ignored(x.size(), Vec3::Zero());
   energy(x.data(), gradient.data());
   double scale = 1e-30, error = 0.0;
-  for (const Vec3& g : gradient) scale = std::max(scale, g.cwiseAbs().maxCoeff());
+  for (const Vec3& g : gradient)
+    scale = std::max(scale, g.cwiseAbs().maxCoeff());
   const double step = 1e-8;
   for (size_t i = 0; i < x.size(); ++i)
     for (int axis = 0; axis < 3; ++axis) {
@@ -39,11 +41,12 @@ Positions shaken(const Positions& rest, double size, uint32_t seed) {
   std::mt19937 random(seed);
   Positions x = rest;
   for (Vec3& p : x)
-    for (int axis = 0; axis < 3; ++axis) p[axis] += size * (2.0 * random() / 4294967295.0 - 1.0);
+    for (int axis = 0; axis < 3; ++axis)
+      p[axis] += size * (2.0 * random() / 4294967295.0 - 1.0);
   return x;
 }
 
-const Positions six = {Vec3(0, 0, 0), Vec3(.005, 0, 0), Vec3(.001, .004, .001),
+const Positions six = {Vec3(0, 0, 0),     Vec3(.005, 0, 0),     Vec3(.001, .004, .001),
                        Vec3(0, 0, -.003), Vec3(.005, 0, -.003), Vec3(.001, .004, -.002)};
 
 TEST(Energies, GradientsMatchFiniteDifferences) {
@@ -60,7 +63,9 @@ TEST(Energies, GradientsMatchFiniteDifferences) {
     EXPECT_LT(gradient_error([&](auto p, auto g) { return hinge_energy(hinge, p, g); }, f), 1e-5);
     EXPECT_LT(gradient_error([&](auto p, auto g) { return prism_energy(prism, p, g); }, x), 1e-5);
     EXPECT_LT(gradient_error([&](auto p, auto g) { return spring_energy(spring, p, g); }, x), 1e-5);
-    EXPECT_LT(gradient_error([&](auto p, auto g) { return tether_energy(tether, six[2], tether.normal, p, g); }, x), 1e-5);
+    EXPECT_LT(
+        gradient_error([&](auto p, auto g) { return tether_energy(tether, six[2], tether.normal, p, g); }, x),
+        1e-5);
   }
 }
 
@@ -68,8 +73,10 @@ TEST(Energies, RigidMotionCostsNothing) {
   const Eigen::AngleAxisd turn(1.1, Vec3(1, 2, -1).normalized());
   const Positions fan = {six[0], six[1], six[2], Vec3(.002, -.004, -.001)};
   Positions moved, moved_fan;
-  for (const Vec3& p : six) moved.push_back(turn * p + Vec3(.1, -.2, .3));
-  for (const Vec3& p : fan) moved_fan.push_back(turn * p + Vec3(.1, -.2, .3));
+  for (const Vec3& p : six)
+    moved.push_back(turn * p + Vec3(.1, -.2, .3));
+  for (const Vec3& p : fan)
+    moved_fan.push_back(turn * p + Vec3(.1, -.2, .3));
   Positions g(6, Vec3::Zero());
   EXPECT_LT(membrane_energy(make_membrane({0, 1, 2}, 20.0, 0.35, six.data()), moved.data(), g.data()), 1e-25);
   EXPECT_LT(hinge_energy(make_hinge({0, 1, 2, 3}, 1e-4, fan.data()), moved_fan.data(), g.data()), 1e-25);
@@ -77,16 +84,19 @@ TEST(Energies, RigidMotionCostsNothing) {
 }
 
 TEST(Energies, PrismVolumeOfABoxHalf) {
-  const Positions half = {Vec3(0, 0, 1), Vec3(2, 0, 1), Vec3(0, 3, 1), Vec3(0, 0, 0), Vec3(2, 0, 0), Vec3(0, 3, 0)};
+  const Positions half = {Vec3(0, 0, 1), Vec3(2, 0, 1), Vec3(0, 3, 1),
+                          Vec3(0, 0, 0), Vec3(2, 0, 0), Vec3(0, 3, 0)};
   EXPECT_NEAR(prism_volume({0, 1, 2, 3, 4, 5}, half.data()), 3.0, 1e-14);
 }
 
 TEST(Energies, UniaxialStretchOfAMembraneHasYoungsModulus) {
-  // Stretch along x with the side free to narrow by Poisson's ratio: energy = E h strain^2 area / 2 to first order.
+  // Stretch along x with the side free to narrow by Poisson's ratio: energy = E h strain^2 area / 2 to first
+  // order.
   const double strain = 1e-4, nu = 0.35;
   const Positions rest = {Vec3(0, 0, 0), Vec3(.01, 0, 0), Vec3(.003, .008, 0)};
   Positions x;
-  for (const Vec3& p : rest) x.push_back(Vec3(p.x() * (1 + strain), p.y() * (1 - nu * strain), 0));
+  for (const Vec3& p : rest)
+    x.push_back(Vec3(p.x() * (1 + strain), p.y() * (1 - nu * strain), 0));
   Positions g(3, Vec3::Zero());
   const double energy = membrane_energy(make_membrane({0, 1, 2}, 20.0, nu, rest.data()), x.data(), g.data());
   EXPECT_NEAR(energy / (0.5 * 20.0 * strain * strain * 4e-5), 1.0, 1e-3);
@@ -134,7 +144,8 @@ struct Everything {
     level.globe_centre.push_back(rig::Vec3f(0, 0.01F, -0.03F));
     level.globe_radius.push_back(0.029F);
     for (uint32_t c = 0; c < level.columns; ++c)  // a mouth behind the middle rows
-      if (level.kinds[level.columns + c] == rig::NodeKind::free) level.kinds[2 * level.columns + c] = rig::NodeKind::mucosa;
+      if (level.kinds[level.columns + c] == rig::NodeKind::free)
+        level.kinds[2 * level.columns + c] = rig::NodeKind::mucosa;
     for (uint32_t t = 40; t < 60; ++t) {
       level.pressure_channel.push_back(2);
       level.pressure_prism.push_back(t);
@@ -158,13 +169,17 @@ TEST(Energies, OfAWholeFaceHaveTheirGradientAndCurvature) {
   for (size_t i = 0; i < x.size(); ++i)
     if (model.prescribed(i)) x[i] = frame.carried[i];
   model.energy(frame, x.data(), g.data());
-  Positions v = shaken(Positions(x.size(), Vec3::Zero()), 1.0, 9), hv(x.size()), work(3 * x.size()), moved = x;
+  Positions v = shaken(Positions(x.size(), Vec3::Zero()), 1.0, 9), hv(x.size()), work(3 * x.size()),
+            moved = x;
   double slope = 0.0, curve = 0.0, vhv = 0.0;
-  for (const uint32_t i : model.unknowns()) slope += g[i].dot(v[i]);
+  for (const uint32_t i : model.unknowns())
+    slope += g[i].dot(v[i]);
   const double step = 1e-9;
-  for (const uint32_t i : model.unknowns()) moved[i] = x[i] + step * v[i];
+  for (const uint32_t i : model.unknowns())
+    moved[i] = x[i] + step * v[i];
   const double up = model.energy(frame, moved.data(), ahead.data());
-  for (const uint32_t i : model.unknowns()) moved[i] = x[i] - step * v[i];
+  for (const uint32_t i : model.unknowns())
+    moved[i] = x[i] - step * v[i];
   const double down = model.energy(frame, moved.data(), behind.data());
   EXPECT_NEAR((up - down) / (2 * step) / slope, 1.0, 1e-5);
   model.hessian_times(frame, x.data(), v.data(), hv.data(), work);
@@ -182,11 +197,14 @@ TEST(Energies, RestFactorSolvesItsMatrix) {
   const size_t n = model.unknowns().size();
   Positions x = shaken(Positions(n, Vec3::Zero()), 1.0, 3), scratch(n), b(n, Vec3::Zero());
   for (size_t i = 0; i < n; ++i)
-    for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator e(model.stiffness(), static_cast<int>(i)); e; ++e)
+    for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator e(model.stiffness(),
+                                                                       static_cast<int>(i));
+         e; ++e)
       b[i] += e.value() * x[static_cast<size_t>(e.col())];
   model.pose_factor().solve(b, scratch);
   double error = 0.0;
-  for (size_t i = 0; i < n; ++i) error = std::max(error, (b[i] - x[i]).norm());
+  for (size_t i = 0; i < n; ++i)
+    error = std::max(error, (b[i] - x[i]).norm());
   EXPECT_LT(error, 1e-3);
 }
 

@@ -23,7 +23,8 @@ std::vector<Vec3f> displacements_of(const Face& face) {
 
 double largest(const std::vector<Vec3f>& values) {
   double most = 0.0;
-  for (const Vec3f& v : values) most = std::max<double>(most, v.norm());
+  for (const Vec3f& v : values)
+    most = std::max<double>(most, v.norm());
   return most;
 }
 
@@ -37,7 +38,8 @@ rig::TissueLevel bare(uint32_t columns) {
   level.jaw_weights.assign(3 * columns, 0.0F);
   level.skin_bending.assign(columns, 0.0F);
   level.smas_bending.assign(columns, 0.0F);
-  for (uint32_t i = 0; i < 3 * columns; ++i) level.rest[i].x() = 0.1F * static_cast<float>(i);
+  for (uint32_t i = 0; i < 3 * columns; ++i)
+    level.rest[i].x() = 0.1F * static_cast<float>(i);
   return level;
 }
 
@@ -58,7 +60,8 @@ FaceModelOptions undamped(double substep) {
 }
 
 /// Mean period of node `node` about the place `middle` along `axis`, from its upward crossings.
-double period_of(Face& face, uint32_t node, int axis, double middle, double step, int steps, const Drive& drive) {
+double period_of(Face& face, uint32_t node, int axis, double middle, double step, int steps,
+                 const Drive& drive) {
   double first = -1.0, last = -1.0, before = face.state()[node][axis] - middle;
   int crossings = 0;
   StepOptions options;
@@ -69,8 +72,10 @@ double period_of(Face& face, uint32_t node, int axis, double middle, double step
     const double now = face.state()[node][axis] - middle;
     if (before < 0.0 && now >= 0.0) {
       last = (i + before / (before - now)) * step;
-      if (first < 0.0) first = last;
-      else ++crossings;
+      if (first < 0.0)
+        first = last;
+      else
+        ++crossings;
     }
     before = now;
   }
@@ -123,9 +128,11 @@ TEST(Face, PulledStripStretchesByForceOverWidthTimesModulus) {
     level.rest[i].z() = 0.0F;
     level.kinds[i] = i < columns ? rig::NodeKind::free : rig::NodeKind::fixed;
   }
-  for (uint32_t j = 0; j <= o.along; ++j) level.kinds[column_at(o, 0, j)] = rig::NodeKind::fixed;
+  for (uint32_t j = 0; j <= o.along; ++j)
+    level.kinds[column_at(o, 0, j)] = rig::NodeKind::fixed;
   // Gravity on the end row alone is the pull: the rest of the strip weighs almost nothing.
-  for (uint32_t c = 0; c < columns; ++c) level.masses[c] = 1e-12F;
+  for (uint32_t c = 0; c < columns; ++c)
+    level.masses[c] = 1e-12F;
   for (uint32_t j = 0; j <= o.along; ++j)
     level.masses[column_at(o, o.across, j)] = (j == 0 || j == o.along) ? 0.5e-3F : 1e-3F;
   const FaceModel model(lattice_of(level), {});
@@ -141,7 +148,8 @@ TEST(Face, PulledStripStretchesByForceOverWidthTimesModulus) {
   const double strain_expected = 4e-3 / (4 * 0.005 * 20.0);
   const auto section = [&](uint32_t i) {
     double sum = 0.0;
-    for (uint32_t j = 0; j <= o.along; ++j) sum += x[column_at(o, i, j)].x() - level.rest[column_at(o, i, j)].x();
+    for (uint32_t j = 0; j <= o.along; ++j)
+      sum += x[column_at(o, i, j)].x() - level.rest[column_at(o, i, j)].x();
     return sum / (o.along + 1);
   };
   EXPECT_NEAR((section(18) - section(6)) / (12 * 0.005) / strain_expected, 1.0, 0.02);
@@ -160,13 +168,15 @@ TEST(Face, PressedBlockKeepsItsVolume) {
   const MinimiseResult result = face.static_pose(press, {}, x);
   EXPECT_TRUE(result.converged);
   Positions p;
-  for (const Vec3f& v : x) p.push_back(v.cast<double>());
+  for (const Vec3f& v : x)
+    p.push_back(v.cast<double>());
   double before = 0.0, after = 0.0, moved = 0.0;
   for (const Prism& prism : model.prisms()) {
     before += prism.volume;
     after += prism_volume(prism.nodes, p.data());
   }
-  for (size_t i = 0; i < p.size(); ++i) moved = std::max(moved, (p[i] - model.rest()[i]).norm());
+  for (size_t i = 0; i < p.size(); ++i)
+    moved = std::max(moved, (p[i] - model.rest()[i]).norm());
   EXPECT_GT(moved, 1e-4);
   EXPECT_NEAR(after / before, 1.0, 0.01);
 }
@@ -193,8 +203,10 @@ TEST_F(Contracting, RestIsRestToTheLastBit) {
   Face face(model, 2);
   std::vector<Vec3f> x(level.rest.size());
   EXPECT_EQ(face.static_pose({}, {}, x).iterations, 0);
-  for (size_t i = 0; i < x.size(); ++i) EXPECT_EQ(x[i], level.rest[i]);
-  for (int i = 0; i < 30; ++i) face.step(1.0 / 47.0, {});
+  for (size_t i = 0; i < x.size(); ++i)
+    EXPECT_EQ(x[i], level.rest[i]);
+  for (int i = 0; i < 30; ++i)
+    face.step(1.0 / 47.0, {});
   EXPECT_EQ(largest(displacements_of(face)), 0.0);
 }
 
@@ -247,7 +259,8 @@ TEST_F(Contracting, SteppingArrivesAtTheStaticPoseAtAnyFrameRate) {
   ASSERT_TRUE(face.static_pose(drive, {}, pose).converged);
   const double size = largest([&] {
     auto d = pose;
-    for (size_t i = 0; i < d.size(); ++i) d[i] -= level.rest[i];
+    for (size_t i = 0; i < d.size(); ++i)
+      d[i] -= level.rest[i];
     return d;
   }());
   // 0.1 s after a jump from 0 to 1 in a ramp of one 30 Hz frame, and after two seconds.
@@ -264,12 +277,16 @@ TEST_F(Contracting, SteppingArrivesAtTheStaticPoseAtAnyFrameRate) {
   }
   const auto apart = [&](const std::vector<Vec3f>& a, const std::vector<Vec3f>& b) {
     double most = 0.0;
-    for (size_t i = 0; i < a.size(); ++i) most = std::max<double>(most, (a[i] - b[i]).norm());
+    for (size_t i = 0; i < a.size(); ++i)
+      most = std::max<double>(most, (a[i] - b[i]).norm());
     return most / size;
   };
-  for (size_t k = 1; k < early.size(); ++k) EXPECT_LT(apart(early[0], early[k]), 0.02) << k;
-  for (size_t i = 0; i < pose.size(); ++i) pose[i] -= level.rest[i];
-  for (const auto& l : late) EXPECT_LT(apart(l, pose), 0.02);
+  for (size_t k = 1; k < early.size(); ++k)
+    EXPECT_LT(apart(early[0], early[k]), 0.02) << k;
+  for (size_t i = 0; i < pose.size(); ++i)
+    pose[i] -= level.rest[i];
+  for (const auto& l : late)
+    EXPECT_LT(apart(l, pose), 0.02);
 }
 
 TEST_F(Contracting, LetGoItOnlyLosesEnergy) {
@@ -300,7 +317,8 @@ TEST_F(Contracting, AbruptAndWildDrivesStayFinite) {
   for (int i = 0; i < 120; ++i) {
     state = state * 1664525U + 1013904223U;
     const float wild[] = {static_cast<float>(state >> 31), static_cast<float>((state >> 30) & 1U)};
-    const StepResult result = face.step(1.0 / 60, {wild, {static_cast<float>((state >> 29) & 1U), 0, 0}, Vec3::Zero()});
+    const StepResult result =
+        face.step(1.0 / 60, {wild, {static_cast<float>((state >> 29) & 1U), 0, 0}, Vec3::Zero()});
     EXPECT_EQ(result.status, StepStatus::done);
   }
   EXPECT_LT(largest(displacements_of(face)), 0.05);
@@ -322,7 +340,8 @@ TEST(Activation, RisesByItsTimeConstantWhateverTheStep) {
   const float one[] = {1.0F}, zero[] = {0.0F};
   float coarse[] = {0.0F}, fine[] = {0.0F};
   follow(dynamics, 0.03, one, coarse);
-  for (int i = 0; i < 30; ++i) follow(dynamics, 0.001, one, fine);
+  for (int i = 0; i < 30; ++i)
+    follow(dynamics, 0.001, one, fine);
   EXPECT_NEAR(coarse[0], 1.0 - std::exp(-1.0), 1e-6);
   EXPECT_NEAR(fine[0], coarse[0], 1e-5);
   follow(dynamics, 0.05, zero, coarse);

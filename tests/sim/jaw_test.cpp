@@ -31,7 +31,8 @@ TEST(Jaw, CondylesGlideByTheGivenLengths) {
 TEST(Jaw, LateralIsToTheSubjectsLeftAndMirrors) {
   const Jaw jaw;
   const Vec3 chin(0, -0.06, 0.09);
-  const Vec3 left = jaw_transform(jaw, {0.2F, 0, 1.0F}) * chin, right = jaw_transform(jaw, {0.2F, 0, -1.0F}) * chin;
+  const Vec3 left = jaw_transform(jaw, {0.2F, 0, 1.0F}) * chin,
+             right = jaw_transform(jaw, {0.2F, 0, -1.0F}) * chin;
   EXPECT_GT(left.x(), 0.01);
   EXPECT_NEAR(left.x(), -right.x(), 1e-12);
   EXPECT_NEAR((left - right).tail<2>().norm(), 0.0, 1e-12);

@@ -20,7 +20,9 @@ struct PatchOptions {
   bool clamp_rim = true;
 };
 
-inline uint32_t column_at(const PatchOptions& o, uint32_t i, uint32_t j) { return j * (o.across + 1) + i; }
+inline uint32_t column_at(const PatchOptions& o, uint32_t i, uint32_t j) {
+  return j * (o.across + 1) + i;
+}
 
 /// A flat patch, slightly domed so that nothing is degenerate: inner nodes on the cranium, the rim fixed.
 inline rig::TissueLevel make_patch(const PatchOptions& o) {
@@ -43,7 +45,8 @@ inline rig::TissueLevel make_patch(const PatchOptions& o) {
       level.rest[2 * columns + c] = Eigen::Vector3d(x, y, dome - o.skin_depth - o.inner_depth).cast<float>();
       level.kinds[2 * columns + c] = rig::NodeKind::fixed_cranium;
       if (rim && o.clamp_rim)
-        for (uint32_t layer = 0; layer < 3; ++layer) level.kinds[layer * columns + c] = rig::NodeKind::fixed;
+        for (uint32_t layer = 0; layer < 3; ++layer)
+          level.kinds[layer * columns + c] = rig::NodeKind::fixed;
     }
   for (uint32_t j = 0; j < o.along; ++j)
     for (uint32_t i = 0; i < o.across; ++i) {
@@ -79,7 +82,8 @@ inline rig::TissueLevel make_patch(const PatchOptions& o) {
     }
   std::set<std::pair<uint32_t, uint32_t>> edges;
   for (const auto& t : level.triangles)
-    for (size_t e = 0; e < 3; ++e) edges.insert({std::min(t[e], t[(e + 1) % 3]), std::max(t[e], t[(e + 1) % 3])});
+    for (size_t e = 0; e < 3; ++e)
+      edges.insert({std::min(t[e], t[(e + 1) % 3]), std::max(t[e], t[(e + 1) % 3])});
   if (o.retinacula > 0.0F)
     for (const auto& [first, second] : edges) {
       spring(first, columns + second);
@@ -96,8 +100,8 @@ inline rig::TissueLevel make_patch(const PatchOptions& o) {
 }
 
 /// Adds a fibre of SMAS points along the row `j` from column i0 to i1, its first point on the cranium.
-inline void add_fibre(rig::TissueLevel& level, const PatchOptions& o, uint32_t channel, uint32_t j, uint32_t i0,
-                      uint32_t i1, float strength) {
+inline void add_fibre(rig::TissueLevel& level, const PatchOptions& o, uint32_t channel, uint32_t j,
+                      uint32_t i0, uint32_t i1, float strength) {
   if (level.fibre_offsets.empty()) level.fibre_offsets.push_back(0);
   level.fibre_muscle.push_back(channel);
   level.fibre_channel.push_back(channel);
@@ -117,7 +121,8 @@ inline void add_fibre(rig::TissueLevel& level, const PatchOptions& o, uint32_t c
 }
 
 /// Adds a carrier of skin node `column` that turns about the x axis through `origin`.
-inline void add_carrier(rig::TissueLevel& level, uint32_t channel, uint32_t column, const rig::Vec3f& origin, float angle, float reverse) {
+inline void add_carrier(rig::TissueLevel& level, uint32_t channel, uint32_t column, const rig::Vec3f& origin,
+                        float angle, float reverse) {
   level.carrier_channel.push_back(channel);
   level.carrier_node.push_back(column);
   level.carrier_origin.push_back(origin);

@@ -1,5 +1,5 @@
-// What a solver of soft tissue has to show beside its gradients: order of convergence, kept volume, strain, a jaw that its
-// muscles move, and a long wild drive.
+// What a solver of soft tissue has to show beside its gradients: order of convergence, kept volume, strain, a
+// jaw that its muscles move, and a long wild drive.
 
 #include <gtest/gtest.h>
 
@@ -44,18 +44,21 @@ double miss_of_a_spring(double step) {
   stepping.solver = {50, 1e-13};
   stepping.largest_displacement = 1.0;
   const int steps = static_cast<int>(std::lround(0.2 / step));
-  for (int i = 0; i < steps; ++i) face.step(step, {}, stepping);
+  for (int i = 0; i < steps; ++i)
+    face.step(step, {}, stepping);
   const double omega = std::sqrt(40.0);
   return std::abs(face.state()[1].x() - 0.1 - 0.05 / omega * std::sin(0.2 * omega));
 }
 
 TEST(Proofs, HalvingTheStepHalvesTheError) {
-  const double coarse = miss_of_a_spring(0.004), middle = miss_of_a_spring(0.002), fine = miss_of_a_spring(0.001);
+  const double coarse = miss_of_a_spring(0.004), middle = miss_of_a_spring(0.002),
+               fine = miss_of_a_spring(0.001);
   EXPECT_NEAR(std::log2(coarse / middle), 1.0, 0.1);
   EXPECT_NEAR(std::log2(middle / fine), 1.0, 0.05);
 }
 
-/// A block of the two layers of a wide patch on a plate, pressed evenly: it gives by force over stiffness of its springs.
+/// A block of the two layers of a wide patch on a plate, pressed evenly: it gives by force over stiffness of
+/// its springs.
 TEST(Proofs, PressedBlockGivesByForceOverStiffness) {
   PatchOptions o;
   o.clamp_rim = false;
@@ -67,7 +70,8 @@ TEST(Proofs, PressedBlockGivesByForceOverStiffness) {
   rig::TissueLevel level = make_patch(o);
   const uint32_t columns = level.columns;
   for (uint32_t c = 0; c < columns; ++c)
-    for (uint32_t layer = 0; layer < 3; ++layer) level.rest[layer * columns + c].z() = -0.004F * static_cast<float>(layer);
+    for (uint32_t layer = 0; layer < 3; ++layer)
+      level.rest[layer * columns + c].z() = -0.004F * static_cast<float>(layer);
   for (uint32_t c = 0; c < columns; ++c)
     for (uint32_t layer = 0; layer < 2; ++layer) {
       level.spring_nodes.push_back({layer * columns + c, (layer + 1) * columns + c});
@@ -80,7 +84,8 @@ TEST(Proofs, PressedBlockGivesByForceOverStiffness) {
   ASSERT_TRUE(model.valid()) << model.fault();
   Face face(model, 0);
   std::vector<NodeForce> press;
-  for (uint32_t c = 0; c < columns; ++c) press.push_back({c, Vec3(0, 0, -0.002)});
+  for (uint32_t c = 0; c < columns; ++c)
+    press.push_back({c, Vec3(0, 0, -0.002)});
   std::vector<Vec3f> x(level.rest.size());
   PoseOptions tight;
   tight.solver = {500, 1e-9};
@@ -95,14 +100,16 @@ TEST(Proofs, AContractedMuscleBulgesAtKeptVolume) {
   o.across = 12;
   o.volume = 2e5F;
   rig::TissueLevel level = make_patch(o);
-  for (uint32_t j = 3; j <= 5; ++j) add_fibre(level, o, 0, j, 2, 10, 0.3F);
+  for (uint32_t j = 3; j <= 5; ++j)
+    add_fibre(level, o, 0, j, 2, 10, 0.3F);
   const FaceModel model(lattice_of(level), {});
   Face face(model, 1);
   std::vector<Vec3f> x(level.rest.size());
   const float full[] = {1.0F};
   EXPECT_TRUE(face.static_pose({full, {}, Vec3::Zero()}, {}, x).converged);
   Positions p;
-  for (const Vec3f& v : x) p.push_back(v.cast<double>());
+  for (const Vec3f& v : x)
+    p.push_back(v.cast<double>());
   double before = 0.0, after = 0.0;
   for (const Prism& prism : model.prisms()) {
     before += prism.volume;
@@ -121,17 +128,21 @@ TEST(Proofs, StrainIsThatOfTheStretch) {
   std::vector<Vec3f> u(level.rest.size(), Vec3f::Zero());
   std::vector<Strain> strain(level.columns);
   skin_strain(model, u, strain);
-  for (const Strain& s : strain) EXPECT_TRUE(s.isZero(0.0F));
-  for (size_t i = 0; i < u.size(); ++i) u[i] = Vec3f(-0.2F * level.rest[i].x(), 0.1F * level.rest[i].y(), 0.0F);
+  for (const Strain& s : strain)
+    EXPECT_TRUE(s.isZero(0.0F));
+  for (size_t i = 0; i < u.size(); ++i)
+    u[i] = Vec3f(-0.2F * level.rest[i].x(), 0.1F * level.rest[i].y(), 0.0F);
   skin_strain(model, u, strain);
   const Vec3f compression = strongest_compression(strain[column_at(o, 4, 4)]);  // at the dome's top, flat
   EXPECT_NEAR(compression.x(), 0.2F, 0.01F);
   EXPECT_NEAR(compression.y(), 0.0F, 0.01F);
   // A turn is no strain.
   const Eigen::Matrix3f turn = Eigen::AngleAxisf(0.7F, Vec3f(1, 2, 3).normalized()).toRotationMatrix();
-  for (size_t i = 0; i < u.size(); ++i) u[i] = turn * level.rest[i] - level.rest[i];
+  for (size_t i = 0; i < u.size(); ++i)
+    u[i] = turn * level.rest[i] - level.rest[i];
   skin_strain(model, u, strain);
-  for (const Strain& s : strain) EXPECT_LT(s.norm(), 1e-4F);
+  for (const Strain& s : strain)
+    EXPECT_LT(s.norm(), 1e-4F);
 }
 
 TEST(JawMuscles, OpenersOpenClosersCloseAndOneSidePullsAcross) {
@@ -142,7 +153,8 @@ TEST(JawMuscles, OpenersOpenClosersCloseAndOneSidePullsAcross) {
       {1, Vec3(-0.01, -0.10, 0.04), Vec3(-0.01, -0.05, 0.08), 20},  // right
       {2, Vec3(0.055, 0.01, 0.04), Vec3(0.045, -0.05, 0.02), 150},  // masseter, left
       {3, Vec3(-0.055, 0.01, 0.04), Vec3(-0.045, -0.05, 0.02), 150},
-      {4, Vec3(0.03, 0.0, 0.035), Vec3(0.05, 0.0, 0.0), 60},  // lateral pterygoid, left: to the condyle's neck
+      {4, Vec3(0.03, 0.0, 0.035), Vec3(0.05, 0.0, 0.0),
+       60},  // lateral pterygoid, left: to the condyle's neck
       {5, Vec3(-0.03, 0.0, 0.035), Vec3(-0.05, 0.0, 0.0), 60}};
   const JawMuscles moves(jaw, muscles);
   const auto at = [&](std::vector<float> a, JawPose pose = {}) { return moves.moved(pose, a); };
@@ -176,12 +188,14 @@ TEST(Proofs, TwelveSecondsOfWildDriveLeaveNothingTurnedOrLost) {
   JawPose pose;
   for (int frame = 0; frame < 12 * 30; ++frame) {
     if (frame % 7 == 0) {
-      for (float& value : drive) value = chance() < 0.3F ? 1.0F : chance() < 0.5F ? 0.0F : chance();
+      for (float& value : drive)
+        value = chance() < 0.3F ? 1.0F : chance() < 0.5F ? 0.0F : chance();
       pose = {chance(), 0.3F * chance(), 0.4F * chance() - 0.2F};
     }
     const Vec3 shake(40 * chance() - 20, 40 * chance() - 20, 40 * chance() - 20);
     ASSERT_EQ(face.step(1.0 / 30, {drive, pose, shake}).status, StepStatus::done) << frame;
-    for (const Prism& prism : model.prisms()) ASSERT_GT(prism_volume(prism.nodes, face.state().data()), 0.0) << frame;
+    for (const Prism& prism : model.prisms())
+      ASSERT_GT(prism_volume(prism.nodes, face.state().data()), 0.0) << frame;
   }
 }
 

@@ -25,7 +25,8 @@ struct Everything : ::testing::Test {
     options.across = 12;
     options.along = 8;
     level = make_patch(options);
-    add_fibre(level, options, 0, 6, 2, 11, 0.3F);  // longer than those it shares a batch with, and before them
+    add_fibre(level, options, 0, 6, 2, 11,
+              0.3F);  // longer than those it shares a batch with, and before them
     add_fibre(level, options, 0, 4, 1, 5, 0.4F);
     add_fibre(level, options, 1, 4, 11, 7, 0.4F);
     add_fibre(level, options, 1, 2, 2, 9, 0.2F);
@@ -58,7 +59,8 @@ struct Everything : ::testing::Test {
 
 double farthest(const std::vector<Vec3f>& a, std::span<const Vec3f> b) {
   double most = 0.0;
-  for (size_t i = 0; i < a.size(); ++i) most = std::max<double>(most, (a[i] - b[i]).norm());
+  for (size_t i = 0; i < a.size(); ++i)
+    most = std::max<double>(most, (a[i] - b[i]).norm());
   return most;
 }
 
@@ -71,10 +73,12 @@ TEST_F(Everything, EnergyAndGradientAreTheReferences) {
   const JawPose pose{0.8F, 0.2F, -0.5F};
   Frame frame = face.make_frame();
   face.place({pull, pose, Vec3::Zero()}, frame);
-  for (const double size : {0.0, 1e-4, 1e-3, 3e-3}) {  // the last turns some prisms over and crushes membranes
+  for (const double size :
+       {0.0, 1e-4, 1e-3, 3e-3}) {  // the last turns some prisms over and crushes membranes
     Positions x = frame.carried, expected(x.size());
     Floats places(model.places()), gradient(model.places());
-    for (const uint32_t node : face.unknowns()) x[node] += size * Vec3(normal(random), normal(random), normal(random));
+    for (const uint32_t node : face.unknowns())
+      x[node] += size * Vec3(normal(random), normal(random), normal(random));
     for (size_t i = 0; i < x.size(); ++i)
       for (int axis = 0; axis < 3; ++axis) {
         places.data()[model.slot_of(i) + axis] = static_cast<float>(x[i][axis]);
@@ -104,11 +108,13 @@ TEST_F(Everything, TheFactorSolvesItsMatrix) {
   const FaceModel face(lattice_of(level), jaw);
   const Eigen::SparseMatrix<double, Eigen::RowMajor>& matrix = face.stiffness();
   Positions places;
-  for (const uint32_t node : face.unknowns()) places.push_back(face.rest()[node]);
+  for (const uint32_t node : face.unknowns())
+    places.push_back(face.rest()[node]);
   const Dissection dissection(matrix, places);
   std::vector<uint32_t> sorted = dissection.order();
   std::sort(sorted.begin(), sorted.end());
-  for (uint32_t i = 0; i < sorted.size(); ++i) ASSERT_EQ(sorted[i], i);
+  for (uint32_t i = 0; i < sorted.size(); ++i)
+    ASSERT_EQ(sorted[i], i);
   EXPECT_GT(dissection.fronts().size(), 8U);
   PanelFactor factor;
   ASSERT_TRUE(factor.compute(dissection, matrix));
@@ -119,12 +125,15 @@ TEST_F(Everything, TheFactorSolvesItsMatrix) {
     const Model model(face, set);
     Floats list(model.unknown_floats());
     for (size_t k = 0; k < dissection.size(); ++k)
-      for (int axis = 0; axis < 3; ++axis) list.data()[4 * k + static_cast<size_t>(axis)] = static_cast<float>(right(dissection.order()[k], axis));
+      for (int axis = 0; axis < 3; ++axis)
+        list.data()[4 * k + static_cast<size_t>(axis)] =
+            static_cast<float>(right(dissection.order()[k], axis));
     Floats scratch(factor.scratch());
     model.loops().solve(factor.view(), list.data(), scratch.data());
     for (size_t k = 0; k < dissection.size(); ++k)
       for (int axis = 0; axis < 3; ++axis)
-        ASSERT_NEAR(list.data()[4 * k + static_cast<size_t>(axis)], expected(dissection.order()[k], axis), 1e-4 * expected.cwiseAbs().maxCoeff());
+        ASSERT_NEAR(list.data()[4 * k + static_cast<size_t>(axis)], expected(dissection.order()[k], axis),
+                    1e-4 * expected.cwiseAbs().maxCoeff());
   }
 }
 
@@ -134,10 +143,13 @@ TEST_F(Everything, RestIsRestToTheLastBit) {
   Face face(model, 4);
   std::vector<Vec3f> x(level.rest.size());
   EXPECT_EQ(face.static_pose({}, {}, x).iterations, 0);
-  for (size_t i = 0; i < x.size(); ++i) EXPECT_EQ(x[i], level.rest[i]);
-  for (int i = 0; i < 30; ++i) face.step(1.0 / 47.0, {});
+  for (size_t i = 0; i < x.size(); ++i)
+    EXPECT_EQ(x[i], level.rest[i]);
+  for (int i = 0; i < 30; ++i)
+    face.step(1.0 / 47.0, {});
   face.displacements(x);
-  for (const Vec3f& d : x) EXPECT_EQ(d, Vec3f::Zero());
+  for (const Vec3f& d : x)
+    EXPECT_EQ(d, Vec3f::Zero());
 }
 
 TEST_F(Everything, PosesAreTheReferences) {
@@ -172,7 +184,8 @@ TEST_F(Everything, ConvergedStepsAreTheReferencesAndFewIterationsStayNear) {
   for (int frame = 1; frame <= 30; ++frame) {
     std::vector<float> now = pull;
     const float share = std::min(1.0F, static_cast<float>(frame) / 6.0F);
-    for (float& value : now) value *= share;
+    for (float& value : now)
+      value *= share;
     const Drive moving{now, {0.8F * share, 0.2F * share, -0.5F * share}, Vec3::Zero()};
     slow.step(1.0 / 60.0, moving, tight);
     ASSERT_EQ(converged.step(1.0 / 60.0, moving, own).status, StepStatus::done);
@@ -190,7 +203,8 @@ std::vector<Vec3f> played(const Model& model, std::span<const float> pull, int f
   Face face(model, 4);
   std::vector<float> now(pull.begin(), pull.end());
   for (int frame = 0; frame < frames; ++frame) {
-    for (size_t c = 0; c < now.size(); ++c) now[c] = pull[c] * (0.5F + 0.5F * std::sin(speed * static_cast<float>(frame) + static_cast<float>(c)));
+    for (size_t c = 0; c < now.size(); ++c)
+      now[c] = pull[c] * (0.5F + 0.5F * std::sin(speed * static_cast<float>(frame) + static_cast<float>(c)));
     face.step(1.0 / 60.0, {now, {now[0], 0, 0}, Vec3::Zero()});
   }
   std::vector<Vec3f> out(model.face().rest().size());
@@ -203,14 +217,17 @@ TEST_F(Everything, EveryInstructionSetAndAnyNumberOfThreadsGiveTheSameBits) {
   const Model baseline(reference, lanes::InstructionSet::baseline);
   const std::vector<Vec3f> expected = played(baseline, pull, 20, 0.3F);
   EXPECT_GT(farthest(expected, std::vector<Vec3f>(expected.size(), Vec3f::Zero())), 1e-4);
-  for (const lanes::InstructionSet set : testing::all_instruction_sets()) EXPECT_EQ(played(Model(reference, set), pull, 20, 0.3F), expected);
+  for (const lanes::InstructionSet set : testing::all_instruction_sets())
+    EXPECT_EQ(played(Model(reference, set), pull, 20, 0.3F), expected);
   // Many faces of one model, on one thread and on two.
   const Model model(reference);
   constexpr size_t count = 12;
   std::vector<std::vector<Vec3f>> one(count), two(count);
-  for (size_t i = 0; i < count; ++i) one[i] = played(model, pull, 10, 0.1F * static_cast<float>(i));
+  for (size_t i = 0; i < count; ++i)
+    one[i] = played(model, pull, 10, 0.1F * static_cast<float>(i));
   const auto half = [&](size_t begin) {
-    for (size_t i = begin; i < count; i += 2) two[i] = played(model, pull, 10, 0.1F * static_cast<float>(i));
+    for (size_t i = begin; i < count; i += 2)
+      two[i] = played(model, pull, 10, 0.1F * static_cast<float>(i));
   };
   std::thread other(half, 1);
   half(0);
@@ -230,12 +247,14 @@ TEST_F(Everything, WildDrivesStayFiniteAndBadNumbersReset) {
     const std::vector<float> wild = {uniform(random), uniform(random), uniform(random), uniform(random)};
     face.step(1.0 / 60.0, {wild, {uniform(random), uniform(random), uniform(random)}, Vec3::Zero()});
     face.displacements(x);
-    for (const Vec3f& d : x) ASSERT_LT(d.norm(), 0.1F) << frame;
+    for (const Vec3f& d : x)
+      ASSERT_LT(d.norm(), 0.1F) << frame;
   }
   const std::vector<float> bad = {NAN, 0, 0, 0};
   EXPECT_EQ(face.step(1.0 / 60.0, {bad, {}, Vec3::Zero()}).status, StepStatus::reset);
   face.displacements(x);
-  for (const Vec3f& d : x) EXPECT_EQ(d, Vec3f::Zero());
+  for (const Vec3f& d : x)
+    EXPECT_EQ(d, Vec3f::Zero());
 }
 
 }  // namespace

@@ -17,7 +17,8 @@ TEST(Sheet, EveryInstructionSetGivesTheSameBits) {
   const auto fallen = [&](lanes::InstructionSet set) {
     options.instructions = set;
     Sheet sheet(options);
-    for (int frame = 0; frame < 40; ++frame) sheet.step(1.0F / 60.0F);
+    for (int frame = 0; frame < 40; ++frame)
+      sheet.step(1.0F / 60.0F);
     return sheet;
   };
   const Sheet expected = fallen(lanes::InstructionSet::baseline);
@@ -44,7 +45,8 @@ TEST(Sheet, TwoRowsSwingAsAPendulum) {
   for (int frame = 1; frame <= 240; ++frame) {
     sheet.step(1.0F / 120.0F);
     const float now = sheet.position(1, 2).z();
-    if ((last > 0.0F) != (now > 0.0F)) crossings.push_back((frame - static_cast<double>(now / (now - last))) / 120.0);
+    if ((last > 0.0F) != (now > 0.0F))
+      crossings.push_back((frame - static_cast<double>(now / (now - last))) / 120.0);
     last = now;
   }
   ASSERT_GE(crossings.size(), 2U);
@@ -57,7 +59,8 @@ TEST(Sheet, HangsWithoutStretch) {
   SheetOptions options;
   options.along_column = -Vec3f::UnitY();
   Sheet sheet(options);
-  for (int frame = 0; frame < 60; ++frame) sheet.step(1.0F / 60.0F);
+  for (int frame = 0; frame < 60; ++frame)
+    sheet.step(1.0F / 60.0F);
   EXPECT_EQ(sheet.spring_count(), 59002U);
   EXPECT_LT(sheet.mean_stretch(), 1e-4);
   for (uint32_t column = 0; column < options.columns; ++column) {

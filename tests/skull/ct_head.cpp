@@ -26,11 +26,12 @@ const std::map<std::string, std::string>& regions() {
     std::map<std::string, std::string> out;
     const auto add = [&](const std::string& region, const std::vector<std::string>& names) {
       for (const std::string& name : names)
-        for (const char* side : {"", "_left", "_right"}) out[name + side] = region;
+        for (const char* side : {"", "_left", "_right"})
+          out[name + side] = region;
     };
-    add("forehead and brow", {"glabella", "supraglabella", "mid_supraorbital", "superciliare", "superciliare_mediale",
-                              "superciliare_laterale", "superciliare_medium_mediale", "superciliare_medium_laterale",
-                              "orbitale_superius"});
+    add("forehead and brow", {"glabella", "supraglabella", "mid_supraorbital", "superciliare",
+                              "superciliare_mediale", "superciliare_laterale", "superciliare_medium_mediale",
+                              "superciliare_medium_laterale", "orbitale_superius"});
     add("nasal bones", {"nasion", "sellion", "mid_nasal", "rhinion", "maxillofrontale"});
     add("lower orbit and cheekbone", {"mid_infraorbital", "orbitale", "malare", "zygomaxillare_skin"});
     add("zygomatic arch", {"zygion"});
@@ -56,7 +57,8 @@ Vec3 smooth_normal(const skull::Exterior& skin, const Vec3& at) {
   return sum.normalized();
 }
 
-/// Distance from `point` to the mouth's tube, which hangs from the lips in front of the chin (frame of the scan, mm).
+/// Distance from `point` to the mouth's tube, which hangs from the lips in front of the chin (frame of the
+/// scan, mm).
 double tube_distance(const Vec3& scan) {
   const Vec3 top(88.2, 45, -96), bottom(90.2, 45, -138);
   const double along = std::clamp((scan - top).dot(bottom - top) / (bottom - top).squaredNorm(), 0.0, 1.0);
@@ -89,12 +91,14 @@ CtHead read_ct_head(const std::filesystem::path& measured, const std::filesystem
   for (const anatomy::Landmark& landmark : anatomy.landmarks)
     if (landmark.skin) reference[landmark.name] = *landmark.skin;
   const formats::Scene scene = formats::read(measured / "data/ct/headsq_skin.ply");
-  prepare::PreparedHead prepared = prepare::prepare(scene, formats::read_landmarks(landmark_file), reference, {});
+  prepare::PreparedHead prepared =
+      prepare::prepare(scene, formats::read_landmarks(landmark_file), reference, {});
   const formats::Scene bones = formats::read(measured / "data/ct/headsq_bone.ply");
   CtHead out;
   out.skin = std::move(prepared.skin);
   out.bone = {bones.meshes.front().positions, bones.meshes.front().triangles};
-  for (Vec3& v : out.bone.vertices) v = transform_point(prepared.input_to_metres, v);
+  for (Vec3& v : out.bone.vertices)
+    v = transform_point(prepared.input_to_metres, v);
   out.scan_to_rig = prepared.input_to_metres;
   out.given = std::move(prepared.landmarks);
   out.targets = complete_targets(out.skin, out.given, anatomy);
@@ -118,8 +122,11 @@ std::vector<DepthSample> depth_samples(const CtHead& head) {
     const auto region = regions().find(nearest);
     if (region == regions().end()) continue;
     const Vec3 cell = p / 0.004;
-    if (!cells.insert({static_cast<int>(std::floor(cell.x())), static_cast<int>(std::floor(cell.y())),
-                       static_cast<int>(std::floor(cell.z()))}).second) continue;
+    if (!cells
+             .insert({static_cast<int>(std::floor(cell.x())), static_cast<int>(std::floor(cell.y())),
+                      static_cast<int>(std::floor(cell.z()))})
+             .second)
+      continue;
     DepthSample sample{region->second, p, -smooth_normal(skin, p), 0};
     const auto hit = bone.first_hit(p, sample.inward, deepest);
     if (!hit) continue;
@@ -129,12 +136,14 @@ std::vector<DepthSample> depth_samples(const CtHead& head) {
   return out;
 }
 
-std::map<std::string, DepthError> depth_errors(const std::vector<DepthSample>& samples, const skull::FitResult& fit) {
+std::map<std::string, DepthError> depth_errors(const std::vector<DepthSample>& samples,
+                                               const skull::FitResult& fit) {
   TriangleMesh all;
   for (const TriangleMesh* mesh : {&fit.cranium, &fit.mandible, &fit.teeth_upper, &fit.teeth_lower}) {
     const int base = all.vertex_count();
     all.vertices.insert(all.vertices.end(), mesh->vertices.begin(), mesh->vertices.end());
-    for (const Triangle& t : mesh->triangles) all.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
+    for (const Triangle& t : mesh->triangles)
+      all.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
   }
   const spatial::SurfaceQuery fitted(all);
   std::map<std::string, DepthError> out;

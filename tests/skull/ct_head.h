@@ -23,7 +23,8 @@ struct CtHead {
 /// True when the scan is in `measured`/data/ct.
 bool has_ct_head(const std::filesystem::path& measured);
 
-/// Reads the scan and prepares it through the same stages as any head. `landmarks` is the file of placed points.
+/// Reads the scan and prepares it through the same stages as any head. `landmarks` is the file of placed
+/// points.
 CtHead read_ct_head(const std::filesystem::path& measured, const std::filesystem::path& landmarks,
                     const anatomy::GenericAnatomy& anatomy);
 
@@ -39,8 +40,8 @@ struct DepthSample {
   double depth = 0;  ///< m along `inward`
 };
 
-/// Samples of the outer skin, about one a 4 mm cell, over the facial skeleton: a sample belongs to the region of
-/// the nearest landmark. Left out are eyelids, soft nose, lips, ears and neck, 14 mm about the tube in the
+/// Samples of the outer skin, about one a 4 mm cell, over the facial skeleton: a sample belongs to the region
+/// of the nearest landmark. Left out are eyelids, soft nose, lips, ears and neck, 14 mm about the tube in the
 /// mouth, 5 mm along the crop, and places where no bone lies within 30 mm.
 std::vector<DepthSample> depth_samples(const CtHead& head);
 
@@ -53,6 +54,7 @@ struct DepthError {
 };
 
 /// By region, and under "all".
-std::map<std::string, DepthError> depth_errors(const std::vector<DepthSample>& samples, const skull::FitResult& fit);
+std::map<std::string, DepthError> depth_errors(const std::vector<DepthSample>& samples,
+                                               const skull::FitResult& fit);
 
 }  // namespace fascia::testing

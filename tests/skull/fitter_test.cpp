@@ -104,7 +104,8 @@ TEST(Normals, TurnTheBoneWithTheSkin) {
   EXPECT_LT(std::abs(plain), 0.05);
   EXPECT_NEAR(turned, 0.3, 0.08);
   options.exponent = 1;
-  EXPECT_THROW(fit(generic, skin, landmarks, options), Error) << "a thin plate in space has no gradient at data";
+  EXPECT_THROW(fit(generic, skin, landmarks, options), Error)
+      << "a thin plate in space has no gradient at data";
 }
 
 TEST(Landmarks, MoreOfThemOnlyHelp) {
@@ -198,8 +199,7 @@ TEST(PartialHead, GetsThePartOfASkullItCan) {
   const double top = 0.045;
   TriangleMesh whole = globe(skin_radii, 48, 96), scan{whole.vertices, {}};
   for (const Triangle& t : whole.triangles)
-    if (whole.vertices[t[0]].y() < top &&
-        whole.vertices[t[1]].y() < top && whole.vertices[t[2]].y() < top)
+    if (whole.vertices[t[0]].y() < top && whole.vertices[t[1]].y() < top && whole.vertices[t[2]].y() < top)
       scan.triangles.push_back(t);
   auto landmarks = carried(generic, same);
   std::erase_if(landmarks, [&](const auto& entry) { return entry.second.skin.y() > top - 0.003; });
@@ -219,7 +219,8 @@ TEST(PartialHead, GetsThePartOfASkullItCan) {
   EXPECT_LT(worst, 0.05) << "what is there is right";
   FitOptions options;
   options.trim_uncovered = false;
-  EXPECT_EQ(fit(generic, scan, landmarks, options).cranium.triangle_count(), generic.cranium.triangle_count());
+  EXPECT_EQ(fit(generic, scan, landmarks, options).cranium.triangle_count(),
+            generic.cranium.triangle_count());
   EXPECT_EQ(fit(generic, whole, carried(generic, same)).uncovered_share, 0);
 }
 

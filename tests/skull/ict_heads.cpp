@@ -32,7 +32,8 @@ IctHead read_ict_head(const std::filesystem::path& measured, const std::string& 
   formats::LandmarkFile given = formats::read_landmarks(landmark_file);
   const spatial::SurfaceQuery mean(head_mesh(formats::read(file(measured, "neutral"))));
   const TriangleMesh mesh = head_mesh(scene);
-  for (auto& [landmark, p] : given.points) p = position(mesh, mean.closest(p).surface);
+  for (auto& [landmark, p] : given.points)
+    p = position(mesh, mean.closest(p).surface);
   std::map<std::string, Vec3> reference;
   for (const anatomy::Landmark& landmark : anatomy.landmarks)
     if (landmark.skin) reference[landmark.name] = *landmark.skin;

@@ -19,8 +19,8 @@ struct IctHead {
 /// True when the head `name` (neutral, person_0 ...) is in `measured`/data/ict.
 bool has_ict_head(const std::filesystem::path& measured, const std::string& name);
 
-/// Reads and prepares a head. `landmarks` are points on the mean head; on another person, whose mesh has the same
-/// triangles, they are taken at the same places of the mesh.
+/// Reads and prepares a head. `landmarks` are points on the mean head; on another person, whose mesh has the
+/// same triangles, they are taken at the same places of the mesh.
 IctHead read_ict_head(const std::filesystem::path& measured, const std::string& name,
                       const std::filesystem::path& landmarks, const anatomy::GenericAnatomy& anatomy);
 

@@ -17,10 +17,12 @@ namespace {
 const std::filesystem::path measured = FASCIA_MEASURED_DATA, fixtures = FASCIA_TEST_DATA;
 using Targets = std::map<std::string, TargetLandmark>;
 
-Targets placed(const std::map<std::string, Vec3>& points, const anatomy::GenericAnatomy* required_in = nullptr) {
+Targets placed(const std::map<std::string, Vec3>& points,
+               const anatomy::GenericAnatomy* required_in = nullptr) {
   Targets out;
   for (const auto& [name, p] : points)
-    if (!required_in || (required_in->landmark(name) && required_in->landmark(name)->required)) out[name] = {p, 1};
+    if (!required_in || (required_in->landmark(name) && required_in->landmark(name)->required))
+      out[name] = {p, 1};
   return out;
 }
 
@@ -28,7 +30,8 @@ Targets placed(const std::map<std::string, Vec3>& points, const anatomy::Generic
 double bent(const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
   const Mat4 body = similarity(from, to);
   double worst = 0;
-  for (size_t i = 0; i < from.size(); ++i) worst = std::max(worst, (transform(body, from[i]) - to[i]).norm());
+  for (size_t i = 0; i < from.size(); ++i)
+    worst = std::max(worst, (transform(body, from[i]) - to[i]).norm());
   return worst;
 }
 
@@ -77,7 +80,8 @@ TEST(IctHeads, PeopleGetWholeSkullsUnderTheirSkin) {
   const auto anatomy = anatomy::load_generic();
   const Generic generic = from_anatomy(anatomy);
   for (const char* name : {"neutral", "person_0", "person_3"}) {
-    if (!testing::has_ict_head(measured, name)) GTEST_SKIP() << "the ICT heads are not at " << measured / "data/ict";
+    if (!testing::has_ict_head(measured, name))
+      GTEST_SKIP() << "the ICT heads are not at " << measured / "data/ict";
     const testing::IctHead head =
         testing::read_ict_head(measured, name, fixtures / "ict_neutral_landmarks.json", anatomy);
     const FitResult result = fit(generic, head.head.skin, head.targets);
@@ -92,7 +96,8 @@ TEST(IctHeads, PeopleGetWholeSkullsUnderTheirSkin) {
     EXPECT_LT(bent(generic.teeth_lower.vertices, result.teeth_lower.vertices), 1e-5) << name;
     for (const Vec3& condyle : {generic.condyle_left, generic.condyle_right}) {
       std::vector<Vec3> from, to;
-      for (const auto& [before, after] : {std::pair(&generic.cranium, &result.cranium), std::pair(&generic.mandible, &result.mandible)})
+      for (const auto& [before, after] :
+           {std::pair(&generic.cranium, &result.cranium), std::pair(&generic.mandible, &result.mandible)})
         for (size_t v = 0; v < before->vertices.size(); ++v)
           if ((before->vertices[v] - condyle).norm() < 0.011) {
             from.push_back(before->vertices[v]);
@@ -109,7 +114,8 @@ TEST(GenericHead, GetsItsOwnSkullSymmetric) {
   const Generic generic = from_anatomy(anatomy);
   EXPECT_GE(generic.curves.size(), 10u) << "rims, piriform, border, arches and temporal lines of both sides";
   Targets targets;
-  for (const GenericLandmark& landmark : generic.landmarks) targets[landmark.name] = {landmark.skin, 1};
+  for (const GenericLandmark& landmark : generic.landmarks)
+    targets[landmark.name] = {landmark.skin, 1};
   const FitResult result = fit(generic, generic.skin, targets);
   EXPECT_EQ(result.bone_outside_skin, 0);
   EXPECT_LT(result.landmark_rms, 0.002);

@@ -6,8 +6,8 @@
 
 #include "builder/skull/skull.h"
 
-/// A head in closed form: an ellipsoid of skin over an ellipsoid of bone, landmarks where rays from the centre pass
-/// both.
+/// A head in closed form: an ellipsoid of skin over an ellipsoid of bone, landmarks where rays from the
+/// centre pass both.
 namespace fascia::testing {
 
 inline const Vec3 skin_radii(0.075, 0.115, 0.095);
@@ -69,9 +69,11 @@ inline skull::Generic round_head_with_curves() {
   generic.skin = globe(skin_radii);
   skull::BoneCurve hoop{"hoop", true, {}}, back{"back", false, {}};
   for (int k = 0; k < 48; ++k) {
-    const double angle = 2 * std::numbers::pi * k / 48;  // begins on the midplane: mirror images of each other
-    hoop.points.push_back(bone_share * skin_radii.cwiseProduct(
-                                           Vec3(0.6 * std::sin(angle), 0.6 * std::cos(angle) - 0.1, 0.8).normalized()));
+    const double angle =
+        2 * std::numbers::pi * k / 48;  // begins on the midplane: mirror images of each other
+    hoop.points.push_back(
+        bone_share *
+        skin_radii.cwiseProduct(Vec3(0.6 * std::sin(angle), 0.6 * std::cos(angle) - 0.1, 0.8).normalized()));
   }
   for (int k = 0; k <= 12; ++k) {
     const double angle = 0.9 * (k / 6.0 - 1);

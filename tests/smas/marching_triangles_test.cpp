@@ -51,7 +51,8 @@ int euler(const TriangleMesh& mesh) {
   const Connectivity links = connectivity(mesh);
   int edges = 0;
   for (const auto& neighbours : links.neighbours)
-    for (int n : neighbours) edges += n < 0 ? 2 : 1;
+    for (int n : neighbours)
+      edges += n < 0 ? 2 : 1;
   return mesh.vertex_count() - edges / 2 + mesh.triangle_count();
 }
 
@@ -60,7 +61,8 @@ void expect_sound(const MarchingResult& result, const ImplicitFunction& f, doubl
   std::vector<bool> used(result.mesh.vertices.size(), false);
   for (int t = 0; t < result.mesh.triangle_count(); ++t) {
     Vec3 facing = Vec3::Zero();
-    for (int v : result.mesh.triangles[t]) used[v] = true, facing += result.normals[v];
+    for (int v : result.mesh.triangles[t])
+      used[v] = true, facing += result.normals[v];
     EXPECT_GT(triangle_normal(result.mesh, t).dot(facing), 0.0);
   }
   for (size_t v = 0; v < used.size(); ++v) {
@@ -92,7 +94,9 @@ TEST(MarchingTriangles, SphereHasThePredictedCountSagAndGenus) {
     EXPECT_EQ(result.parts, 1);
     double sag = 0.0;
     for (const Triangle& t : result.mesh.triangles)
-      sag += 1.0 - ((result.mesh.vertices[t[0]] + result.mesh.vertices[t[1]] + result.mesh.vertices[t[2]]) / 3.0).norm();
+      sag +=
+          1.0 - ((result.mesh.vertices[t[0]] + result.mesh.vertices[t[1]] + result.mesh.vertices[t[2]]) / 3.0)
+                    .norm();
     EXPECT_NEAR(sag / result.mesh.triangle_count(), 0.1 * 0.1 / 6.0, 0.3 * 0.1 * 0.1 / 6.0);
     EXPECT_LT(result.evaluations, (improve ? 5 : 3) * result.mesh.vertex_count());
   }
@@ -100,7 +104,8 @@ TEST(MarchingTriangles, SphereHasThePredictedCountSagAndGenus) {
 
 TEST(MarchingTriangles, TrianglesAreNearEquilateral) {
   for (double length : {0.3, 0.1, 0.037}) {
-    const TriangleQuality quality = triangle_quality(marching_triangles(sphere, with(length, {Vec3(0, 0, 1)})).mesh);
+    const TriangleQuality quality =
+        triangle_quality(marching_triangles(sphere, with(length, {Vec3(0, 0, 1)})).mesh);
     EXPECT_GE(quality.min_angle, 25.0) << length;
     EXPECT_GE(quality.mean_min_angle, 50.0) << length;
     EXPECT_GE(quality.mean_radius_ratio, 0.92) << length;
@@ -187,7 +192,8 @@ TEST(MarchingTriangles, SameInputSameBytes) {
   ASSERT_EQ(first.mesh.triangles, second.mesh.triangles);
   ASSERT_EQ(first.mesh.vertices.size(), second.mesh.vertices.size());
   EXPECT_EQ(std::memcmp(first.mesh.vertices.data(), second.mesh.vertices.data(),
-                        first.mesh.vertices.size() * sizeof(Vec3)), 0);
+                        first.mesh.vertices.size() * sizeof(Vec3)),
+            0);
 }
 
 TEST(MarchingTriangles, RefusesWhatCannotBeMeshed) {

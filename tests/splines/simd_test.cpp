@@ -92,7 +92,8 @@ TEST(Simd, GradientSumsAreRightToTheLastDigitsOnEveryUnit) {
     for (int j = 0; j < centres; ++j)
       b[k][static_cast<size_t>(j)] = std::cos(2.0 + j + 5 * k);
   }
-  for (const Vec3& p : {sites[7], Vec3(0.3, -0.2, 0.1), Vec3(4, 5, -6)})  // at a centre all that is radial is 0
+  for (const Vec3& p :
+       {sites[7], Vec3(0.3, -0.2, 0.1), Vec3(4, 5, -6)})  // at a centre all that is radial is 0
     for (int exponent : {1, 3, 5})
       for (bool dipoles : {false, true}) {
         if (exponent == 1 && dipoles) continue;
@@ -104,7 +105,8 @@ TEST(Simd, GradientSumsAreRightToTheLastDigitsOnEveryUnit) {
           const Radial radial = kernel.radial(h.squaredNorm());
           const Vec3 gradient = weights[at] * radial.g * h - radial.g * dipole - radial.s * dipole.dot(h) * h;
           exact[0] += weights[at] * radial.phi - radial.g * dipole.dot(h);
-          for (int k = 0; k < 3; ++k) exact[k + 1] += gradient[k];
+          for (int k = 0; k < 3; ++k)
+            exact[k + 1] += gradient[k];
           size += std::abs(radial.phi) + 6 * std::abs(radial.g) * (1 + h.norm());
         }
         for (const Functions* functions : all()) {
@@ -112,7 +114,8 @@ TEST(Simd, GradientSumsAreRightToTheLastDigitsOnEveryUnit) {
           functions->gradient_sum({c.x.data(), c.y.data(), c.z.data(), stride, weights.data(),
                                    dipoles ? b[0].data() : nullptr, b[1].data(), b[2].data(), exponent,
                                    kernel.sign(), p.x(), p.y(), p.z(), out});
-          for (int k = 0; k < 4; ++k) EXPECT_NEAR(out[k], exact[k], 2e-15 * size) << functions->name << ' ' << exponent;
+          for (int k = 0; k < 4; ++k)
+            EXPECT_NEAR(out[k], exact[k], 2e-15 * size) << functions->name << ' ' << exponent;
         }
       }
 }

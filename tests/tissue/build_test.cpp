@@ -44,7 +44,8 @@ const TissueInputs& measured_head() {
     l["gnathion"] = Vec3(0, -.0757, .1043);
     const std::vector<Vec3> normals = vertex_normals(in.skin);
     TriangleMesh shrunk = in.skin;
-    for (size_t v = 0; v < normals.size(); ++v) shrunk.vertices[v] -= 0.009 * normals[v];
+    for (size_t v = 0; v < normals.size(); ++v)
+      shrunk.vertices[v] -= 0.009 * normals[v];
     std::vector<bool> upper(shrunk.triangles.size()), lower(upper);
     for (size_t t = 0; t < upper.size(); ++t) {
       const Vec3 p = position(in.skin, {static_cast<int>(t), Vec3::Constant(1.0 / 3.0)});
@@ -122,7 +123,8 @@ TEST_F(Built, LipsArePartedAndTheJawTakesTheLowerOne) {
   sim::Face face(model, 3);
   std::vector<sim::Vec3f> x(level.rest.size());
   EXPECT_EQ(face.static_pose({}, {}, x).iterations, 0);
-  for (size_t i = 0; i < x.size(); ++i) EXPECT_EQ(x[i], level.rest[i]);
+  for (size_t i = 0; i < x.size(); ++i)
+    EXPECT_EQ(x[i], level.rest[i]);
   const sim::MinimiseResult open = face.static_pose({{}, {1.0F, 0, 0}, sim::Vec3::Zero()}, {}, x);
   EXPECT_LT(open.move, 1e-4) << "metres still wanted after " << open.iterations << " iterations";
   const rig::Binding& binding = skin_binding(low());
@@ -134,7 +136,8 @@ TEST_F(Built, LipsArePartedAndTheJawTakesTheLowerOne) {
     Vec3 sum = Vec3::Zero();
     for (size_t k = 0; k < binding.influences; ++k) {
       const uint32_t node = binding.nodes[best * binding.influences + k];
-      sum += static_cast<double>(binding.weights[best * binding.influences + k]) * (x[node] - level.rest[node]).cast<double>();
+      sum += static_cast<double>(binding.weights[best * binding.influences + k]) *
+             (x[node] - level.rest[node]).cast<double>();
     }
     return sum;
   };
@@ -171,7 +174,8 @@ TEST_F(Built, TheUpperLidTravelsTheSameOnBothSidesAndAtEveryLevel) {
     for (const uint32_t side : {0U, 1U}) {
       double most = 0.0;
       for (size_t k = 0; k < level.carrier_node.size(); ++k)
-        if (level.carrier_channel[k] == side) most = std::max(most, static_cast<double>(level.carrier_angle[k]));
+        if (level.carrier_channel[k] == side)
+          most = std::max(most, static_cast<double>(level.carrier_angle[k]));
       travel.push_back(most);
     }
   for (const double angle : travel) {

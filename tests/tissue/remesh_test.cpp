@@ -15,7 +15,8 @@ constexpr double half_slit = 0.025;
 /// A sheet of 100 x 80 mm with a slit along y = 0 whose two lips lie exactly upon each other.
 TriangleMesh slit_sheet(double cell) {
   TriangleMesh mesh;
-  const int across = static_cast<int>(std::lround(0.1 / cell)), half = static_cast<int>(std::lround(0.04 / cell));
+  const int across = static_cast<int>(std::lround(0.1 / cell)),
+            half = static_cast<int>(std::lround(0.04 / cell));
   const auto add_half = [&](double sign) {
     const int first = mesh.vertex_count();
     for (int j = 0; j <= half; ++j)
@@ -39,7 +40,9 @@ TriangleMesh slit_sheet(double cell) {
   const int upper = add_half(1.0), lower = add_half(-1.0);
   for (fascia::Triangle& t : mesh.triangles)  // sew the two halves outside of the slit
     for (int& v : t)
-      if (v >= lower && v <= lower + across && std::abs(mesh.vertices[static_cast<size_t>(v)].x()) >= half_slit) v = upper + v - lower;
+      if (v >= lower && v <= lower + across &&
+          std::abs(mesh.vertices[static_cast<size_t>(v)].x()) >= half_slit)
+        v = upper + v - lower;
   return mesh;
 }
 
@@ -64,7 +67,8 @@ TEST(Remesh, LipsThatTouchNeverJoin) {
   for (size_t v = 0; v < coarse.source.size(); ++v) {
     const fascia::Triangle& k = sheet.triangles[static_cast<size_t>(coarse.source[v].triangle)];
     double side = 0.0;
-    for (const int i : k) side += sheet.vertices[static_cast<size_t>(i)].y();
+    for (const int i : k)
+      side += sheet.vertices[static_cast<size_t>(i)].y();
     EXPECT_TRUE(std::abs(coarse.mesh.vertices[v].y()) < 0.001 || side * coarse.mesh.vertices[v].y() > 0.0);
   }
 }
@@ -72,13 +76,15 @@ TEST(Remesh, LipsThatTouchNeverJoin) {
 TEST(Remesh, EdgesHaveTheLengthAskedFor) {
   const TriangleMesh sheet = slit_sheet(0.002);
   std::vector<double> wanted(sheet.vertices.size());
-  for (size_t v = 0; v < wanted.size(); ++v) wanted[v] = 0.003 + 0.1 * std::abs(sheet.vertices[v].y());
+  for (size_t v = 0; v < wanted.size(); ++v)
+    wanted[v] = 0.003 + 0.1 * std::abs(sheet.vertices[v].y());
   const RemeshResult result = remesh(sheet, wanted);
   double worst = 0.0, mean = 0.0;
   int count = 0, poor = 0;
   for (const fascia::Triangle& t : result.mesh.triangles)
     for (size_t e = 0; e < 3; ++e) {
-      const Vec3 &a = result.mesh.vertices[static_cast<size_t>(t[e])], &b = result.mesh.vertices[static_cast<size_t>(t[(e + 1) % 3])];
+      const Vec3 &a = result.mesh.vertices[static_cast<size_t>(t[e])],
+                 &b = result.mesh.vertices[static_cast<size_t>(t[(e + 1) % 3])];
       const double ratio = (a - b).norm() / (0.003 + 0.05 * (std::abs(a.y()) + std::abs(b.y())));
       worst = std::max(worst, ratio);
       mean += ratio;
@@ -88,14 +94,16 @@ TEST(Remesh, EdgesHaveTheLengthAskedFor) {
   EXPECT_LT(worst, 1.6);
   EXPECT_NEAR(mean / count, 0.95, 0.15);
   EXPECT_LT(poor, count / 50);
-  for (const SurfacePoint& p : result.source) EXPECT_NEAR(p.barycentric.sum(), 1.0, 1e-9);
+  for (const SurfacePoint& p : result.source)
+    EXPECT_NEAR(p.barycentric.sum(), 1.0, 1e-9);
 }
 
 TEST(Remesh, ScaleMeetsTheWantedCount) {
   const TriangleMesh sheet = slit_sheet(0.002);
   std::vector<double> wanted(sheet.vertices.size(), 0.004);
   const double scale = edge_scale_for(sheet, wanted, 500);
-  for (double& w : wanted) w *= scale;
+  for (double& w : wanted)
+    w *= scale;
   EXPECT_NEAR(remesh(sheet, wanted).mesh.vertex_count(), 500, 100);
 }
 

@@ -9,7 +9,8 @@
 namespace fascia::tissue {
 namespace {
 
-/// A flat square of 40 mm whose inner vertices are shaken by a third of a cell; the lower edge stays straight.
+/// A flat square of 40 mm whose inner vertices are shaken by a third of a cell; the lower edge stays
+/// straight.
 TriangleMesh shaken_square(int cells, double shake) {
   TriangleMesh mesh;
   const double cell = 0.04 / cells;
@@ -22,7 +23,8 @@ TriangleMesh shaken_square(int cells, double shake) {
     for (int i = 0; i <= cells; ++i) {
       const bool inside = i > 0 && j > 0 && i < cells && j < cells;
       const double x = noise(), y = noise();
-      mesh.vertices.push_back(cell * Vec3(i + (inside ? shake * x : 0.0), j + (inside ? shake * y : 0.0), 0.0));
+      mesh.vertices.push_back(cell *
+                              Vec3(i + (inside ? shake * x : 0.0), j + (inside ? shake * y : 0.0), 0.0));
     }
   for (int j = 0; j < cells; ++j)
     for (int i = 0; i < cells; ++i) {
@@ -37,13 +39,15 @@ TEST(SurfaceDistance, FromALineItIsTheHeight) {
   for (const double shake : {0.0, 0.3}) {
     const TriangleMesh mesh = shaken_square(20, shake);
     std::vector<DistanceSeed> line;
-    for (int i = 0; i <= 20; ++i) line.push_back({i});
+    for (int i = 0; i <= 20; ++i)
+      line.push_back({i});
     const EdgeDistances d = surface_distances(mesh, line), along_edges = edge_distances(mesh, line);
     double excess = 0.0, edge_excess = 0.0;
     for (size_t v = 0; v < mesh.vertices.size(); ++v) {
       const double height = mesh.vertices[v].y();
       EXPECT_GE(d.distance[v], height - 1e-12);
-      EXPECT_NEAR(d.distance[v], height, shake > 0.0 ? 0.001 : 1e-12) << v;  // half a cell: past obtuse corners it goes along edges
+      EXPECT_NEAR(d.distance[v], height, shake > 0.0 ? 0.001 : 1e-12)
+          << v;  // half a cell: past obtuse corners it goes along edges
       excess += d.distance[v] - height;
       edge_excess += along_edges.distance[v] - height;
     }
@@ -69,7 +73,8 @@ TEST(SurfaceDistance, FromAPointItIsNearlyStraightAndNeverShorter) {
 TEST(SurfaceDistance, StopsAtItsRangeAndAtWhatIsNotAllowed) {
   const TriangleMesh mesh = shaken_square(20, 0.0);
   std::vector<bool> allowed(mesh.vertices.size(), true);
-  for (size_t v = 0; v < allowed.size(); ++v) allowed[v] = mesh.vertices[v].y() < 0.0101 || mesh.vertices[v].y() > 0.0159;
+  for (size_t v = 0; v < allowed.size(); ++v)
+    allowed[v] = mesh.vertices[v].y() < 0.0101 || mesh.vertices[v].y() > 0.0159;
   const EdgeDistances d = surface_distances(mesh, {{0}}, 0.02, allowed);
   for (size_t v = 0; v < mesh.vertices.size(); ++v) {
     if (mesh.vertices[v].y() > 0.0101 || mesh.vertices[v].norm() > 0.021) {
@@ -87,9 +92,11 @@ TEST(SurfaceSmoother, KeepsConstantsAndTheSumAndFlattensAWaveByItsClosedForm) {
   const SurfaceSmoother smoother(mesh, std::vector<double>(mesh.vertices.size(), length));
   const std::vector<double> areas = vertex_areas(mesh);
   std::vector<double> ones(mesh.vertices.size(), 3.0), cosine(ones.size());
-  for (size_t v = 0; v < cosine.size(); ++v) cosine[v] = std::cos(wave * mesh.vertices[v].x());
+  for (size_t v = 0; v < cosine.size(); ++v)
+    cosine[v] = std::cos(wave * mesh.vertices[v].x());
   double before = 0.0, after = 0.0;
-  for (size_t v = 0; v < areas.size(); ++v) before += areas[v] * cosine[v];
+  for (size_t v = 0; v < areas.size(); ++v)
+    before += areas[v] * cosine[v];
   smoother.smooth(ones);
   smoother.smooth(cosine);
   const double share = 1.0 / (1.0 + length * length * wave * wave);  // of (1 - length^2 Laplacian) u = cosine

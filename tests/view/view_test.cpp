@@ -45,7 +45,8 @@ TEST(Renderer, LeftOfTheSubjectIsRightInTheFrontView) {
   const Renderer renderer(64, 64);
   DrawList list;
   list.surfaces = {square(0, Vec3(0.8, 0.8, 0.8), 1)};
-  for (Vec3& p : list.surfaces[0].positions) p[0] = p[0] * 0.4 + 0.6;
+  for (Vec3& p : list.surfaces[0].positions)
+    p[0] = p[0] * 0.4 + 0.6;
   const Image image = renderer.draw(list, straight(), {0, 0, 0});
   EXPECT_GT(pixel(image, 40, 32)[0], 50);
   EXPECT_EQ(pixel(image, 24, 32)[0], 0);
@@ -69,7 +70,8 @@ TEST(Image, LabelsAndSheetsStayInside) {
   Image image(40, 20, {0, 0, 0});
   write_label(image, "smile", -10, 4, 2, {255, 255, 255});
   int lit = 0;
-  for (uint8_t value : image.pixels) lit += value == 255;
+  for (uint8_t value : image.pixels)
+    lit += value == 255;
   EXPECT_GT(lit, 30);
   const Image sheet = contact_sheet({{image, "a"}, {image, "b"}, {image, "c"}}, 2);
   EXPECT_GT(sheet.width, 80);

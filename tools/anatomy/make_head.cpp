@@ -1,5 +1,5 @@
-// make_head FIGURES_FOLDER DATA_FOLDER: shapes the generic head from the measured figures and writes head.obj and
-// head_regions.json (mm, the frame of the figures). The same figures give the same bytes.
+// make_head FIGURES_FOLDER DATA_FOLDER: shapes the generic head from the measured figures and writes head.obj
+// and head_regions.json (mm, the frame of the figures). The same figures give the same bytes.
 
 #include <cstdio>
 #include <exception>

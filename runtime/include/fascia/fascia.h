@@ -1,7 +1,7 @@
 /* Fascia's runtime: loads a face rig and simulates it. Plain C (C99), no other header needed.
  *
- * A rig file is a glTF binary (.glb) that carries the FASCIA extensions. Load it once as an asset, make a face of
- * it for each head in the scene, write channel values, let time pass, read vertex positions:
+ * A rig file is a glTF binary (.glb) that carries the FASCIA extensions. Load it once as an asset, make a
+ * face of it for each head in the scene, write channel values, let time pass, read vertex positions:
  *
  *     fascia_asset* asset = NULL;
  *     fascia_face* face = NULL;
@@ -12,15 +12,15 @@
  *     fascia_vectors positions = {.struct_size = sizeof positions};
  *     fascia_face_positions(face, 0, &positions);
  *
- * Threads. Assets and curves do not change after loading and may be used by any number of threads. A face may be used
- * by one thread at a time; different faces may be used in parallel. Pointers into a face stay valid until it is
- * released; what they point at changes with each pose or step.
+ * Threads. Assets and curves do not change after loading and may be used by any number of threads. A face may
+ * be used by one thread at a time; different faces may be used in parallel. Pointers into a face stay valid
+ * until it is released; what they point at changes with each pose or step.
  *
- * Errors. Functions that can fail return a fascia_result; the message of the last failure on this thread is kept.
- * Out parameters are written on success only. Nothing throws, nothing ends the program.
+ * Errors. Functions that can fail return a fascia_result; the message of the last failure on this thread is
+ * kept. Out parameters are written on success only. Nothing throws, nothing ends the program.
  *
- * Structures. Each begins with struct_size, which the caller sets to sizeof the structure; later versions grow at
- * the end only. Texts are UTF-8, end with 0, and belong to the asset or curves they came from.
+ * Structures. Each begins with struct_size, which the caller sets to sizeof the structure; later versions
+ * grow at the end only. Texts are UTF-8, end with 0, and belong to the asset or curves they came from.
  *
  * Units and axes. Metres and radians unless a space says otherwise. Left and right are the subject's.
  */
@@ -70,15 +70,17 @@ FASCIA_API uint32_t fascia_version(void);
 /* Name of a result, such as "FASCIA_ERROR_FORMAT". */
 FASCIA_API const char* fascia_result_name(fascia_result result);
 
-/* What went wrong last on this thread, as one sentence; "" when nothing has. Valid until the next call on this thread. */
+/* What went wrong last on this thread, as one sentence; "" when nothing has. Valid until the next call on
+ * this thread. */
 FASCIA_API const char* fascia_last_message(void);
 
-/* Called with each failure's message too, on the thread where it happens; NULL for none. Set it before other threads
- * use the library. */
+/* Called with each failure's message too, on the thread where it happens; NULL for none. Set it before other
+ * threads use the library. */
 typedef void (*fascia_log_function)(void* user, fascia_result result, const char* message);
 FASCIA_API void fascia_set_log(fascia_log_function function, void* user);
 
-/* --- Assets ------------------------------------------------------------------------------------------------------ */
+/* --- Assets
+ * ------------------------------------------------------------------------------------------------------ */
 
 /* Loads a rig from the `size` bytes of a .glb file; they are not needed afterwards. Every index, length and
  * fingerprint in the file is checked. */
@@ -89,12 +91,12 @@ FASCIA_API void fascia_asset_release(fascia_asset* asset);
 
 typedef struct fascia_asset_info {
   uint32_t struct_size;
-  uint32_t level_count;        /* levels of detail, coarse to fine */
-  uint32_t mesh_count;         /* primitives of the file that the rig moves */
+  uint32_t level_count; /* levels of detail, coarse to fine */
+  uint32_t mesh_count;  /* primitives of the file that the rig moves */
   uint32_t channel_count;
-  uint32_t set_count;          /* vocabularies: arkit, au, ... */
+  uint32_t set_count; /* vocabularies: arkit, au, ... */
   uint32_t muscle_count;
-  float input_to_metres[16];   /* column-major: from the file's axes and units to metres, +Y up, facing +Z */
+  float input_to_metres[16]; /* column-major: from the file's axes and units to metres, +Y up, facing +Z */
 } fascia_asset_info;
 FASCIA_API fascia_result fascia_asset_get_info(const fascia_asset* asset, fascia_asset_info* info);
 
@@ -103,18 +105,20 @@ typedef struct fascia_level_info {
   uint32_t node_count, spring_count, fibre_count;
   const char* name; /* low, medium or high */
 } fascia_level_info;
-FASCIA_API fascia_result fascia_asset_get_level(const fascia_asset* asset, uint32_t level, fascia_level_info* info);
+FASCIA_API fascia_result fascia_asset_get_level(const fascia_asset* asset, uint32_t level,
+                                                fascia_level_info* info);
 
 typedef struct fascia_mesh_info {
   uint32_t struct_size;
-  uint32_t mesh, primitive;     /* where it is in the glTF file */
+  uint32_t mesh, primitive; /* where it is in the glTF file */
   uint32_t vertex_count, triangle_count;
   uint32_t reserved;
-  const char* name;             /* of the mesh in the file */
-  const char* part;             /* skin, eye_left, teeth_lower, ... */
-  const uint32_t* triangles;    /* triangle_count * 3 vertex indices */
+  const char* name;          /* of the mesh in the file */
+  const char* part;          /* skin, eye_left, teeth_lower, ... */
+  const uint32_t* triangles; /* triangle_count * 3 vertex indices */
 } fascia_mesh_info;
-FASCIA_API fascia_result fascia_asset_get_mesh(const fascia_asset* asset, uint32_t mesh, fascia_mesh_info* info);
+FASCIA_API fascia_result fascia_asset_get_mesh(const fascia_asset* asset, uint32_t mesh,
+                                               fascia_mesh_info* info);
 
 /* The channels, as arrays of channel_count elements. */
 typedef struct fascia_channels {
@@ -140,8 +144,8 @@ FASCIA_API fascia_result fascia_asset_get_set(const fascia_asset* asset, uint32_
 /* Index of a channel by name, case-insensitive; -1 when there is none. */
 FASCIA_API int32_t fascia_asset_find_channel(const fascia_asset* asset, const char* name);
 
-/* A surface of the anatomy at rest, in metres: "cranium", "mandible", "teeth_upper", "teeth_lower" or "smas". Of no
- * vertices when the rig has none; FASCIA_ERROR_NAME for any other name. For display. */
+/* A surface of the anatomy at rest, in metres: "cranium", "mandible", "teeth_upper", "teeth_lower" or "smas".
+ * Of no vertices when the rig has none; FASCIA_ERROR_NAME for any other name. For display. */
 typedef struct fascia_surface {
   uint32_t struct_size;
   uint32_t vertex_count, triangle_count;
@@ -149,22 +153,25 @@ typedef struct fascia_surface {
   const float* positions;    /* vertex_count * 3 */
   const uint32_t* triangles; /* triangle_count * 3 */
 } fascia_surface;
-FASCIA_API fascia_result fascia_asset_surface(const fascia_asset* asset, const char* name, fascia_surface* surface);
+FASCIA_API fascia_result fascia_asset_surface(const fascia_asset* asset, const char* name,
+                                              fascia_surface* surface);
 
-/* The muscle fibres of a level of detail as polylines at rest, in metres: fibre f has the points offsets[f] ..
- * offsets[f+1]. For display. */
+/* The muscle fibres of a level of detail as polylines at rest, in metres: fibre f has the points offsets[f]
+ * .. offsets[f+1]. For display. */
 typedef struct fascia_fibres {
   uint32_t struct_size;
   uint32_t fibre_count, point_count;
   uint32_t reserved;
-  const uint32_t* offsets;             /* fibre_count + 1 */
-  const uint32_t* channels;            /* fibre_count: the channel that contracts each */
-  const char* const* muscles;          /* fibre_count: the name of each fibre's muscle */
-  const float* points;                 /* point_count * 3 */
+  const uint32_t* offsets;    /* fibre_count + 1 */
+  const uint32_t* channels;   /* fibre_count: the channel that contracts each */
+  const char* const* muscles; /* fibre_count: the name of each fibre's muscle */
+  const float* points;        /* point_count * 3 */
 } fascia_fibres;
-FASCIA_API fascia_result fascia_asset_fibres(const fascia_asset* asset, uint32_t level, fascia_fibres* fibres);
+FASCIA_API fascia_result fascia_asset_fibres(const fascia_asset* asset, uint32_t level,
+                                             fascia_fibres* fibres);
 
-/* --- Faces ------------------------------------------------------------------------------------------------------- */
+/* --- Faces
+ * ------------------------------------------------------------------------------------------------------- */
 
 typedef enum fascia_space {
   FASCIA_SPACE_MESH = 0,   /* as the POSITION attribute in the file: what an engine puts in its place */
@@ -175,18 +182,20 @@ typedef enum fascia_space {
 
 typedef enum fascia_solver {
   FASCIA_SOLVER_OWN = 0,
-  FASCIA_SOLVER_BULLET = 1,    /* needs the module libfascia_bullet beside this library or on the loader's path */
-  FASCIA_SOLVER_REFERENCE = 2, /* the own one in double precision, every step converged: slow, to compare with */
+  FASCIA_SOLVER_BULLET =
+      1, /* needs the module libfascia_bullet beside this library or on the loader's path */
+  FASCIA_SOLVER_REFERENCE =
+      2, /* the own one in double precision, every step converged: slow, to compare with */
   FASCIA_SOLVER_32 = 0x7fffffff
 } fascia_solver;
 
 typedef struct fascia_face_options {
   uint32_t struct_size;
-  fascia_space space;   /* of positions and normals */
+  fascia_space space; /* of positions and normals */
   fascia_solver solver;
-  int32_t level;        /* level of detail; -1 the finest */
-  int32_t iterations;   /* of the own solver in each 1/120 s: 0 as it thinks best (2); 1 for crowds, up to 32 to come
-                           nearer to the exact motion */
+  int32_t level;      /* level of detail; -1 the finest */
+  int32_t iterations; /* of the own solver in each 1/120 s: 0 as it thinks best (2); 1 for crowds, up to 32 to
+                         come nearer to the exact motion */
 } fascia_face_options;
 
 /* The options a face has when it is made with NULL: mesh space, own solver, finest level. */
@@ -197,12 +206,13 @@ FASCIA_API fascia_result fascia_face_create(fascia_asset* asset, const fascia_fa
                                             fascia_face** face);
 FASCIA_API void fascia_face_release(fascia_face* face);
 
-/* The face's own channel values, channel_count floats to read and write freely; clamped to their range when used. */
+/* The face's own channel values, channel_count floats to read and write freely; clamped to their range when
+ * used. */
 FASCIA_API float* fascia_face_values(fascia_face* face);
 
-/* Sets a value by name, case-insensitive: a channel, "set:member" such as "arkit:jawOpen" or "au:12", or a member's
- * bare name when no channel and no earlier set has it. A member's value stays until it is set again, and adds to the
- * channels it maps onto. */
+/* Sets a value by name, case-insensitive: a channel, "set:member" such as "arkit:jawOpen" or "au:12", or a
+ * member's bare name when no channel and no earlier set has it. A member's value stays until it is set again,
+ * and adds to the channels it maps onto. */
 FASCIA_API fascia_result fascia_face_set(fascia_face* face, const char* name, float value);
 
 /* The value last set by that name. */
@@ -211,23 +221,25 @@ FASCIA_API fascia_result fascia_face_get(const fascia_face* face, const char* na
 /* Puts every channel to its rest value and every member to 0. */
 FASCIA_API fascia_result fascia_face_clear(fascia_face* face);
 
-/* What the last pose or step used: own values, members and curves added up and clamped. channel_count floats. */
+/* What the last pose or step used: own values, members and curves added up and clamped. channel_count floats.
+ */
 FASCIA_API const float* fascia_face_effective_values(const fascia_face* face);
 
-/* The pose in which all forces of the present values balance; time then goes on from it without velocity. Curves
- * applied since the last pose or step are used up. */
+/* The pose in which all forces of the present values balance; time then goes on from it without velocity.
+ * Curves applied since the last pose or step are used up. */
 FASCIA_API fascia_result fascia_face_pose(fascia_face* face);
 
 /* Lets `seconds` (0 to 1) pass. Any frame rate gives nearly the same motion; a very long frame loses time.
  * The jaw takes 0.12 s from shut to wide open at least, whatever its channels do.
- * FASCIA_ERROR_DIVERGED says that the simulation became unsound and the face stands at its bones again: it may be
- * stepped on. Curves applied since the last pose or step are used up. */
+ * FASCIA_ERROR_DIVERGED says that the simulation became unsound and the face stands at its bones again: it
+ * may be stepped on. Curves applied since the last pose or step are used up. */
 FASCIA_API fascia_result fascia_face_step(fascia_face* face, float seconds);
 
-/* The host's own tasks, for functions that can share their work among threads. `begin` starts or queues a task that calls
- * `run(first, end, context)` for ranges that together cover 0 .. count once each, none shorter than `least` but the last,
- * on any threads at any time; it returns what `finish` needs to wait for the task, or NULL when all was run already. `finish`
- * returns when every range was run. Nothing depends on how the ranges are cut. `user` is handed to both. */
+/* The host's own tasks, for functions that can share their work among threads. `begin` starts or queues a
+ * task that calls `run(first, end, context)` for ranges that together cover 0 .. count once each, none
+ * shorter than `least` but the last, on any threads at any time; it returns what `finish` needs to wait for
+ * the task, or NULL when all was run already. `finish` returns when every range was run. Nothing depends on
+ * how the ranges are cut. `user` is handed to both. */
 typedef void (*fascia_task_range)(uint32_t first, uint32_t end, void* context);
 typedef struct fascia_tasks {
   uint32_t struct_size;
@@ -237,26 +249,31 @@ typedef struct fascia_tasks {
   void* user;
 } fascia_tasks;
 
-/* Lets `seconds` (0 to 1) pass for many faces at once: each as fascia_face_step, with the same result to the last bit,
- * through the host's tasks, or one after the other on this thread when `tasks` is NULL. The faces may be of different assets; none
- * may be listed twice or used elsewhere until this returns. FASCIA_ERROR_DIVERGED when any face was put back. */
+/* Lets `seconds` (0 to 1) pass for many faces at once: each as fascia_face_step, with the same result to the
+ * last bit, through the host's tasks, or one after the other on this thread when `tasks` is NULL. The faces
+ * may be of different assets; none may be listed twice or used elsewhere until this returns.
+ * FASCIA_ERROR_DIVERGED when any face was put back. */
 FASCIA_API fascia_result fascia_faces_step(fascia_face* const* faces, uint32_t count, float seconds,
                                            const fascia_tasks* tasks);
 
 /* Takes all motion out and stands the face at rest under its present jaw: after a cut or a teleport. */
 FASCIA_API fascia_result fascia_face_reset(fascia_face* face);
 
-/* Acceleration that loose tissue feels in the head's frame, m/s^2 in the rig's axes: minus the head's own, say. NULL
- * for none. Kept until it is set again. */
+/* Acceleration that loose tissue feels in the head's frame, m/s^2 in the rig's axes: minus the head's own,
+ * say. NULL for none. Kept until it is set again. */
 FASCIA_API fascia_result fascia_face_set_acceleration(fascia_face* face, const float* acceleration);
 
-/* Tells where the head stands in the world: a rigid transform in metres, 4 x 4, column-major, from the head's frame. The
- * next step makes loose tissue lag behind its acceleration, times `inertia_scale` (1 is physical, 0 none). A jump of more
- * than half a metre in one step counts as a teleport and moves nothing. Called before each step while the head moves. */
-FASCIA_API fascia_result fascia_face_move_head(fascia_face* face, const float matrix[16], float inertia_scale);
+/* Tells where the head stands in the world: a rigid transform in metres, 4 x 4, column-major, from the head's
+ * frame. The next step makes loose tissue lag behind its acceleration, times `inertia_scale` (1 is physical,
+ * 0 none). A jump of more than half a metre in one step counts as a teleport and moves nothing. Called before
+ * each step while the head moves. */
+FASCIA_API fascia_result fascia_face_move_head(fascia_face* face, const float matrix[16],
+                                               float inertia_scale);
 
-/* Presses on a vertex of a mesh with a force in newtons, in the rig's axes, until all touches are cleared. At most 64. */
-FASCIA_API fascia_result fascia_face_touch(fascia_face* face, uint32_t mesh, uint32_t vertex, const float force[3]);
+/* Presses on a vertex of a mesh with a force in newtons, in the rig's axes, until all touches are cleared. At
+ * most 64. */
+FASCIA_API fascia_result fascia_face_touch(fascia_face* face, uint32_t mesh, uint32_t vertex,
+                                           const float force[3]);
 FASCIA_API fascia_result fascia_face_clear_touches(fascia_face* face);
 
 /* A list of three-component vectors in the face's memory. */
@@ -271,19 +288,20 @@ typedef struct fascia_vectors {
 /* Vertex positions of a mesh (see fascia_asset_get_mesh) in the face's space, in the file's vertex order. */
 FASCIA_API fascia_result fascia_face_positions(fascia_face* face, uint32_t mesh, fascia_vectors* positions);
 
-/* Unit vertex normals of a mesh in the face's space: the file's own, turned as the surface turns; smooth ones when
- * the file has none. Computed when asked for. */
+/* Unit vertex normals of a mesh in the face's space: the file's own, turned as the surface turns; smooth ones
+ * when the file has none. Computed when asked for. */
 FASCIA_API fascia_result fascia_face_normals(fascia_face* face, uint32_t mesh, fascia_vectors* normals);
 
-/* How the skin is compressed at each vertex of a mesh, for wrinkle shaders: the direction of the strongest compression at
- * rest, in the rig's axes, times its share (0.2: one fifth shorter). Zero where nothing is compressed and on other parts.
- * Its sign means nothing; wrinkles run across it. Computed when asked for. */
-FASCIA_API fascia_result fascia_face_compression(fascia_face* face, uint32_t mesh, fascia_vectors* compression);
+/* How the skin is compressed at each vertex of a mesh, for wrinkle shaders: the direction of the strongest
+ * compression at rest, in the rig's axes, times its share (0.2: one fifth shorter). Zero where nothing is
+ * compressed and on other parts. Its sign means nothing; wrinkles run across it. Computed when asked for. */
+FASCIA_API fascia_result fascia_face_compression(fascia_face* face, uint32_t mesh,
+                                                 fascia_vectors* compression);
 
-/* Copies positions to memory of the host's: 3 floats each `stride` bytes (12 or more). FASCIA_ERROR_ARGUMENT when
- * `capacity` vertices are too few. */
-FASCIA_API fascia_result fascia_face_write_positions(fascia_face* face, uint32_t mesh, void* to, size_t stride,
-                                                     size_t capacity);
+/* Copies positions to memory of the host's: 3 floats each `stride` bytes (12 or more). FASCIA_ERROR_ARGUMENT
+ * when `capacity` vertices are too few. */
+FASCIA_API fascia_result fascia_face_write_positions(fascia_face* face, uint32_t mesh, void* to,
+                                                     size_t stride, size_t capacity);
 
 /* Points of the level's fibres (see fascia_asset_fibres) as they stand now, in metres. */
 FASCIA_API fascia_result fascia_face_fibre_points(fascia_face* face, fascia_vectors* points);
@@ -291,14 +309,15 @@ FASCIA_API fascia_result fascia_face_fibre_points(fascia_face* face, fascia_vect
 /* Where the mandible stands: a rigid transform in metres, 4 x 4, column-major. */
 FASCIA_API fascia_result fascia_face_jaw(const fascia_face* face, float matrix[16]);
 
-/* --- Curves ------------------------------------------------------------------------------------------------------ */
+/* --- Curves
+ * ------------------------------------------------------------------------------------------------------ */
 
 /* Loads named values over time from the bytes of a file, whose kind is found from its content:
  *   CSV with a `time` column in seconds and one column a name;
- *   Live Link Face CSV (Timecode, BlendShapeCount, EyeBlinkLeft, ...), read by its header, 60 frames a second;
- *   JSON {"fps": 60, "channels": {NAME: [...]}} or {NAME: {"times": [...], "values": [...], "interpolation":
- *   "linear" | "step" | "cubic"}};
- *   glTF binary whose animations point at FASCIA_actuation channels (KHR_animation_pointer). */
+ *   Live Link Face CSV (Timecode, BlendShapeCount, EyeBlinkLeft, ...), read by its header, 60 frames a
+ * second; JSON {"fps": 60, "channels": {NAME: [...]}} or {NAME: {"times": [...], "values": [...],
+ * "interpolation": "linear" | "step" | "cubic"}}; glTF binary whose animations point at FASCIA_actuation
+ * channels (KHR_animation_pointer). */
 FASCIA_API fascia_result fascia_curves_load(const void* bytes, size_t size, fascia_curves** curves);
 FASCIA_API void fascia_curves_release(fascia_curves* curves);
 
@@ -310,14 +329,14 @@ typedef struct fascia_curves_info {
 } fascia_curves_info;
 FASCIA_API fascia_result fascia_curves_get_info(const fascia_curves* curves, fascia_curves_info* info);
 
-/* How many of the curves the asset has a channel or member for; matched[i] is 1 for those, else 0. `matched` (count
- * elements) may be NULL. */
-FASCIA_API fascia_result fascia_curves_match(const fascia_curves* curves, const fascia_asset* asset, uint32_t* count,
-                                             uint8_t* matched);
+/* How many of the curves the asset has a channel or member for; matched[i] is 1 for those, else 0. `matched`
+ * (count elements) may be NULL. */
+FASCIA_API fascia_result fascia_curves_match(const fascia_curves* curves, const fascia_asset* asset,
+                                             uint32_t* count, uint8_t* matched);
 
-/* Adds the curves' values at `seconds`, times `weight`, to what the face's next pose or step uses. Several curves may
- * be applied to one frame: they add up, and the sum is clamped to each channel's range. Before the first key and
- * after the last their values hold. Curves the rig has no name for are left out. */
+/* Adds the curves' values at `seconds`, times `weight`, to what the face's next pose or step uses. Several
+ * curves may be applied to one frame: they add up, and the sum is clamped to each channel's range. Before the
+ * first key and after the last their values hold. Curves the rig has no name for are left out. */
 FASCIA_API fascia_result fascia_curves_apply(const fascia_curves* curves, double seconds, float weight,
                                              fascia_face* face);
 

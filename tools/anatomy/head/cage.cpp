@@ -1,9 +1,9 @@
 #include "tools/anatomy/head/layout.h"
 
-// The layout of the left half. Rings run around the eye (E), the nostril (O), the ear (A) and the mouth: M just outside
-// the vermilion, N inside the nasolabial fold, Q outside it, K from the infraorbital cheek along the jaw, W the oval
-// of the face. H is the row above the brow, C the rows over the cranium (row, column from the midline), Z their
-// lateral ends around the ear, V the rows of the neck.
+// The layout of the left half. Rings run around the eye (E), the nostril (O), the ear (A) and the mouth: M
+// just outside the vermilion, N inside the nasolabial fold, Q outside it, K from the infraorbital cheek along
+// the jaw, W the oval of the face. H is the row above the brow, C the rows over the cranium (row, column from
+// the midline), Z their lateral ends around the ear, V the rows of the neck.
 
 namespace fascia::head_maker {
 
@@ -153,15 +153,14 @@ std::vector<CagePatch> cage_patches() {
       {{"Z3", "A3", "A4", "Z4"}, "scalp"},
       {{"Z4", "A4", "A5", "Z5"}, "scalp"},
   };
-  const std::vector<std::vector<std::string>> rows = {{"H0", "H1", "H2", "H3", "Z0"},
-                                                      {"C10", "C11", "C12", "C13", "Z1"},
-                                                      {"C20", "C21", "C22", "C23", "Z2"},
-                                                      {"C30", "C31", "C32", "C33", "Z3"},
-                                                      {"C40", "C41", "C42", "C43", "Z4"},
-                                                      {"C50", "C51", "C52", "C53", "Z5"}};
+  const std::vector<std::vector<std::string>> rows = {
+      {"H0", "H1", "H2", "H3", "Z0"},     {"C10", "C11", "C12", "C13", "Z1"},
+      {"C20", "C21", "C22", "C23", "Z2"}, {"C30", "C31", "C32", "C33", "Z3"},
+      {"C40", "C41", "C42", "C43", "Z4"}, {"C50", "C51", "C52", "C53", "Z5"}};
   for (std::size_t r = 0; r + 1 < rows.size(); ++r)
     for (int c = 0; c < 4; ++c)
-      patches.push_back({{rows[r][c], rows[r][c + 1], rows[r + 1][c + 1], rows[r + 1][c]}, r == 0 ? "forehead" : "scalp"});
+      patches.push_back(
+          {{rows[r][c], rows[r][c + 1], rows[r + 1][c + 1], rows[r + 1][c]}, r == 0 ? "forehead" : "scalp"});
   const std::vector<std::string> above = {"Wm", "Wd", "Wc", "A6", "A5", "Z5", "C53", "C52", "C51", "C50"};
   for (int k = 0; k < 9; ++k) {
     const std::string v = numbered('V', k), next_v = numbered('V', k + 1);

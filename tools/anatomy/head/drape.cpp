@@ -10,7 +10,8 @@ std::vector<Vec3> half_normals(const HalfHead& head) {
   for (const Quad& q : head.quads) {
     const auto& v = head.vertices;
     const Vec3 n = (v[q[2]] - v[q[0]]).cross(v[q[3]] - v[q[1]]);
-    for (int i : q) normals[i] += n;
+    for (int i : q)
+      normals[i] += n;
   }
   for (std::size_t i = 0; i < normals.size(); ++i) {
     if (head.midline[i]) normals[i].x() = 0.0;
@@ -22,7 +23,9 @@ std::vector<Vec3> half_normals(const HalfHead& head) {
 namespace {
 
 /// The plane the neck ends in: lower in front than behind.
-double neck_end_height(double z) { return -109.0 - 0.20 * z; }
+double neck_end_height(double z) {
+  return -109.0 - 0.20 * z;
+}
 
 std::vector<std::set<int>> neighbours_of(const HalfHead& head) {
   std::vector<std::set<int>> out(head.vertices.size());
@@ -36,10 +39,12 @@ std::vector<std::set<int>> neighbours_of(const HalfHead& head) {
 
 }  // namespace
 
-void drape(const SkinSurface& surface, const std::vector<char>& fixed, HalfHead& head, const DrapeOptions& options) {
+void drape(const SkinSurface& surface, const std::vector<char>& fixed, HalfHead& head,
+           const DrapeOptions& options) {
   const auto neighbours = neighbours_of(head);
   std::vector<char> at_neck_end(head.vertices.size(), 0);
-  for (int v : head.loops.at("neck_end")) at_neck_end[v] = 1;
+  for (int v : head.loops.at("neck_end"))
+    at_neck_end[v] = 1;
   const auto settle = [&](int v, const Vec3& point, const Vec3& normal) {
     Vec3 p = point;
     for (int round = 0; round < (at_neck_end[v] ? 3 : 1); ++round) {
@@ -64,7 +69,8 @@ void drape(const SkinSurface& surface, const std::vector<char>& fixed, HalfHead&
       double weight = 0.0;
       for (int n : neighbours[v]) {
         // A neighbour off the midline has its mirror image on the other side.
-        const double w = stiffness(static_cast<int>(v), n) * (head.midline[v] && !head.midline[n] ? 2.0 : 1.0);
+        const double w =
+            stiffness(static_cast<int>(v), n) * (head.midline[v] && !head.midline[n] ? 2.0 : 1.0);
         if (at_neck_end[v] && !at_neck_end[n]) continue;
         mean += w * old[n];
         weight += w;

@@ -13,20 +13,23 @@ double Profile::at(const std::string& name) const {
   const auto mark = marks.find(name);
   if (mark == marks.end()) throw Error("head_profiles.csv: a profile has no point named " + name);
   double s = 0.0;
-  for (int i = 1; i <= mark->second; ++i) s += (points[i] - points[i - 1]).norm();
+  for (int i = 1; i <= mark->second; ++i)
+    s += (points[i] - points[i - 1]).norm();
   return s;
 }
 
 double Profile::length() const {
   double s = 0.0;
-  for (std::size_t i = 1; i < points.size(); ++i) s += (points[i] - points[i - 1]).norm();
+  for (std::size_t i = 1; i < points.size(); ++i)
+    s += (points[i] - points[i - 1]).norm();
   return s;
 }
 
 Vec3 Profile::point(double s) const {
   for (std::size_t i = 1; i < points.size(); ++i) {
     const double step = (points[i] - points[i - 1]).norm();
-    if (s <= step && step > 0.0) return points[i - 1] + (points[i] - points[i - 1]) * (std::max(s, 0.0) / step);
+    if (s <= step && step > 0.0)
+      return points[i - 1] + (points[i] - points[i - 1]) * (std::max(s, 0.0) / step);
     s -= step;
   }
   return points.back();
@@ -47,7 +50,8 @@ std::vector<std::vector<std::string>> read_csv(const std::string& path) {
     }
     std::vector<std::string> row;
     std::istringstream cells(line);
-    for (std::string cell; std::getline(cells, cell, ',');) row.push_back(cell);
+    for (std::string cell; std::getline(cells, cell, ',');)
+      row.push_back(cell);
     rows.push_back(std::move(row));
   }
   return rows;
@@ -57,7 +61,9 @@ Vec3 vector_of(const std::vector<std::string>& row, int first) {
   return {std::stod(row[first]), std::stod(row[first + 1]), std::stod(row[first + 2])};
 }
 
-Vec3 vector_of(const nlohmann::json& json) { return {json[0].get<double>(), json[1].get<double>(), json[2].get<double>()}; }
+Vec3 vector_of(const nlohmann::json& json) {
+  return {json[0].get<double>(), json[1].get<double>(), json[2].get<double>()};
+}
 
 }  // namespace
 
@@ -67,7 +73,8 @@ Figures read_figures(const std::string& folder) {
     auto& fan = out.fans[row[0]];
     const std::size_t index = std::stoul(row[1]);
     if (fan.size() <= index) fan.resize(index + 1);
-    if (row.size() > 5 && !row[5].empty()) fan[index].marks[row[5]] = static_cast<int>(fan[index].points.size());
+    if (row.size() > 5 && !row[5].empty())
+      fan[index].marks[row[5]] = static_cast<int>(fan[index].points.size());
     fan[index].points.push_back(vector_of(row, 2));
   }
   for (const auto& row : read_csv(folder + "/head_sections.csv")) {
@@ -81,12 +88,14 @@ Figures read_figures(const std::string& folder) {
   std::ifstream file(folder + "/head_figures.json");
   if (!file) throw Error(folder + "/head_figures.json: cannot be read");
   const auto json = nlohmann::json::parse(file);
-  for (const auto& [name, point] : json.at("landmarks").items()) out.landmarks[name] = vector_of(point);
+  for (const auto& [name, point] : json.at("landmarks").items())
+    out.landmarks[name] = vector_of(point);
   out.eye_centre = vector_of(json.at("eyeball").at("centre_left"));
   out.eye_radius = json.at("eyeball").at("radius");
   out.cornea_front = json.at("eyeball").at("cornea_front");
   for (const auto& slice : json.at("mouth_slices_z_halfwidth_bottom_top"))
-    out.mouth_slices.emplace_back(slice[0].get<double>(), slice[1].get<double>(), slice[2].get<double>(), slice[3].get<double>());
+    out.mouth_slices.emplace_back(slice[0].get<double>(), slice[1].get<double>(), slice[2].get<double>(),
+                                  slice[3].get<double>());
   return out;
 }
 

@@ -24,7 +24,8 @@ namespace {
 
 std::string right_name(const std::string& name) {
   const std::string left = "_left";
-  if (name.size() > left.size() && name.ends_with(left)) return name.substr(0, name.size() - left.size()) + "_right";
+  if (name.size() > left.size() && name.ends_with(left))
+    return name.substr(0, name.size() - left.size()) + "_right";
   return name;
 }
 
@@ -54,18 +55,21 @@ PolygonMesh mirrored(const HalfHead& half, const std::vector<std::array<Vec2, 4>
   for (std::size_t f = 0; f < half.quads.size(); ++f) {
     out.faces.push_back(polygon(half.quads[f]));
     std::vector<int> corners;
-    for (std::size_t k = 0; k < out.faces.back().size(); ++k) corners.push_back(chart_index(uv[f][k].x(), uv[f][k].y()));
+    for (std::size_t k = 0; k < out.faces.back().size(); ++k)
+      corners.push_back(chart_index(uv[f][k].x(), uv[f][k].y()));
     out.face_uv.push_back(corners);
     out.region.push_back(half.region[f]);
   }
   for (std::size_t f = 0; f < half.quads.size(); ++f) {
     std::vector<int> face = polygon(half.quads[f]);
-    for (int& v : face) v = twin[v];
+    for (int& v : face)
+      v = twin[v];
     // Reversed from the second corner on, so that both sides are split into triangles alike.
     std::reverse(face.begin() + 1, face.end());
     out.faces.push_back(face);
     std::vector<int> corners;
-    for (std::size_t j = face.size(), k = 0; j > 0; --j, k = j) corners.push_back(chart_index(1.0 - uv[f][k].x(), uv[f][k].y()));
+    for (std::size_t j = face.size(), k = 0; j > 0; --j, k = j)
+      corners.push_back(chart_index(1.0 - uv[f][k].x(), uv[f][k].y()));
     out.face_uv.push_back(corners);
     out.region.push_back(right_name(half.region[f]));
   }
@@ -73,13 +77,15 @@ PolygonMesh mirrored(const HalfHead& half, const std::vector<std::array<Vec2, 4>
     if (name.size() == 1) continue;
     if (half.midline[loop.front()] && half.midline[loop.back()]) {
       std::vector<int> whole = loop;
-      for (std::size_t k = loop.size() - 1; k-- > 1;) whole.push_back(twin[loop[k]]);
+      for (std::size_t k = loop.size() - 1; k-- > 1;)
+        whole.push_back(twin[loop[k]]);
       out.loops[name] = whole;
       continue;
     }
     out.loops[name + "_left"] = loop;
     std::vector<int> right;
-    for (int v : loop) right.push_back(twin[v]);
+    for (int v : loop)
+      right.push_back(twin[v]);
     out.loops[name + "_right"] = right;
   }
   return out;
@@ -90,11 +96,14 @@ PolygonMesh make_eyeball(const Figures& figures, bool left) {
   out.name = left ? "eye_left" : "eye_right";
   constexpr int kAround = 16;
   const double radius = figures.eye_radius;
-  const Vec3 centre(left ? figures.eye_centre.x() : -figures.eye_centre.x(), figures.eye_centre.y(), figures.eye_centre.z());
-  // Visible iris 12 mm wide (Forrester et al., The Eye, chapter 1), pupil 4 mm; the cornea rises above the sphere.
+  const Vec3 centre(left ? figures.eye_centre.x() : -figures.eye_centre.x(), figures.eye_centre.y(),
+                    figures.eye_centre.z());
+  // Visible iris 12 mm wide (Forrester et al., The Eye, chapter 1), pupil 4 mm; the cornea rises above the
+  // sphere.
   const double limbus = std::asin(6.0 / radius), pupil = std::asin(2.0 / radius);
   const double bulge = figures.cornea_front - (figures.eye_centre.z() + radius);
-  const double angles[] = {0.5 * pupil, pupil, 0.5 * (pupil + limbus), limbus, 0.62, 0.85, 1.15, 1.5, 1.9, 2.3, 2.7};
+  const double angles[] = {0.5 * pupil, pupil, 0.5 * (pupil + limbus), limbus, 0.62, 0.85, 1.15, 1.5, 1.9,
+                           2.3,         2.7};
   const auto place = [&](double a, double turn) {
     const double lift = a < limbus ? bulge * std::pow(std::cos(0.5 * std::numbers::pi * a / limbus), 2) : 0.0;
     const double r = radius + lift;
@@ -127,7 +136,8 @@ PolygonMesh make_eyeball(const Figures& figures, bool left) {
   };
   for (double a : angles) {
     std::vector<int> ring;
-    for (int k = 0; k < kAround; ++k) ring.push_back(add(a, turn_of(k)));
+    for (int k = 0; k < kAround; ++k)
+      ring.push_back(add(a, turn_of(k)));
     const std::string region = a <= pupil + 1e-9 ? "pupil" : a <= limbus + 1e-9 ? "iris" : "sclera";
     for (int k = 0; k < kAround; ++k) {
       const int next = (k + 1) % kAround;

@@ -31,7 +31,8 @@ class Refiner {
  public:
   Refiner(const std::map<char, std::vector<Vec3>>& openings, HalfHead& head, std::vector<char>& fixed)
       : head_(head), fixed_(fixed) {
-    for (const auto& [letter, points] : openings) add_opening(letter, points);
+    for (const auto& [letter, points] : openings)
+      add_opening(letter, points);
     for (const CageNode& node : cage_nodes()) {
       node_[node.name] = add(node.guess, node.guess.x() == 0.0, node.anchored ? 1 : 0);
     }
@@ -39,15 +40,21 @@ class Refiner {
 
   void add_patch(const CagePatch& patch) {
     const auto& c = patch.corners;
-    const std::vector<int> bottom = edge(c[0], c[1]), right = edge(c[1], c[2]), top = edge(c[3], c[2]), left = edge(c[0], c[3]);
+    const std::vector<int> bottom = edge(c[0], c[1]), right = edge(c[1], c[2]), top = edge(c[3], c[2]),
+                           left = edge(c[0], c[3]);
     int grid[kSplit + 1][kSplit + 1];
     for (int i = 0; i <= kSplit; ++i)
       for (int j = 0; j <= kSplit; ++j) {
-        if (j == 0) grid[i][j] = bottom[i];
-        else if (j == kSplit) grid[i][j] = top[i];
-        else if (i == 0) grid[i][j] = left[j];
-        else if (i == kSplit) grid[i][j] = right[j];
-        else grid[i][j] = add(coons(bottom, right, top, left, i, j), false, 0);
+        if (j == 0)
+          grid[i][j] = bottom[i];
+        else if (j == kSplit)
+          grid[i][j] = top[i];
+        else if (i == 0)
+          grid[i][j] = left[j];
+        else if (i == kSplit)
+          grid[i][j] = right[j];
+        else
+          grid[i][j] = add(coons(bottom, right, top, left, i, j), false, 0);
       }
     for (int i = 0; i < kSplit; ++i)
       for (int j = 0; j < kSplit; ++j)
@@ -98,7 +105,8 @@ class Refiner {
       const std::string from = numbered(letter, s);
       const std::string to = numbered(letter, closed ? (s + 1) % spans : s + 1);
       std::vector<int> way;
-      for (int k = 0; k <= kSplit; ++k) way.push_back(loop[(s * kSplit + k) % loop.size()]);
+      for (int k = 0; k <= kSplit; ++k)
+        way.push_back(loop[(s * kSplit + k) % loop.size()]);
       if (to < from) way = {way.rbegin(), way.rend()};
       edge_[{std::min(from, to), std::max(from, to)}] = way;
     }
@@ -111,7 +119,8 @@ class Refiner {
     const double s = static_cast<double>(i) / kSplit, t = static_cast<double>(j) / kSplit;
     const Vec3 across = v[left[j]] * (1 - s) + v[right[j]] * s;
     const Vec3 along = v[bottom[i]] * (1 - t) + v[top[i]] * t;
-    const Vec3 corners = (v[bottom[0]] * (1 - s) + v[bottom[kSplit]] * s) * (1 - t) + (v[top[0]] * (1 - s) + v[top[kSplit]] * s) * t;
+    const Vec3 corners = (v[bottom[0]] * (1 - s) + v[bottom[kSplit]] * s) * (1 - t) +
+                         (v[top[0]] * (1 - s) + v[top[kSplit]] * s) * t;
     return across + along - corners;
   }
 
@@ -127,7 +136,8 @@ HalfHead refine_cage(const std::map<char, std::vector<Vec3>>& openings, std::vec
   HalfHead head;
   fixed.clear();
   Refiner refiner(openings, head, fixed);
-  for (const CagePatch& patch : cage_patches()) refiner.add_patch(patch);
+  for (const CagePatch& patch : cage_patches())
+    refiner.add_patch(patch);
   std::vector<int>& end = head.loops["neck_end"];
   for (int k = 0; k < 9; ++k) {
     const auto way = refiner.edge(numbered('U', k), numbered('U', k + 1));

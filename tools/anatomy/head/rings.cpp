@@ -26,7 +26,8 @@ std::vector<double> smoothed(std::vector<double> values, bool closed, int times)
 
 std::vector<double> marks(const std::vector<Profile>& fan, const std::string& name) {
   std::vector<double> out;
-  for (const Profile& profile : fan) out.push_back(profile.at(name));
+  for (const Profile& profile : fan)
+    out.push_back(profile.at(name));
   return out;
 }
 
@@ -48,9 +49,11 @@ void strip(HalfHead& head, const std::vector<int>& outer, const std::vector<int>
 }
 
 /// Close a ring by quads that pair its edges around one centre vertex.
-void cap(HalfHead& head, const std::vector<int>& ring, const Vec3& centre, bool closed, const std::string& region) {
+void cap(HalfHead& head, const std::vector<int>& ring, const Vec3& centre, bool closed,
+         const std::string& region) {
   const int n = static_cast<int>(ring.size()), middle = head.add_vertex(centre, !closed);
-  for (int i = 0; i + (closed ? 1 : 2) < n; i += 2) head.add_quad({ring[i], middle, ring[(i + 2) % n], ring[i + 1]}, region);
+  for (int i = 0; i + (closed ? 1 : 2) < n; i += 2)
+    head.add_quad({ring[i], middle, ring[(i + 2) % n], ring[i + 1]}, region);
 }
 
 Ring mean_of_neighbours(const Ring& ring, double amount, bool closed) {
@@ -63,7 +66,8 @@ Ring mean_of_neighbours(const Ring& ring, double amount, bool closed) {
   return out;
 }
 
-/// Part the upper and the lower half of a lip ring (open, symmetric in number) by at least `gap` mm of height.
+/// Part the upper and the lower half of a lip ring (open, symmetric in number) by at least `gap` mm of
+/// height.
 void keep_apart(Ring& ring, double gap) {
   const int n = static_cast<int>(ring.size());
   for (int k = 0; k < n / 2; ++k) {
@@ -76,7 +80,9 @@ void keep_apart(Ring& ring, double gap) {
 }
 
 /// Regions of a ring around the eye: index 0 is medial, then over the upper lid.
-std::string upper_lower(int i, int half, const std::string& upper, const std::string& lower) { return i < half ? upper : lower; }
+std::string upper_lower(int i, int half, const std::string& upper, const std::string& lower) {
+  return i < half ? upper : lower;
+}
 
 }  // namespace
 
@@ -84,17 +90,21 @@ std::map<char, std::vector<Vec3>> openings(const Figures& figures) {
   std::map<char, std::vector<Vec3>> out;
   const std::map<char, std::string> fans = {{'E', "eye"}, {'M', "mouth"}, {'O', "nostril"}, {'A', "ear"}};
   for (const auto& [letter, name] : fans)
-    for (const Profile& profile : figures.fans.at(name)) out[letter].push_back(profile.points.front());
+    for (const Profile& profile : figures.fans.at(name))
+      out[letter].push_back(profile.points.front());
   return out;
 }
 
 void add_eye(const Figures& figures, HalfHead& head) {
   const auto& fan = figures.fans.at("eye");
   const int n = static_cast<int>(fan.size());
-  const auto margin = smoothed(marks(fan, "margin_outer"), true, 2), inner = smoothed(marks(fan, "margin_inner"), true, 2);
+  const auto margin = smoothed(marks(fan, "margin_outer"), true, 2),
+             inner = smoothed(marks(fan, "margin_inner"), true, 2);
   std::vector<int> last = head.loops.at("E");
   const auto skin = [n](int i) { return upper_lower(i, n / 2, "lid_upper_left", "lid_lower_left"); };
-  const auto around = [n](int i) { return upper_lower(i, n / 2, "orbital_upper_left", "orbital_lower_left"); };
+  const auto around = [n](int i) {
+    return upper_lower(i, n / 2, "orbital_upper_left", "orbital_lower_left");
+  };
   const auto add = [&](const Ring& ring, const std::function<std::string(int)>& region) {
     const std::vector<int> next = append_ring(head, ring, true);
     strip(head, last, next, true, region);
@@ -103,15 +113,19 @@ void add_eye(const Figures& figures, HalfHead& head) {
   const double across[] = {0.18, 0.35, 0.50, 0.63, 0.75, 0.85, 0.93, 1.0};
   for (double f : across) {
     Ring ring;
-    for (int i = 0; i < n; ++i) ring.push_back(fan[i].point(f * margin[i]));
+    for (int i = 0; i < n; ++i)
+      ring.push_back(fan[i].point(f * margin[i]));
     if (f == 1.0) ring = mean_of_neighbours(ring, 0.25, true);
-    if (f < 0.4) add(ring, around);
-    else add(ring, skin);
+    if (f < 0.4)
+      add(ring, around);
+    else
+      add(ring, skin);
   }
   head.loops["lid_margin"] = last;
   for (double f : {0.5, 1.0}) {
     Ring ring;
-    for (int i = 0; i < n; ++i) ring.push_back(fan[i].point(margin[i] + f * (inner[i] - margin[i])));
+    for (int i = 0; i < n; ++i)
+      ring.push_back(fan[i].point(margin[i] + f * (inner[i] - margin[i])));
     add(mean_of_neighbours(ring, 0.25, true), skin);
   }
   head.loops["lid_margin_inner"] = last;
@@ -151,7 +165,8 @@ Vec3 mouth_slice(const Figures& figures, double z) {
 void add_mouth(const Figures& figures, HalfHead& head) {
   const auto& fan = figures.fans.at("mouth");
   const int n = static_cast<int>(fan.size()), corner = n / 2;
-  const auto border = smoothed(marks(fan, "vermilion_border"), false, 1), contact = smoothed(marks(fan, "contact"), false, 0);
+  const auto border = smoothed(marks(fan, "vermilion_border"), false, 1),
+             contact = smoothed(marks(fan, "contact"), false, 0);
   std::vector<int> last = head.loops.at("M");
   const auto add = [&](const Ring& ring, const std::function<std::string(int)>& region) {
     const std::vector<int> next = append_ring(head, ring, false);
@@ -164,13 +179,16 @@ void add_mouth(const Figures& figures, HalfHead& head) {
   const auto lining = [](int) { return std::string("mouth_lining"); };
   const auto ring_at = [&](const std::function<double(int)>& s) {
     Ring ring;
-    for (int i = 0; i < n; ++i) ring.push_back(fan[i].point(s(i)));
+    for (int i = 0; i < n; ++i)
+      ring.push_back(fan[i].point(s(i)));
     // Planes beside the corner run along the lips: take the middle of their neighbours instead.
-    for (int k : {corner - 1, corner + 1}) ring[k] = 0.5 * (ring[k - 1] + ring[k + 1]);
+    for (int k : {corner - 1, corner + 1})
+      ring[k] = 0.5 * (ring[k - 1] + ring[k + 1]);
     keep_apart(ring, 0.3);
     return ring;
   };
-  for (double f : {0.35, 0.7, 1.0}) add(ring_at([&](int i) { return f * border[i]; }), skin);
+  for (double f : {0.35, 0.7, 1.0})
+    add(ring_at([&](int i) { return f * border[i]; }), skin);
   head.loops["vermilion_border"] = last;
   for (double f : {0.2, 0.42, 0.65, 0.85, 1.0}) {
     Ring ring = ring_at([&](int i) { return border[i] + f * (contact[i] - border[i]); });
@@ -178,8 +196,8 @@ void add_mouth(const Figures& figures, HalfHead& head) {
     add(ring, lip);
   }
   head.loops["lip_contact"] = last;
-  // Behind the contact line each profile goes on over the inner lip into the vestibule; the corner, which has no
-  // profile of its own there, lies between its neighbours.
+  // Behind the contact line each profile goes on over the inner lip into the vestibule; the corner, which has
+  // no profile of its own there, lies between its neighbours.
   for (double beyond : {2.5, 6.5, 12.0, 19.0}) {
     Ring ring = ring_at([&](int i) { return contact[i] + beyond; });
     for (int k : {corner - 1, corner + 1}) {
@@ -191,15 +209,18 @@ void add_mouth(const Figures& figures, HalfHead& head) {
   }
   const Ring start = [&] {
     Ring ring;
-    for (int v : last) ring.push_back(head.vertices[v]);
+    for (int v : last)
+      ring.push_back(head.vertices[v]);
     return ring;
   }();
-  for (const auto& [z, blend] : {std::pair(84.0, 0.6), std::pair(66.0, 1.0), std::pair(46.0, 1.0), std::pair(26.0, 1.0)}) {
+  for (const auto& [z, blend] :
+       {std::pair(84.0, 0.6), std::pair(66.0, 1.0), std::pair(46.0, 1.0), std::pair(26.0, 1.0)}) {
     Ring ring;
     const Vec3 slice = mouth_slice(figures, z);
     for (int i = 0; i < n; ++i) {
       const double t = std::numbers::pi * (0.5 - static_cast<double>(i) / (n - 1));
-      const double c = std::pow(std::abs(std::cos(t)), 0.6), s = std::copysign(std::pow(std::abs(std::sin(t)), 0.75), std::sin(t));
+      const double c = std::pow(std::abs(std::cos(t)), 0.6),
+                   s = std::copysign(std::pow(std::abs(std::sin(t)), 0.75), std::sin(t));
       const double middle = 0.5 * (slice[1] + slice[2]), half = 0.5 * (slice[2] - slice[1]);
       const Vec3 there(slice[0] * c, middle + half * s, z);
       const Vec3 own(start[i].x(), start[i].y(), std::min(start[i].z(), z + 6.0));
@@ -222,7 +243,8 @@ void add_nostril(const Figures& figures, HalfHead& head) {
   };
   const auto ring_at = [&](double f, double beyond) {
     Ring ring;
-    for (int i = 0; i < n; ++i) ring.push_back(fan[i].point(f * rim[i] + beyond));
+    for (int i = 0; i < n; ++i)
+      ring.push_back(fan[i].point(f * rim[i] + beyond));
     return ring;
   };
   add(ring_at(0.5, 0), "nose");
@@ -231,13 +253,16 @@ void add_nostril(const Figures& figures, HalfHead& head) {
   Ring ring;
   for (double beyond : {1.2, 3.0, 6.0}) {
     ring = ring_at(1.0, beyond);
-    for (int k = 0; k < 3; ++k) ring = mean_of_neighbours(ring, 0.5, true);
+    for (int k = 0; k < 3; ++k)
+      ring = mean_of_neighbours(ring, 0.5, true);
     add(ring, "nostril_left");
   }
   Vec3 centre = Vec3::Zero();
-  for (const Vec3& p : ring) centre += p / n;
+  for (const Vec3& p : ring)
+    centre += p / n;
   const Vec3 upward = Vec3(-0.05, 0.8, -0.6).normalized();
-  for (Vec3& p : ring) p = centre + 0.6 * (p - centre) + 4.0 * upward;
+  for (Vec3& p : ring)
+    p = centre + 0.6 * (p - centre) + 4.0 * upward;
   add(ring, "nostril_left");
   cap(head, last, centre + 6.0 * upward, true, "nostril_left");
 }
@@ -252,11 +277,13 @@ void add_ear(const Figures& figures, HalfHead& head) {
   std::vector<std::vector<double>> at;
   for (double f : fractions) {
     at.emplace_back();
-    for (int i = 0; i < n; ++i) at.back().push_back(f * crest[i]);
+    for (int i = 0; i < n; ++i)
+      at.back().push_back(f * crest[i]);
   }
   for (double f : within) {
     at.emplace_back();
-    for (int i = 0; i < n; ++i) at.back().push_back(crest[i] + f * (fan[i].length() - crest[i]));
+    for (int i = 0; i < n; ++i)
+      at.back().push_back(crest[i] + f * (fan[i].length() - crest[i]));
   }
   // Slide the rings along their profiles until those of neighbouring profiles lie side by side.
   const int rings = static_cast<int>(at.size());
@@ -279,12 +306,15 @@ void add_ear(const Figures& figures, HalfHead& head) {
   std::vector<std::vector<int>> floor;  // the rings of the concha
   for (int r = 0; r < rings; ++r) {
     Ring ring;
-    for (int i = 0; i < n; ++i) ring.push_back(fan[i].point(at[r][i]));
-    for (int k = 0; k < 2; ++k) ring = mean_of_neighbours(ring, 0.5, true);
+    for (int i = 0; i < n; ++i)
+      ring.push_back(fan[i].point(at[r][i]));
+    for (int k = 0; k < 2; ++k)
+      ring = mean_of_neighbours(ring, 0.5, true);
     // The lobule hangs across its profiles, which meet its edge at jumping depths.
     for (int k = 0; k < 10; ++k) {
       const Ring even = mean_of_neighbours(ring, 0.5, true);
-      for (int i = 5 * n / 8; i <= 7 * n / 8 + 1; ++i) ring[i] = even[i];
+      for (int i = 5 * n / 8; i <= 7 * n / 8 + 1; ++i)
+        ring[i] = even[i];
     }
     const std::vector<int> next = append_ring(head, ring, true);
     strip(head, last, next, true, [](int) { return std::string("ear_left"); });
@@ -297,15 +327,19 @@ void add_ear(const Figures& figures, HalfHead& head) {
       for (int i = 0; i < n; ++i) {
         const auto& v = head.vertices;
         const int across = r < 3 ? floor[r + 1][i] : floor[r][(n / 2 - i + n) % n];
-        const Vec3 mean = 0.25 * (v[floor[r][(i + 1) % n]] + v[floor[r][(i + n - 1) % n]] + v[floor[r - 1][i]] + v[across]);
+        const Vec3 mean =
+            0.25 * (v[floor[r][(i + 1) % n]] + v[floor[r][(i + n - 1) % n]] + v[floor[r - 1][i]] + v[across]);
         head.vertices[floor[r][i]] += 0.5 * (mean - v[floor[r][i]]);
       }
   // The last ring lies along a short upright line: close it across. Index 0 is in front, n / 4 at the top.
   for (int k = -n / 4; k < n / 4; ++k) {
     const int a = (k + n) % n, b = (k + 1 + n) % n, c = (n / 2 - k - 1 + n) % n, d = (n / 2 - k + n) % n;
-    if (a == d) head.add_quad({last[a], last[c], last[b], last[b]}, "ear_left");
-    else if (b == c) head.add_quad({last[a], last[d], last[b], last[b]}, "ear_left");
-    else head.add_quad({last[a], last[d], last[c], last[b]}, "ear_left");
+    if (a == d)
+      head.add_quad({last[a], last[c], last[b], last[b]}, "ear_left");
+    else if (b == c)
+      head.add_quad({last[a], last[d], last[b], last[b]}, "ear_left");
+    else
+      head.add_quad({last[a], last[d], last[c], last[b]}, "ear_left");
   }
 }
 

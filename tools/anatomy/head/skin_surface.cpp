@@ -12,7 +12,8 @@ SkinSurface::SkinSurface(const std::vector<Sample>& samples) : samples_(samples)
   const Vec3 mirror(-1, 1, 1);
   for (const Sample& sample : samples)
     if (sample.position.x() < 30.0)
-      samples_.push_back({sample.position.cwiseProduct(mirror), sample.normal.cwiseProduct(mirror), sample.spacing});
+      samples_.push_back(
+          {sample.position.cwiseProduct(mirror), sample.normal.cwiseProduct(mirror), sample.spacing});
   Bounds box;
   for (const Sample& sample : samples_) {
     box.lower = box.lower.cwiseMin(sample.position);
@@ -34,7 +35,8 @@ void SkinSurface::visit_near(const Vec3& point, const Visit& visit) const {
     for (int y = centre.y() - 1; y <= centre.y() + 1; ++y)
       for (int z = centre.z() - 1; z <= centre.z() + 1; ++z) {
         if (x < 0 || y < 0 || z < 0 || x >= cells_.x() || y >= cells_.y() || z >= cells_.z()) continue;
-        for (int i : bins_[(x * cells_.y() + y) * cells_.z() + z]) visit(samples_[i]);
+        for (int i : bins_[(x * cells_.y() + y) * cells_.z() + z])
+          visit(samples_[i]);
       }
 }
 
@@ -56,7 +58,9 @@ Vec3 SkinSurface::project(const Vec3& point, const Vec3& normal) const {
   Vec3 here = point;
   const Vec3 facing = normal.norm() > 0.0 ? Vec3(normal.normalized()) : Vec3::Zero();
   const Sample* start = nearest(here, facing);
-  if ((start->position - here).norm() > 5.0) here = start->position + 0.7 * ((here - start->position) - start->normal * start->normal.dot(here - start->position));
+  if ((start->position - here).norm() > 5.0)
+    here = start->position +
+           0.7 * ((here - start->position) - start->normal * start->normal.dot(here - start->position));
   Vec3 local = start->normal;
   for (int iteration = 0; iteration < 6; ++iteration) {
     double total = 0.0, distance = 0.0;

@@ -6,10 +6,10 @@
 
 namespace fascia::head_maker {
 
-/// The smooth outer surface through measured section profiles: an implicit moving-least-squares surface of points with
-/// normals. Each sample gives the distance along the mean of its own normal and the local one, which is exact on
-/// spheres, so that the surface does not shrink where it is curved (after Kolluri 2008, Provably good moving least
-/// squares, section 3, with Hermite samples).
+/// The smooth outer surface through measured section profiles: an implicit moving-least-squares surface of
+/// points with normals. Each sample gives the distance along the mean of its own normal and the local one,
+/// which is exact on spheres, so that the surface does not shrink where it is curved (after Kolluri 2008,
+/// Provably good moving least squares, section 3, with Hermite samples).
 class SkinSurface {
  public:
   /// `samples` of the left half; the mirror images of those near the midline are added.

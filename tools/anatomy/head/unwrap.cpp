@@ -9,7 +9,8 @@
 #include "tools/anatomy/head/head.h"
 
 // Convex-combination maps: the boundary of a disc goes to a convex curve, every inner vertex to a mean of its
-// neighbours with mean-value weights, so that nothing overlaps (Tutte 1963; Floater 2003, Mean value coordinates).
+// neighbours with mean-value weights, so that nothing overlaps (Tutte 1963; Floater 2003, Mean value
+// coordinates).
 
 namespace fascia::head_maker {
 
@@ -28,10 +29,12 @@ std::vector<Triangle> triangles_of(const HalfHead& half, const std::vector<int>&
 }
 
 /// The one boundary loop of a disc, starting at its smallest vertex index that `first` accepts.
-std::vector<int> boundary_of(const std::vector<Triangle>& triangles, const std::function<bool(int, int)>& first) {
+std::vector<int> boundary_of(const std::vector<Triangle>& triangles,
+                             const std::function<bool(int, int)>& first) {
   std::map<std::pair<int, int>, int> edges;
   for (const Triangle& t : triangles)
-    for (int k = 0; k < 3; ++k) edges[{t[k], t[(k + 1) % 3]}] = 1;
+    for (int k = 0; k < 3; ++k)
+      edges[{t[k], t[(k + 1) % 3]}] = 1;
   std::map<int, int> next;
   for (const auto& [edge, _] : edges)
     if (!edges.count({edge.second, edge.first})) next[edge.first] = edge.second;
@@ -43,7 +46,8 @@ std::vector<int> boundary_of(const std::vector<Triangle>& triangles, const std::
       break;
     }
   std::vector<int> loop = {start};
-  for (int v = next.at(start); v != start; v = next.at(v)) loop.push_back(v);
+  for (int v = next.at(start); v != start; v = next.at(v))
+    loop.push_back(v);
   if (loop.size() != next.size()) throw Error("head: an island of the texture chart is not a disc");
   return loop;
 }
@@ -74,8 +78,10 @@ Chart flatten(const HalfHead& half, const std::vector<Triangle>& triangles, cons
     if (r == row.end()) continue;
     entries.emplace_back(r->second, r->second, w);
     const auto fixed = boundary.find(edge.second);
-    if (fixed != boundary.end()) right.row(r->second) += w * fixed->second.transpose();
-    else entries.emplace_back(r->second, row.at(edge.second), -w);
+    if (fixed != boundary.end())
+      right.row(r->second) += w * fixed->second.transpose();
+    else
+      entries.emplace_back(r->second, row.at(edge.second), -w);
   }
   Eigen::SparseMatrix<double> matrix(n, n);
   matrix.setFromTriplets(entries.begin(), entries.end());
@@ -83,15 +89,18 @@ Chart flatten(const HalfHead& half, const std::vector<Triangle>& triangles, cons
   if (solver.info() != Eigen::Success) throw Error("head: the texture chart cannot be solved");
   const Eigen::MatrixXd solution = solver.solve(right);
   Chart out = boundary;
-  for (const auto& [vertex, r] : row) out[vertex] = solution.row(r);
+  for (const auto& [vertex, r] : row)
+    out[vertex] = solution.row(r);
   return out;
 }
 
 /// Shares of the way along a loop part, 0 at its first vertex, 1 at its last.
 std::vector<double> shares(const std::vector<double>& steps) {
   std::vector<double> out = {0.0};
-  for (double step : steps) out.push_back(out.back() + step);
-  for (double& s : out) s /= out.back();
+  for (double step : steps)
+    out.push_back(out.back() + step);
+  for (double& s : out)
+    s /= out.back();
   return out;
 }
 
@@ -116,7 +125,8 @@ Chart island(const HalfHead& half, const std::vector<int>& faces, const Disc& di
     return flatten(half, triangles, boundary);
   }
   int end = 1;
-  while (!half.midline[loop[end]]) ++end;
+  while (!half.midline[loop[end]])
+    ++end;
   const bool upward = half.vertices[loop[end]].y() > half.vertices[loop[0]].y();
   for (int k = 0; k <= end; ++k) {
     const double turn = std::numbers::pi * (static_cast<double>(k) / end - 0.5) * (upward ? 1.0 : -1.0);
@@ -130,21 +140,24 @@ Chart island(const HalfHead& half, const std::vector<int>& faces, const Disc& di
   return flatten(half, triangles, boundary);
 }
 
-/// The face: its midline up the straight side of a half ellipse, its oval along the arc. It is flattened with its
-/// cavities in it, so that it is a disc; the way through the mouth counts for little.
+/// The face: its midline up the straight side of a half ellipse, its oval along the arc. It is flattened with
+/// its cavities in it, so that it is a disc; the way through the mouth counts for little.
 Chart face(const HalfHead& half, const std::vector<int>& faces, const std::vector<char>& in_mouth) {
   const auto triangles = triangles_of(half, faces);
   const auto loop = boundary_of(triangles, [&](int a, int b) { return half.midline[a] && !half.midline[b]; });
   int end = 1;
-  while (!half.midline[loop[end]]) ++end;
+  while (!half.midline[loop[end]])
+    ++end;
   const int n = static_cast<int>(loop.size());
   const auto step = [&](int k) {
     const int a = loop[k % n], b = loop[(k + 1) % n];
     return (half.vertices[a] - half.vertices[b]).norm() * (in_mouth[a] && in_mouth[b] ? 0.01 : 1.0);
   };
   std::vector<double> oval, middle;
-  for (int k = 0; k < end; ++k) oval.push_back(step(k));
-  for (int k = end; k < n; ++k) middle.push_back(step(k));
+  for (int k = 0; k < end; ++k)
+    oval.push_back(step(k));
+  for (int k = end; k < n; ++k)
+    middle.push_back(step(k));
   const auto around = shares(oval), along = shares(middle);
   const bool from_below = half.vertices[loop[0]].y() < half.vertices[loop[end]].y();
   const double low = 0.01, high = 0.75, width = 0.29, centre = 0.5 * (low + high), tall = 0.5 * (high - low);
@@ -164,8 +177,9 @@ Chart face(const HalfHead& half, const std::vector<int>& faces, const std::vecto
 /// Scalp and neck of one side, on an ellipse beside the face: the hairline at the top.
 Chart scalp_and_neck(const HalfHead& half, const std::vector<int>& faces) {
   const auto triangles = triangles_of(half, faces);
-  const auto loop = boundary_of(
-      triangles, [&](int a, int b) { return !half.midline[a] && half.midline[b] && half.vertices[a].y() > 50.0; });
+  const auto loop = boundary_of(triangles, [&](int a, int b) {
+    return !half.midline[a] && half.midline[b] && half.vertices[a].y() > 50.0;
+  });
   std::vector<double> steps;
   for (std::size_t k = 0; k < loop.size(); ++k)
     steps.push_back((half.vertices[loop[k]] - half.vertices[loop[(k + 1) % loop.size()]]).norm());
@@ -185,7 +199,9 @@ std::vector<std::array<Vec2, 4>> unwrap(const HalfHead& half) {
                                              {"conjunctiva_left", {{0.67, 0.88}, 0.075}},
                                              {"nostril_left", {{0.75, 0.965}, 0.03}},
                                              {"mouth_lining", {{0.5, 0.88}, 0.085}}};
-  const auto behind = [](const std::string& name) { return name == "scalp" || name == "neck" || name == "submental"; };
+  const auto behind = [](const std::string& name) {
+    return name == "scalp" || name == "neck" || name == "submental";
+  };
   std::map<std::string, std::vector<int>> faces;
   std::vector<int> front, back;
   std::vector<char> in_mouth(half.vertices.size(), 0);
@@ -193,20 +209,27 @@ std::vector<std::array<Vec2, 4>> unwrap(const HalfHead& half) {
     const std::string& name = half.region[f];
     const int index = static_cast<int>(f);
     if (discs.count(name)) faces[name].push_back(index);
-    if (behind(name)) back.push_back(index);
-    else if (name != "ear_left") front.push_back(index);
+    if (behind(name))
+      back.push_back(index);
+    else if (name != "ear_left")
+      front.push_back(index);
     if (name == "mouth_lining")
-      for (int v : half.quads[f]) in_mouth[v] = 1;
+      for (int v : half.quads[f])
+        in_mouth[v] = 1;
   }
   std::map<std::string, Chart> charts;
-  for (const auto& [name, disc] : discs) charts[name] = island(half, faces.at(name), disc);
+  for (const auto& [name, disc] : discs)
+    charts[name] = island(half, faces.at(name), disc);
   const Chart front_chart = face(half, front, in_mouth), back_chart = scalp_and_neck(half, back);
   std::vector<std::array<Vec2, 4>> out;
   for (std::size_t f = 0; f < half.quads.size(); ++f) {
     const auto own = charts.find(half.region[f]);
-    const Chart& chart = own != charts.end() ? own->second : behind(half.region[f]) ? back_chart : front_chart;
+    const Chart& chart = own != charts.end()      ? own->second
+                         : behind(half.region[f]) ? back_chart
+                                                  : front_chart;
     std::array<Vec2, 4> corners;
-    for (int k = 0; k < 4; ++k) corners[k] = chart.at(half.quads[f][k]);
+    for (int k = 0; k < 4; ++k)
+      corners[k] = chart.at(half.quads[f][k]);
     out.push_back(corners);
   }
   return out;

@@ -14,7 +14,8 @@ std::string number(double value, int digits) {
   char text[32];
   std::snprintf(text, sizeof text, "%.*f", digits, value);
   std::string out = text;
-  while (out.back() == '0') out.pop_back();
+  while (out.back() == '0')
+    out.pop_back();
   if (out.back() == '.') out.pop_back();
   return out == "-0" ? "0" : out;
 }
@@ -22,7 +23,8 @@ std::string number(double value, int digits) {
 /// The order in which faces are written: regions by name, faces of a region in the order they were made.
 std::vector<std::vector<int>> faces_by_region(const PolygonMesh& mesh, std::vector<std::string>& names) {
   std::map<std::string, std::vector<int>> by_name;
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f) by_name[mesh.region[f]].push_back(static_cast<int>(f));
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f)
+    by_name[mesh.region[f]].push_back(static_cast<int>(f));
   std::vector<std::vector<int>> out;
   for (auto& [name, faces] : by_name) {
     names.push_back(name);
@@ -33,8 +35,10 @@ std::vector<std::vector<int>> faces_by_region(const PolygonMesh& mesh, std::vect
 
 void write_mesh(std::ofstream& obj, const PolygonMesh& mesh, int& first_vertex, int& first_uv) {
   obj << "o " << mesh.name << "\n";
-  for (const Vec3& v : mesh.vertices) obj << "v " << number(v.x(), 4) << ' ' << number(v.y(), 4) << ' ' << number(v.z(), 4) << "\n";
-  for (const Vec2& t : mesh.uv) obj << "vt " << number(t.x(), 6) << ' ' << number(t.y(), 6) << "\n";
+  for (const Vec3& v : mesh.vertices)
+    obj << "v " << number(v.x(), 4) << ' ' << number(v.y(), 4) << ' ' << number(v.z(), 4) << "\n";
+  for (const Vec2& t : mesh.uv)
+    obj << "vt " << number(t.x(), 6) << ' ' << number(t.y(), 6) << "\n";
   obj << "s 1\n";
   std::vector<std::string> names;
   const auto groups = faces_by_region(mesh, names);
@@ -55,7 +59,8 @@ void write_mesh(std::ofstream& obj, const PolygonMesh& mesh, int& first_vertex, 
 
 void write_list(std::ofstream& json, const std::vector<int>& list) {
   json << '[';
-  for (std::size_t k = 0; k < list.size(); ++k) json << (k ? "," : "") << list[k];
+  for (std::size_t k = 0; k < list.size(); ++k)
+    json << (k ? "," : "") << list[k];
   json << ']';
 }
 
@@ -66,7 +71,8 @@ void write_regions(std::ofstream& json, const PolygonMesh& mesh) {
   int first = 0;
   for (std::size_t g = 0; g < groups.size(); ++g) {
     // Faces are written region by region, so that a region is a range.
-    json << (g ? "," : "") << "\n    \"" << names[g] << "\": {\"first\": " << first << ", \"count\": " << groups[g].size() << "}";
+    json << (g ? "," : "") << "\n    \"" << names[g] << "\": {\"first\": " << first
+         << ", \"count\": " << groups[g].size() << "}";
     first += static_cast<int>(groups[g].size());
   }
   json << "\n   },\n   \"loops\": {";
@@ -83,13 +89,16 @@ void write_regions(std::ofstream& json, const PolygonMesh& mesh) {
 
 void write_head(const std::vector<PolygonMesh>& meshes, const std::string& folder) {
   std::ofstream obj(folder + "/head.obj");
-  obj << "# Fascia's generic head: own topology, shaped by tools/anatomy/make_head from anatomy/figures (see anatomy/SOURCES.md).\n"
+  obj << "# Fascia's generic head: own topology, shaped by tools/anatomy/make_head from anatomy/figures (see "
+         "anatomy/SOURCES.md).\n"
          "# Millimetres; +X subject's left, +Y up, +Z front.\n";
   int first_vertex = 1, first_uv = 1;
-  for (const PolygonMesh& mesh : meshes) write_mesh(obj, mesh, first_vertex, first_uv);
+  for (const PolygonMesh& mesh : meshes)
+    write_mesh(obj, mesh, first_vertex, first_uv);
   if (!obj.flush()) throw Error(folder + "/head.obj: cannot be written");
   std::ofstream json(folder + "/head_regions.json");
-  json << "{\n \"about\": \"Regions (ranges of faces) and loops (vertices) of head.obj, counted from 0 within each object; "
+  json << "{\n \"about\": \"Regions (ranges of faces) and loops (vertices) of head.obj, counted from 0 "
+          "within each object; "
           "written by tools/anatomy/make_head\",\n \"units\": \"mm\",\n \"objects\": {\n";
   for (std::size_t m = 0; m < meshes.size(); ++m) {
     write_regions(json, meshes[m]);

@@ -33,7 +33,8 @@ struct Creaser {
   std::vector<int>& fan(int v) { return fans[static_cast<std::size_t>(v)]; }
   bool beside_rim(int v) {
     return std::any_of(fan(v).begin(), fan(v).end(), [&](int t) {
-      return std::any_of(triangle(t).begin(), triangle(t).end(), [&](int w) { return held[static_cast<std::size_t>(w)]; });
+      return std::any_of(triangle(t).begin(), triangle(t).end(),
+                         [&](int w) { return held[static_cast<std::size_t>(w)]; });
     });
   }
   double allowed_angle(int v) { return beside_rim(v) ? rim_angle : least_angle; }
@@ -58,8 +59,10 @@ struct Creaser {
   bool sound(const Triangle& t, double angle) {
     const Vec3 area = (at(t[1]) - at(t[0])).cross(at(t[2]) - at(t[0]));
     Vec3 surface = Vec3::Zero();
-    for (const int v : t) surface += normals[static_cast<std::size_t>(v)];
-    return area.dot(surface) > 0.25 * area.norm() * surface.norm() && smallest_angle(at(t[0]), at(t[1]), at(t[2])) > angle;
+    for (const int v : t)
+      surface += normals[static_cast<std::size_t>(v)];
+    return area.dot(surface) > 0.25 * area.norm() * surface.norm() &&
+           smallest_angle(at(t[0]), at(t[1]), at(t[2])) > angle;
   }
 
   bool all_sound(int v, double angle) {
@@ -68,7 +71,8 @@ struct Creaser {
 
   double worst_angle(int v) {
     double worst = std::numbers::pi;
-    for (const int t : fan(v)) worst = std::min(worst, smallest_angle(at(triangle(t)[0]), at(triangle(t)[1]), at(triangle(t)[2])));
+    for (const int t : fan(v))
+      worst = std::min(worst, smallest_angle(at(triangle(t)[0]), at(triangle(t)[1]), at(triangle(t)[2])));
     return worst;
   }
 
@@ -121,7 +125,8 @@ void Creaser::hold_on(const Rim& rim) {
   for (const auto& [distance, v, foot] : near) {
     const double apart = 0.5 * sizes[static_cast<std::size_t>(v)];
     const Vec3 goal = on_surface(field, foot, false);
-    if (std::any_of(taken.begin(), taken.end(), [&](const Vec3& p) { return (p - goal).norm() < apart; })) continue;
+    if (std::any_of(taken.begin(), taken.end(), [&](const Vec3& p) { return (p - goal).norm() < apart; }))
+      continue;
     if (!move(v, goal, rim_angle)) continue;
     held[static_cast<std::size_t>(v)] = true;
     taken.push_back(goal);
@@ -163,7 +168,7 @@ bool Creaser::flip(int a, int b) {
   };
   const int first = follows(sides[0], a, b) ? sides[0] : sides[1];
   const int second = first == sides[0] ? sides[1] : sides[0];
-  const int left = apex(first);   // first is a b left
+  const int left = apex(first);    // first is a b left
   const int right = apex(second);  // second is b a right
   const Triangle one{a, right, left};
   const Triangle two{right, b, left};
@@ -191,8 +196,8 @@ int Creaser::flip_all() {
   return count;
 }
 
-/// Each vertex to the point nearest to the tangent planes of the surface at the triangles around it; where they are
-/// all alike, towards the middle of those triangles.
+/// Each vertex to the point nearest to the tangent planes of the surface at the triangles around it; where
+/// they are all alike, towards the middle of those triangles.
 void Creaser::move_to_planes() {
   constexpr double to_middle = 0.12;
   for (int v = 0; v < mesh.vertex_count(); ++v) {
@@ -226,19 +231,28 @@ void Creaser::move_to_planes() {
 
 }  // namespace
 
-void follow_creases(const smas::ImplicitFunction& field, const std::vector<Rim>& rims, const std::vector<double>& sizes,
-                    const CreaseOptions& options, TriangleMesh* half) {
+void follow_creases(const smas::ImplicitFunction& field, const std::vector<Rim>& rims,
+                    const std::vector<double>& sizes, const CreaseOptions& options, TriangleMesh* half) {
   const std::size_t count = half->vertices.size();
   constexpr double degree = std::numbers::pi / 180;
-  Creaser work{field, sizes, options.rim_angle * degree, options.least_angle * degree, *half, std::vector<std::vector<int>>(count),
-               std::vector<bool>(count, false), std::vector<Vec3>(count, Vec3::UnitY())};
+  Creaser work{field,
+               sizes,
+               options.rim_angle * degree,
+               options.least_angle * degree,
+               *half,
+               std::vector<std::vector<int>>(count),
+               std::vector<bool>(count, false),
+               std::vector<Vec3>(count, Vec3::UnitY())};
   for (int t = 0; t < half->triangle_count(); ++t) {
-    for (const int v : work.triangle(t)) work.fan(v).push_back(t);
+    for (const int v : work.triangle(t))
+      work.fan(v).push_back(t);
   }
-  for (int v = 0; v < half->vertex_count(); ++v) work.update_normal(v);
+  for (int v = 0; v < half->vertex_count(); ++v)
+    work.update_normal(v);
   for (int pass = 0; pass < options.passes; ++pass) {
     if (pass % 2 == 0) {
-      for (const Rim& rim : rims) work.hold_on(rim);
+      for (const Rim& rim : rims)
+        work.hold_on(rim);
     }
     work.flip_all();
     work.move_to_planes();

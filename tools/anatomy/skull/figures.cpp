@@ -26,8 +26,10 @@ std::vector<Row> read_rows(const std::string& path, std::size_t columns) {
     }
     Row row;
     std::stringstream cells(line);
-    for (std::string cell; std::getline(cells, cell, ',');) row.push_back(cell);
-    if (row.size() != columns) throw Error(path + ": a row has not " + std::to_string(columns) + " columns: " + line);
+    for (std::string cell; std::getline(cells, cell, ',');)
+      row.push_back(cell);
+    if (row.size() != columns)
+      throw Error(path + ": a row has not " + std::to_string(columns) + " columns: " + line);
     rows.push_back(std::move(row));
   }
   return rows;
@@ -39,7 +41,8 @@ Vec3 vector_at(const Row& row, std::size_t first) {
 
 std::vector<OrientedPoint> read_sections(const std::string& path) {
   std::vector<OrientedPoint> points;
-  for (const Row& row : read_rows(path, 8)) points.push_back({vector_at(row, 2), vector_at(row, 5).normalized()});
+  for (const Row& row : read_rows(path, 8))
+    points.push_back({vector_at(row, 2), vector_at(row, 5).normalized()});
   return points;
 }
 
@@ -59,7 +62,8 @@ std::vector<Tooth> read_teeth(const std::string& path, const std::string& jaw) {
     if (teeth.empty() || teeth.back().name != row[1]) {
       teeth.push_back({row[1], vector_at(row, 6).normalized(), vector_at(row, 9).normalized(), {}});
     }
-    teeth.back().sections.push_back({std::stod(row[2]), vector_at(row, 3), std::stod(row[12]), std::stod(row[13])});
+    teeth.back().sections.push_back(
+        {std::stod(row[2]), vector_at(row, 3), std::stod(row[12]), std::stod(row[13])});
   }
   return teeth;
 }

@@ -24,9 +24,9 @@ struct ToothSection {
 
 /// A tooth of the left half.
 struct Tooth {
-  std::string name;           ///< such as `first_molar`
-  Vec3 axis = Vec3::Zero();   ///< unit, towards the tip
-  Vec3 mesial = Vec3::Zero();  ///< unit, along the dental arch
+  std::string name;                    ///< such as `first_molar`
+  Vec3 axis = Vec3::Zero();            ///< unit, towards the tip
+  Vec3 mesial = Vec3::Zero();          ///< unit, along the dental arch
   std::vector<ToothSection> sections;  ///< from the tip to the neck
 };
 
@@ -44,7 +44,7 @@ struct Figures {
   std::vector<Tooth> teeth_upper;
   std::vector<Tooth> teeth_lower;
   std::vector<NamedCurve> curves;  ///< rims of either bone, and edges to cut by
-  splines::Warp to_generic;  ///< from that frame to the generic head's
+  splines::Warp to_generic;        ///< from that frame to the generic head's
 };
 
 /// Reads skull_*.csv of `folder`. Throws Error naming the file and line that cannot be read.

@@ -17,7 +17,9 @@ namespace {
 
 using Edge = std::pair<int, int>;
 
-Edge edge(int a, int b) { return a < b ? Edge(a, b) : Edge(b, a); }
+Edge edge(int a, int b) {
+  return a < b ? Edge(a, b) : Edge(b, a);
+}
 
 /// A mesh under repair, with the size asked for at each vertex.
 struct Work {
@@ -81,7 +83,8 @@ void keep_left(Work& work) {
   std::vector<bool> keep;
   for (const Triangle& t : work.mesh.triangles) {
     bool left = false;
-    for (const int v : t) left = left || work.at(v).x() > 0;
+    for (const int v : t)
+      left = left || work.at(v).x() > 0;
     keep.push_back(left);
   }
   std::vector<int> map;
@@ -116,14 +119,17 @@ int split_bridges(const smas::ImplicitFunction& field, Work& work) {
     touched[first] = touched[second] = true;
     Vec3 around = Vec3::Zero();
     for (const std::size_t t : {first, second}) {
-      for (const int v : work.mesh.triangles[t]) around += work.at(v) / 6.0;
+      for (const int v : work.mesh.triangles[t])
+        around += work.at(v) / 6.0;
     }
     const int m = work.add(on_surface(field, around, false), work.size(ends.first));
     for (const std::size_t t : {first, second}) {
       Triangle other = work.mesh.triangles[t];
       Triangle& own = work.mesh.triangles[t];
-      for (int& v : own) v = v == ends.first ? m : v;
-      for (int& v : other) v = v == ends.second ? m : v;
+      for (int& v : own)
+        v = v == ends.first ? m : v;
+      for (int& v : other)
+        v = v == ends.second ? m : v;
       work.mesh.triangles.push_back(other);
       touched.push_back(true);
     }
@@ -163,7 +169,8 @@ std::vector<Vec3> step_to_surface(const smas::ImplicitFunction& field, TriangleM
 double rim_distance(const std::vector<Rim>& rims, const Vec3& point) {
   double squared = 1e12;
   for (const Rim& rim : rims) {
-    for (const Vec3& at : rim) squared = std::min(squared, (at - point).squaredNorm());
+    for (const Vec3& at : rim)
+      squared = std::min(squared, (at - point).squaredNorm());
   }
   return std::sqrt(squared);
 }
@@ -175,13 +182,15 @@ std::vector<double> sizes_by_curvature(const std::vector<Vec3>& normals, const T
   std::vector<double> bend(mesh.vertices.size(), 0.0);
   const auto each_edge = [&](const auto& visit) {
     for (const Triangle& t : mesh.triangles) {
-      for (std::size_t e = 0; e < 3; ++e) visit(static_cast<std::size_t>(t[e]), static_cast<std::size_t>(t[(e + 1) % 3]));
+      for (std::size_t e = 0; e < 3; ++e)
+        visit(static_cast<std::size_t>(t[e]), static_cast<std::size_t>(t[(e + 1) % 3]));
     }
   };
   each_edge([&](std::size_t a, std::size_t b) {
     const double length = std::max((mesh.vertices[a] - mesh.vertices[b]).norm(), 0.3 * options.cell);
     const double turn = (normals[a] - normals[b]).norm();
-    for (const std::size_t v : {a, b}) bend[v] = std::max(bend[v], turn / length);
+    for (const std::size_t v : {a, b})
+      bend[v] = std::max(bend[v], turn / length);
   });
   std::vector<double> sizes(mesh.vertices.size());
   std::vector<double> coarse(sizes.size(), 1.0);
@@ -193,7 +202,8 @@ std::vector<double> sizes_by_curvature(const std::vector<Vec3>& normals, const T
   const auto with_turn = [&](double turn) {
     for (std::size_t v = 0; v < sizes.size(); ++v) {
       const double size = coarse[v] * turn / std::max(bend[v], 1e-9);
-      sizes[v] = std::min(std::clamp(size, coarse[v] * options.smallest_edge, options.largest_edge), by_rims[v]);
+      sizes[v] =
+          std::min(std::clamp(size, coarse[v] * options.smallest_edge, options.largest_edge), by_rims[v]);
     }
     // Sizes grow gradually, so that no triangle has a long side beside a short one.
     for (int sweep = 0; sweep < 12; ++sweep) {
@@ -229,7 +239,8 @@ void improve(const smas::ImplicitFunction& field, int passes, Work& work) {
   // The boundary lies in the midplane up to rounding and the smoothing's slip along the surface.
   const Connectivity links = connectivity(work.mesh);
   for (const auto& loop : boundary_loops(work.mesh, links)) {
-    for (const int v : loop) work.at(v) = on_surface(field, work.at(v), true);
+    for (const int v : loop)
+      work.at(v) = on_surface(field, work.at(v), true);
   }
 }
 

@@ -118,7 +118,8 @@ void Improver::split() {
   const int count = mesh_.triangle_count();
   for (int t = 0; t < count; ++t)
     for (int e = 0; e < 3; ++e) {
-      const int a = mesh_.triangles[t][e], b = mesh_.triangles[t][(e + 1) % 3], c = mesh_.triangles[t][(e + 2) % 3];
+      const int a = mesh_.triangles[t][e], b = mesh_.triangles[t][(e + 1) % 3],
+                c = mesh_.triangles[t][(e + 2) % 3];
       const int other = links.neighbours[t][e];
       if (used[t]) break;
       if ((other >= 0 && (other < t || used[other])) || length(a, b) < 4.0 / 3.0 * wanted(a, b)) continue;
@@ -142,7 +143,8 @@ void Improver::split() {
     }
 }
 
-// Whether `from` can be merged into `to`: the mesh stays manifold (link condition), nothing folds or stretches.
+// Whether `from` can be merged into `to`: the mesh stays manifold (link condition), nothing folds or
+// stretches.
 bool Improver::can_collapse(const Connectivity& links, int from, int to) const {
   std::vector<int> ring_from, ring_to;
   const auto ring = [&](int v, std::vector<int>* out) {
@@ -154,7 +156,8 @@ bool Improver::can_collapse(const Connectivity& links, int from, int to) const {
   };
   ring(from, &ring_from), ring(to, &ring_to);
   std::vector<int> shared;
-  std::set_intersection(ring_from.begin(), ring_from.end(), ring_to.begin(), ring_to.end(), std::back_inserter(shared));
+  std::set_intersection(ring_from.begin(), ring_from.end(), ring_to.begin(), ring_to.end(),
+                        std::back_inserter(shared));
   int wings = 0;
   for (int i = links.vertex_offsets[from]; i < links.vertex_offsets[from + 1]; ++i) {
     const Triangle& t = mesh_.triangles[links.vertex_triangles[i]];
@@ -163,8 +166,10 @@ bool Improver::can_collapse(const Connectivity& links, int from, int to) const {
       continue;
     }
     Vec3 p[3];
-    for (int k = 0; k < 3; ++k) p[k] = at(t[k] == from ? to : t[k]);
-    if (!upright(t[0] == from ? to : t[0], t[1] == from ? to : t[1], t[2] == from ? to : t[2], p[0], p[1], p[2]))
+    for (int k = 0; k < 3; ++k)
+      p[k] = at(t[k] == from ? to : t[k]);
+    if (!upright(t[0] == from ? to : t[0], t[1] == from ? to : t[1], t[2] == from ? to : t[2], p[0], p[1],
+                 p[2]))
       return false;
     if (smallest_angle(p[0], p[1], p[2]) < 0.15) return false;
   }
@@ -179,7 +184,8 @@ void Improver::collapse() {
   const std::vector<bool> boundary = boundary_vertices(links);
   std::vector<bool> touched(mesh_.vertices.size(), false);
   std::vector<int> merged(mesh_.vertices.size());
-  for (size_t v = 0; v < merged.size(); ++v) merged[v] = static_cast<int>(v);
+  for (size_t v = 0; v < merged.size(); ++v)
+    merged[v] = static_cast<int>(v);
   const auto ring_untouched = [&](int v) {
     for (int i = links.vertex_offsets[v]; i < links.vertex_offsets[v + 1]; ++i)
       for (int w : mesh_.triangles[links.vertex_triangles[i]])
@@ -201,7 +207,8 @@ void Improver::collapse() {
       merged[a] = b;
       for (int v : {a, b})
         for (int i = links.vertex_offsets[v]; i < links.vertex_offsets[v + 1]; ++i)
-          for (int w : mesh_.triangles[links.vertex_triangles[i]]) touched[w] = true;
+          for (int w : mesh_.triangles[links.vertex_triangles[i]])
+            touched[w] = true;
       break;
     }
   TriangleMesh kept;
@@ -223,7 +230,8 @@ void Improver::collapse() {
   normals_.resize(count);
   sizes_.resize(count);
   for (Triangle& t : triangles)
-    for (int& v : t) v = index[v];
+    for (int& v : t)
+      v = index[v];
   mesh_.triangles = std::move(triangles);
 }
 
@@ -241,7 +249,8 @@ bool Improver::flip_edge(Connectivity* links, std::unordered_set<uint64_t>* edge
   const double after = std::min(smallest_angle(at(a), at(d), at(c)), smallest_angle(at(d), at(b), at(c)));
   if (after < before + 1e-3) return false;
   if (!upright(a, d, c, at(a), at(d), at(c)) || !upright(d, b, c, at(d), at(b), at(c))) return false;
-  if (normals_[c].dot(normals_[d]) < std::cos(options_.feature_turn) || edges->count(edge_key(c, d))) return false;
+  if (normals_[c].dot(normals_[d]) < std::cos(options_.feature_turn) || edges->count(edge_key(c, d)))
+    return false;
 
   const int ad = links->neighbours[other][(k + 1) % 3], db = links->neighbours[other][(k + 2) % 3];
   const int bc = links->neighbours[t][(e + 1) % 3], ca = links->neighbours[t][(e + 2) % 3];
@@ -266,17 +275,20 @@ void Improver::flip() {
   std::unordered_set<uint64_t> edges;
   edges.reserve(mesh_.triangles.size() * 2);
   for (const Triangle& t : mesh_.triangles)
-    for (int e = 0; e < 3; ++e) edges.insert(edge_key(t[e], t[(e + 1) % 3]));
+    for (int e = 0; e < 3; ++e)
+      edges.insert(edge_key(t[e], t[(e + 1) % 3]));
   bool flipped = true;
   for (int round = 0; flipped && round < 5; ++round) {
     flipped = false;
     for (int t = 0; t < mesh_.triangle_count(); ++t)
-      for (int e = 0; e < 3; ++e) flipped |= flip_edge(&links, &edges, t, e);
+      for (int e = 0; e < 3; ++e)
+        flipped |= flip_edge(&links, &edges, t, e);
   }
 }
 
 // Height and normal of the surface `step` away from vertex `v`, from the turn of the normals around it.
-void Improver::follow_curvature(const Connectivity& links, int v, const Vec3& step, Vec3* point, Vec3* normal) const {
+void Improver::follow_curvature(const Connectivity& links, int v, const Vec3& step, Vec3* point,
+                                Vec3* normal) const {
   const Vec3 n = normals_[v], x = n.unitOrthogonal(), y = n.cross(x);
   Eigen::Matrix2d moment = Eigen::Matrix2d::Zero(), turn = Eigen::Matrix2d::Zero();
   for (int i = links.vertex_offsets[v]; i < links.vertex_offsets[v + 1]; ++i)
@@ -352,7 +364,8 @@ void Improver::relax_worst(double below) {
     for (int i = links.vertex_offsets[v]; i < links.vertex_offsets[v + 1]; ++i) {
       const Triangle& t = mesh_.triangles[links.vertex_triangles[i]];
       Vec3 p[3];
-      for (int k = 0; k < 3; ++k) p[k] = t[k] == v ? point : at(t[k]);
+      for (int k = 0; k < 3; ++k)
+        p[k] = t[k] == v ? point : at(t[k]);
       if (!upright(t[0], t[1], t[2], p[0], p[1], p[2])) return -1.0;
       worst = std::min(worst, smallest_angle(p[0], p[1], p[2]));
     }
@@ -363,10 +376,12 @@ void Improver::relax_worst(double below) {
     std::vector<bool> poor(mesh_.vertices.size(), false);
     bool any = false;
     for (const Triangle& t : mesh_.triangles)
-      if (smallest_angle(at(t[0]), at(t[1]), at(t[2])) < below) poor[t[0]] = poor[t[1]] = poor[t[2]] = any = true;
+      if (smallest_angle(at(t[0]), at(t[1]), at(t[2])) < below)
+        poor[t[0]] = poor[t[1]] = poor[t[2]] = any = true;
     if (!any) return;
     for (int v = 0; v < mesh_.vertex_count(); ++v) {
-      if (!poor[v] || (boundary[v] && (!options_.move_boundary || along[v][0] < 0 || along[v][1] < 0))) continue;
+      if (!poor[v] || (boundary[v] && (!options_.move_boundary || along[v][0] < 0 || along[v][1] < 0)))
+        continue;
       Vec3 x = normals_[v].unitOrthogonal(), y = normals_[v].cross(x);
       if (boundary[v]) {
         // Along the boundary freely, across it only a little.
@@ -380,7 +395,8 @@ void Improver::relax_worst(double below) {
       Vec3 best_point = at(v), best_normal = normals_[v];
       for (double length : {0.06, 0.15, 0.3})
         for (int k = 0; k < 8; ++k) {
-          const Vec3 step = length * sizes_[v] * (std::cos(k * M_PI / 4.0) * x + std::sin(k * M_PI / 4.0) * y);
+          const Vec3 step =
+              length * sizes_[v] * (std::cos(k * M_PI / 4.0) * x + std::sin(k * M_PI / 4.0) * y);
           Vec3 point, normal;
           follow_curvature(links, v, step, &point, &normal);
           const double worst = worst_around(v, point);
@@ -398,10 +414,12 @@ bool Improver::fits(const Connectivity& links, int v, const Vec3& point) const {
   for (int i = links.vertex_offsets[v]; i < links.vertex_offsets[v + 1]; ++i) {
     const Triangle& t = mesh_.triangles[links.vertex_triangles[i]];
     Vec3 p[3];
-    for (int k = 0; k < 3; ++k) p[k] = t[k] == v ? point : at(t[k]);
+    for (int k = 0; k < 3; ++k)
+      p[k] = t[k] == v ? point : at(t[k]);
     before = std::min(before, smallest_angle(at(t[0]), at(t[1]), at(t[2])));
     after = std::min(after, smallest_angle(p[0], p[1], p[2]));
-    if (!upright(t[0], t[1], t[2], p[0], p[1], p[2]) && upright(t[0], t[1], t[2], at(t[0]), at(t[1]), at(t[2])))
+    if (!upright(t[0], t[1], t[2], p[0], p[1], p[2]) &&
+        upright(t[0], t[1], t[2], at(t[0]), at(t[1]), at(t[2])))
       return false;
   }
   return after > before || after > 0.55;
@@ -410,7 +428,7 @@ bool Improver::fits(const Connectivity& links, int v, const Vec3& point) const {
 }  // namespace
 
 long improve(const smas::ImplicitFunction& function, const smas::QualityOptions& options, TriangleMesh* mesh,
-                       std::vector<Vec3>* normals, std::vector<double>* sizes) {
+             std::vector<Vec3>* normals, std::vector<double>* sizes) {
   Improver improver(function, options, mesh, normals, sizes);
   for (int pass = 0; pass < options.passes; ++pass) {
     improver.split();

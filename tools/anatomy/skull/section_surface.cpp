@@ -14,7 +14,9 @@ namespace {
 struct Cloud {
   const std::vector<OrientedPoint>& points;
   std::size_t kdtree_get_point_count() const { return points.size(); }
-  double kdtree_get_pt(std::size_t i, std::size_t axis) const { return points[i].position[static_cast<int>(axis)]; }
+  double kdtree_get_pt(std::size_t i, std::size_t axis) const {
+    return points[i].position[static_cast<int>(axis)];
+  }
   template <class Box>
   bool kdtree_get_bbox(Box&) const {
     return false;
@@ -37,7 +39,8 @@ struct Patches {
 
   long long key(const Vec3& point) const {
     long long out = 0;
-    for (int axis = 0; axis < 3; ++axis) out = out * 4096 + (static_cast<long long>(std::floor(point[axis] / cell)) + 2048);
+    for (int axis = 0; axis < 3; ++axis)
+      out = out * 4096 + (static_cast<long long>(std::floor(point[axis] / cell)) + 2048);
     return out;
   }
 
@@ -140,7 +143,8 @@ Patch fit_patch(const std::vector<OrientedPoint>& points, const Tree& tree, int 
 
 }  // namespace
 
-smas::ImplicitFunction section_surface(const std::vector<OrientedPoint>& left, const SectionSurfaceOptions& options) {
+smas::ImplicitFunction section_surface(const std::vector<OrientedPoint>& left,
+                                       const SectionSurfaceOptions& options) {
   std::vector<OrientedPoint> points = left;
   const Vec3 mirror(-1, 1, 1);
   for (const OrientedPoint& point : left) {
@@ -154,7 +158,8 @@ smas::ImplicitFunction section_surface(const std::vector<OrientedPoint>& left, c
   patches->blend_width = options.blend_width;
   std::vector<bool> covered(points.size(), false);
   for (int i = 0; i < static_cast<int>(points.size()); ++i) {
-    if (covered[static_cast<std::size_t>(i)] || points[static_cast<std::size_t>(i)].position.x() < -20) continue;
+    if (covered[static_cast<std::size_t>(i)] || points[static_cast<std::size_t>(i)].position.x() < -20)
+      continue;
     const Patch patch = fit_patch(points, tree, i, options);
     for (std::size_t j = 0; j < points.size(); ++j) {
       if ((points[j].position - patch.centre).norm() < options.covered * patch.radius) covered[j] = true;

@@ -9,11 +9,11 @@
 namespace fascia::skull_maker {
 
 struct SectionSurfaceOptions {
-  int neighbours = 44;        ///< points that a local spline is fitted to
-  double covered = 0.45;      ///< part of a patch's radius within which points need no patch of their own
-  double smoothing = 2e-3;    ///< of the local splines, in their own units
-  double normal_weight = 0.2; ///< of normals against positions when smoothing
-  double blend_width = 12.0;  ///< mm from the midplane over which the field meets its mirror image
+  int neighbours = 44;         ///< points that a local spline is fitted to
+  double covered = 0.45;       ///< part of a patch's radius within which points need no patch of their own
+  double smoothing = 2e-3;     ///< of the local splines, in their own units
+  double normal_weight = 0.2;  ///< of normals against positions when smoothing
+  double blend_width = 12.0;   ///< mm from the midplane over which the field meets its mirror image
 };
 
 /// A signed field (about millimetres, negative inside), exactly symmetric about x = 0, whose zero set is

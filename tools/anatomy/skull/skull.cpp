@@ -20,7 +20,8 @@ constexpr const char* foramen_edge = "foramen_magnum";
 
 std::vector<Vec3> positions(const std::vector<OrientedPoint>& points) {
   std::vector<Vec3> out;
-  for (const OrientedPoint& point : points) out.push_back(point.position);
+  for (const OrientedPoint& point : points)
+    out.push_back(point.position);
   return out;
 }
 
@@ -36,7 +37,8 @@ std::vector<Rim> rims_of(const Figures& figures, const std::string& bone) {
   return rims;
 }
 
-/// Outline of the nasal septum in the midplane: its measured front edge, behind it a rectangle that ends within bone.
+/// Outline of the nasal septum in the midplane: its measured front edge, behind it a rectangle that ends
+/// within bone.
 std::vector<Vec3> septum_outline(const Figures& figures) {
   constexpr double roof = 27.0;  // mm, in the frame of the figures
   constexpr double back = 129.5;
@@ -53,16 +55,19 @@ std::vector<Vec3> septum_outline(const Figures& figures) {
 }
 
 /// Sections and rims of one bone as one cloud, in the generic frame.
-std::vector<OrientedPoint> cloud(const Figures& figures, const std::vector<OrientedPoint>& sections, const std::string& bone) {
+std::vector<OrientedPoint> cloud(const Figures& figures, const std::vector<OrientedPoint>& sections,
+                                 const std::string& bone) {
   std::vector<OrientedPoint> points = sections;
   for (const NamedCurve& named : figures.curves) {
     const bool cut_later = named.name == septum_edge || named.name == foramen_edge;
-    if (named.bone == bone && !cut_later) points.insert(points.end(), named.points.begin(), named.points.end());
+    if (named.bone == bone && !cut_later)
+      points.insert(points.end(), named.points.begin(), named.points.end());
   }
   return carry(figures.to_generic, points);
 }
 
-/// The vault, the base of the skull, the inside of the nose and the depth of the orbits need less than the face.
+/// The vault, the base of the skull, the inside of the nose and the depth of the orbits need less than the
+/// face.
 double coarseness(const Vec3& point) {
   const bool base = point.y() < 14 && point.z() < 32;
   const bool vault = point.y() > 70 || (point.z() < 12 && point.y() >= 14);
@@ -94,7 +99,8 @@ std::vector<Part> make_skull(const Figures& figures) {
   const smas::ImplicitFunction jaw = section_surface(mandible_points);
   // The jaw joint's cartilage and disc lie between the bones.
   smas::ImplicitFunction skull_base = intersection(section_surface(cranium_points), away_from(jaw, 2.2), 0.8);
-  const std::vector<Vec3> foramen = positions(carry(figures.to_generic, curve(figures.curves, foramen_edge).points));
+  const std::vector<Vec3> foramen =
+      positions(carry(figures.to_generic, curve(figures.curves, foramen_edge).points));
   std::vector<Vec3> near_surface = positions(cranium_points);
   skull_base = carved(std::move(skull_base), outside_hollow(foramen, 15.0, &near_surface), 1.0);
   skull_base = united(std::move(skull_base), plate(septum_outline(figures), 1.2, &near_surface), 1.0);
@@ -108,8 +114,9 @@ std::vector<Part> make_skull(const Figures& figures) {
 
 void write_obj(const std::vector<Part>& parts, const std::string& path) {
   std::ofstream file(path, std::ios::binary);
-  file << "# The generic skull of Fascia, made by tools/anatomy/make_skull from anatomy/figures/skull_*.csv.\n"
-          "# Millimetres; +X subject's left, +Y up, +Z front. Sources: anatomy/SOURCES.md.\n";
+  file
+      << "# The generic skull of Fascia, made by tools/anatomy/make_skull from anatomy/figures/skull_*.csv.\n"
+         "# Millimetres; +X subject's left, +Y up, +Z front. Sources: anatomy/SOURCES.md.\n";
   int first = 1;
   char line[96];
   for (const Part& part : parts) {

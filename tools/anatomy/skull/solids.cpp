@@ -9,10 +9,12 @@
 namespace fascia::skull_maker {
 namespace {
 
-constexpr double known_reach = 3.0;  // mm from a solid's surface within which it speaks where the other one is silent
+constexpr double known_reach =
+    3.0;  // mm from a solid's surface within which it speaks where the other one is silent
 
 /// Polynomial smooth maximum; its gradient is the blend of the two.
-double smooth_maximum(double a, const Vec3& a_gradient, double b, const Vec3& b_gradient, double rounding, Vec3* gradient) {
+double smooth_maximum(double a, const Vec3& a_gradient, double b, const Vec3& b_gradient, double rounding,
+                      Vec3* gradient) {
   const double t = std::clamp(0.5 + 0.5 * (b - a) / rounding, 0.0, 1.0);
   if (gradient) *gradient = (1 - t) * a_gradient + t * b_gradient;
   return (1 - t) * a + t * b + rounding * t * (1 - t);
@@ -45,7 +47,8 @@ double outline_distance(const std::vector<Vec3>& outline, const Vec3& point, Vec
 
 }  // namespace
 
-smas::ImplicitFunction intersection(smas::ImplicitFunction field, smas::ImplicitFunction other, double rounding) {
+smas::ImplicitFunction intersection(smas::ImplicitFunction field, smas::ImplicitFunction other,
+                                    double rounding) {
   return [=, field = std::move(field), other = std::move(other)](const Vec3& point, Vec3* gradient) {
     Vec3 a_gradient;
     Vec3 b_gradient;
@@ -101,7 +104,8 @@ smas::ImplicitFunction outside_hollow(const std::vector<Vec3>& rim, double depth
   const Vec3 along = (rim.back() - rim.front()).normalized();
   const double half_length = 0.5 * (rim.back() - rim.front()).norm();
   double half_width = 0;
-  for (const Vec3& point : rim) half_width = std::max(half_width, point.x());
+  for (const Vec3& point : rim)
+    half_width = std::max(half_width, point.x());
   Eigen::Matrix3d shrink;  // to the unit ball
   shrink << Vec3::UnitX() / half_width, along / half_length, Vec3::UnitX().cross(along) / depth;
   for (const Vec3& point : rim) {
@@ -119,7 +123,8 @@ smas::ImplicitFunction outside_hollow(const std::vector<Vec3>& rim, double depth
   };
 }
 
-smas::ImplicitFunction plate(const std::vector<Vec3>& outline, double half_thickness, std::vector<Vec3>* near) {
+smas::ImplicitFunction plate(const std::vector<Vec3>& outline, double half_thickness,
+                             std::vector<Vec3>* near) {
   constexpr double spacing = 3.0;
   const Bounds box = bounds(outline);
   for (double y = box.lower.y(); y <= box.upper.y(); y += spacing) {

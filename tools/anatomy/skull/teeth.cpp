@@ -22,7 +22,8 @@ struct Crown {
 };
 
 Crown crown_of(const std::string& name) {
-  if (name.find("molar") != std::string::npos && name.find("premolar") == std::string::npos) return {3.0, 0.9, 4, 1.0};
+  if (name.find("molar") != std::string::npos && name.find("premolar") == std::string::npos)
+    return {3.0, 0.9, 4, 1.0};
   if (name.find("premolar") != std::string::npos) return {2.6, 1.0, 2, 0.9};
   if (name == "canine") return {2.3, 0.8, 1, 0.0};
   return {2.6, 0.0, 0, 0.0};
@@ -31,7 +32,8 @@ Crown crown_of(const std::string& name) {
 /// Section at `level`, interpolated; beyond the last one it keeps that one's widths and follows the axis.
 ToothSection section_at(const Tooth& tooth, double level) {
   const auto& all = tooth.sections;
-  const auto above = std::find_if(all.begin(), all.end(), [&](const ToothSection& s) { return s.level >= level; });
+  const auto above =
+      std::find_if(all.begin(), all.end(), [&](const ToothSection& s) { return s.level >= level; });
   ToothSection out = above == all.end() ? all.back() : *above;
   if (above != all.end() && above != all.begin()) {
     const ToothSection& low = *(above - 1);
@@ -46,7 +48,9 @@ ToothSection section_at(const Tooth& tooth, double level) {
   return out;
 }
 
-double signed_power(double base, double exponent) { return std::copysign(std::pow(std::abs(base), exponent), base); }
+double signed_power(double base, double exponent) {
+  return std::copysign(std::pow(std::abs(base), exponent), base);
+}
 
 /// Height of the rim's cusps at `angle` (0 mesial, quarter turn buccal), 0 to 1.
 double cusp_at(const Crown& crown, double angle) {
@@ -71,7 +75,8 @@ struct Loft {
 
   Vec3 ring_point(const ToothSection& section, double angle, double share) const {
     const double power = 2.0 / crown.roundness;
-    const double m = std::max(0.2, section.half_mesiodistal - contact) * share * signed_power(std::cos(angle), power);
+    const double m =
+        std::max(0.2, section.half_mesiodistal - contact) * share * signed_power(std::cos(angle), power);
     const double b = std::max(0.2, section.half_buccolingual) * share * signed_power(std::sin(angle), power);
     return section.centre + m * tooth.mesial + b * buccal;
   }
@@ -112,7 +117,9 @@ struct Loft {
 double volume(const TriangleMesh& mesh) {
   double sum = 0;
   for (const Triangle& t : mesh.triangles) {
-    const auto at = [&](int k) { return mesh.vertices[static_cast<std::size_t>(t[static_cast<std::size_t>(k)])]; };
+    const auto at = [&](int k) {
+      return mesh.vertices[static_cast<std::size_t>(t[static_cast<std::size_t>(k)])];
+    };
     sum += at(0).dot(at(1).cross(at(2))) / 6;
   }
   return sum;
@@ -133,15 +140,18 @@ TriangleMesh tooth_mesh(const Tooth& tooth, const splines::Warp& to_generic, dou
     loft.cap(previous, section_at(tooth, rim).centre - loft.crown.fossa * tooth.axis, true);
     ring(rim, 0.80, loft.crown.cusp, 0.0);
     ring(2.0, 1.0, 0.5 * loft.crown.cusp, 0.0);
-    for (const double level : {3.2, 5.2, 8.5, depth}) ring(level, 1.0, 0, 0);
+    for (const double level : {3.2, 5.2, 8.5, depth})
+      ring(level, 1.0, 0, 0);
   } else {
     ring(0.35, 0.72, 0, 0.0);
     loft.cap(previous, section_at(tooth, 0.4).centre + 0.35 * tooth.axis, true);
-    for (const double level : {0.8, 2.0, 4.2, 8.5, depth}) ring(level, 1.0, 0, 0);
+    for (const double level : {0.8, 2.0, 4.2, 8.5, depth})
+      ring(level, 1.0, 0, 0);
   }
   loft.cap(previous, section_at(tooth, depth).centre - 0.8 * tooth.axis, false);
   if (volume(loft.mesh) < 0) {
-    for (Triangle& t : loft.mesh.triangles) std::swap(t[1], t[2]);
+    for (Triangle& t : loft.mesh.triangles)
+      std::swap(t[1], t[2]);
   }
   return loft.mesh;
 }
@@ -154,7 +164,8 @@ TriangleMesh dental_row(const std::vector<Tooth>& left, const splines::Warp& to_
     const TriangleMesh one = tooth_mesh(tooth, to_generic, depth);
     const int first = half.vertex_count();
     half.vertices.insert(half.vertices.end(), one.vertices.begin(), one.vertices.end());
-    for (const Triangle& t : one.triangles) half.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    for (const Triangle& t : one.triangles)
+      half.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
   }
   return mirrored(half);
 }

@@ -40,7 +40,8 @@ Grid sample(const smas::ImplicitFunction& field, const std::vector<Vec3>& points
   grid.origin = box.lower - Vec3::Constant(reach + cell);
   grid.origin.x() = -2 * cell;
   for (int a = 0; a < 3; ++a) {
-    grid.count[static_cast<std::size_t>(a)] = 2 + static_cast<int>((box.upper[a] + reach + cell - grid.origin[a]) / cell);
+    grid.count[static_cast<std::size_t>(a)] =
+        2 + static_cast<int>((box.upper[a] + reach + cell - grid.origin[a]) / cell);
   }
   const std::size_t size = grid.index(grid.count[0] - 1, grid.count[1] - 1, grid.count[2] - 1) + 1;
   std::vector<bool> near(size, false);
@@ -54,7 +55,8 @@ Grid sample(const smas::ImplicitFunction& field, const std::vector<Vec3>& points
     }
     for (int i = low[0]; i <= high[0]; ++i) {
       for (int j = low[1]; j <= high[1]; ++j) {
-        for (int k = low[2]; k <= high[2]; ++k) near[grid.index(i, j, k)] = true;
+        for (int k = low[2]; k <= high[2]; ++k)
+          near[grid.index(i, j, k)] = true;
       }
     }
   }
@@ -67,8 +69,8 @@ Grid sample(const smas::ImplicitFunction& field, const std::vector<Vec3>& points
   return grid;
 }
 
-/// Where the surface runs out of the known nodes between sparse points, the nodes of the cubes that it leaves by become
-/// known too, a few cells deep: without them it would have pinholes.
+/// Where the surface runs out of the known nodes between sparse points, the nodes of the cubes that it leaves
+/// by become known too, a few cells deep: without them it would have pinholes.
 void follow_surface(const smas::ImplicitFunction& field, Grid& grid) {
   constexpr int deepest = 4;  // cells
   for (int round = 0; round < deepest; ++round) {
@@ -129,8 +131,10 @@ struct Marcher {
     }
     if (in.empty() || out.empty()) return;
     Vec3 outwards = Vec3::Zero();
-    for (const std::size_t c : out) outwards += grid.node(c) / static_cast<double>(out.size());
-    for (const std::size_t c : in) outwards -= grid.node(c) / static_cast<double>(in.size());
+    for (const std::size_t c : out)
+      outwards += grid.node(c) / static_cast<double>(out.size());
+    for (const std::size_t c : in)
+      outwards -= grid.node(c) / static_cast<double>(in.size());
     if (in.size() == 2) {
       const int a = cut(in[0], out[0]);
       const int b = cut(in[0], out[1]);
@@ -163,14 +167,15 @@ struct Marcher {
 
 }  // namespace
 
-TriangleMesh march_tetrahedra(const smas::ImplicitFunction& field, const std::vector<Vec3>& points, double reach,
-                              double cell) {
+TriangleMesh march_tetrahedra(const smas::ImplicitFunction& field, const std::vector<Vec3>& points,
+                              double reach, double cell) {
   Grid grid = sample(field, points, reach, cell);
   follow_surface(field, grid);
   Marcher marcher{grid, {}, {}};
   for (int i = 0; i + 1 < grid.count[0]; ++i) {
     for (int j = 0; j + 1 < grid.count[1]; ++j) {
-      for (int k = 0; k + 1 < grid.count[2]; ++k) marcher.cube(i, j, k);
+      for (int k = 0; k + 1 < grid.count[2]; ++k)
+        marcher.cube(i, j, k);
     }
   }
   const std::vector<int> part = components(marcher.mesh);
@@ -185,7 +190,8 @@ TriangleMesh march_tetrahedra(const smas::ImplicitFunction& field, const std::ve
     }
   }
   std::vector<bool> keep;
-  for (const int p : part) keep.push_back(p == highest);
+  for (const int p : part)
+    keep.push_back(p == highest);
   std::vector<int> map;
   return submesh(marcher.mesh, keep, &map);
 }

@@ -24,7 +24,8 @@ struct Collapser {
   std::vector<int>& fan(int v) { return fans[static_cast<std::size_t>(v)]; }
 
   double shortness(int a, int b) const {
-    return (at(a) - at(b)).norm() * 2 / (sizes[static_cast<std::size_t>(a)] + sizes[static_cast<std::size_t>(b)]);
+    return (at(a) - at(b)).norm() * 2 /
+           (sizes[static_cast<std::size_t>(a)] + sizes[static_cast<std::size_t>(b)]);
   }
 
   std::vector<int> ring(int v) {
@@ -46,7 +47,8 @@ struct Collapser {
   /// May `from` move to `to`?
   bool allowed(int from, int to) {
     int wings = 0;
-    for (const int t : fan(from)) wings += has(triangle(t), to);
+    for (const int t : fan(from))
+      wings += has(triangle(t), to);
     const bool at_border = border[static_cast<std::size_t>(from)];
     if (at_border && !(border[static_cast<std::size_t>(to)] && wings == 1)) return false;
     if (!at_border && wings != 2) return false;
@@ -61,11 +63,14 @@ struct Collapser {
     for (const int t : fan(from)) {
       Triangle moved = triangle(t);
       if (has(moved, to)) continue;
-      for (int& v : moved) v = v == from ? to : v;
+      for (int& v : moved)
+        v = v == from ? to : v;
       const Vec3 after = area_normal(moved);
-      const double longest = std::max({(at(moved[0]) - at(moved[1])).squaredNorm(), (at(moved[1]) - at(moved[2])).squaredNorm(),
-                                       (at(moved[2]) - at(moved[0])).squaredNorm()});
-      if (after.norm() < 0.06 * longest || after.dot(normals[static_cast<std::size_t>(to)]) < 0.3 * after.norm()) {
+      const double longest =
+          std::max({(at(moved[0]) - at(moved[1])).squaredNorm(), (at(moved[1]) - at(moved[2])).squaredNorm(),
+                    (at(moved[2]) - at(moved[0])).squaredNorm()});
+      if (after.norm() < 0.06 * longest ||
+          after.dot(normals[static_cast<std::size_t>(to)]) < 0.3 * after.norm()) {
         return false;
       }
     }
@@ -81,7 +86,8 @@ struct Collapser {
           if (w != from) std::erase(fan(w), t);
         }
       } else {
-        for (int& v : corners) v = v == from ? to : v;
+        for (int& v : corners)
+          v = v == from ? to : v;
         fan(to).push_back(t);
       }
     }
@@ -92,15 +98,23 @@ struct Collapser {
 
 }  // namespace
 
-void thin_out(double share, const std::vector<Vec3>& normals, TriangleMesh* mesh, std::vector<double>* sizes) {
+void thin_out(double share, const std::vector<Vec3>& normals, TriangleMesh* mesh,
+              std::vector<double>* sizes) {
   const std::size_t count = mesh->vertices.size();
-  Collapser work{*mesh, *sizes, normals, std::vector<std::vector<int>>(count), std::vector<bool>(mesh->triangles.size(), false),
-                 std::vector<bool>(count, false), std::vector<bool>(count, false)};
+  Collapser work{*mesh,
+                 *sizes,
+                 normals,
+                 std::vector<std::vector<int>>(count),
+                 std::vector<bool>(mesh->triangles.size(), false),
+                 std::vector<bool>(count, false),
+                 std::vector<bool>(count, false)};
   for (int t = 0; t < mesh->triangle_count(); ++t) {
-    for (const int v : work.triangle(t)) work.fan(v).push_back(t);
+    for (const int v : work.triangle(t))
+      work.fan(v).push_back(t);
   }
   for (const auto& loop : boundary_loops(*mesh, connectivity(*mesh))) {
-    for (const int v : loop) work.border[static_cast<std::size_t>(v)] = true;
+    for (const int v : loop)
+      work.border[static_cast<std::size_t>(v)] = true;
   }
   using Candidate = std::tuple<double, int, int>;
   std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> queue;
@@ -114,7 +128,8 @@ void thin_out(double share, const std::vector<Vec3>& normals, TriangleMesh* mesh
   int collapsed = 0;
   const auto refill = [&] {
     if (!queue.empty()) return;
-    for (int v = 0; v < mesh->vertex_count(); ++v) consider(v);
+    for (int v = 0; v < mesh->vertex_count(); ++v)
+      consider(v);
   };
   refill();
   while (!queue.empty()) {
@@ -132,7 +147,8 @@ void thin_out(double share, const std::vector<Vec3>& normals, TriangleMesh* mesh
     consider(to);
   }
   std::vector<bool> keep;
-  for (const bool is_dead : work.dead) keep.push_back(!is_dead);
+  for (const bool is_dead : work.dead)
+    keep.push_back(!is_dead);
   std::vector<int> map;
   const TriangleMesh out = submesh(*mesh, keep, &map);
   std::vector<double> lengths(out.vertices.size());
