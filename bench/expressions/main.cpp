@@ -31,6 +31,7 @@
 #include "formats/scene.h"
 #include "geometry/error.h"
 #include "rig/write/write.h"
+#include "tests/paths/paths.h"
 #include "view/image.h"
 #include "view/renderer.h"
 
@@ -40,7 +41,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path measured = fs::path(FASCIA_MEASURED_DATA) / "data/ict";
+const fs::path measured = test::measured_data() / "data/ict";
 
 /// The head mesh lists its face first; neck and the linings of mouth and eye sockets follow.
 constexpr size_t face_vertices = 9916;

@@ -1,4 +1,5 @@
 #include "bench/muscles/measured.h"
+#include "tests/paths/paths.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -12,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path data = fs::path(FASCIA_MEASURED_DATA) / "data";
+const fs::path data = test::measured_data() / "data";
 
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());

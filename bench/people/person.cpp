@@ -7,18 +7,18 @@
 #include "cli/demo_curves.h"
 #include "geometry/error.h"
 #include "rig/write/write.h"
+#include "tests/paths/paths.h"
 
 namespace fascia::bench {
 namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path measured = fs::path(FASCIA_MEASURED_DATA) / "data/ict";
+const fs::path measured = test::measured_data() / "data/ict";
 
 /// The landmarks placed on the mean head, at the same places of another person's mesh.
 formats::LandmarkFile landmarks_on(const formats::Scene& person) {
-  formats::LandmarkFile file =
-      formats::read_landmarks(fs::path(FASCIA_TEST_DATA) / "ict_neutral_landmarks.json");
+  formats::LandmarkFile file = formats::read_landmarks(test::data() / "ict_neutral_landmarks.json");
   const formats::Scene neutral = formats::read(measured / "neutral.glb");
   const formats::SceneMesh& from = head_mesh(neutral);
   const spatial::SurfaceQuery surface({from.positions, from.triangles});

@@ -22,6 +22,7 @@
 #include "builder/skull/fitter.h"
 #include "builder/skull/from_anatomy.h"
 #include "builder/spatial/surface_query.h"
+#include "tests/paths/paths.h"
 #include "tests/skull/ct_head.h"
 #include "tests/skull/ict_heads.h"
 #include "view/renderer.h"
@@ -33,7 +34,7 @@ namespace {
 namespace fs = std::filesystem;
 using Targets = std::map<std::string, skull::TargetLandmark>;
 
-const fs::path measured = FASCIA_MEASURED_DATA, fixtures = FASCIA_TEST_DATA;
+const fs::path measured = test::measured_data(), fixtures = test::data();
 
 struct Bench {
   anatomy::GenericAnatomy anatomy = anatomy::load_generic();

@@ -8,6 +8,7 @@
 #include <set>
 #include <sstream>
 
+#include "tests/paths/paths.h"
 #include "tools/anatomy/head/head.h"
 
 // The generic head as it lies in anatomy/data: what the other rooms rely on.
@@ -25,7 +26,7 @@ struct Mesh {
 };
 
 std::string data_file(const std::string& name) {
-  return std::string(FASCIA_TEST_DATA) + "/../../anatomy/" + name;
+  return test::data().string() + "/../../anatomy/" + name;
 }
 
 std::map<std::string, Mesh> read_head() {

@@ -11,6 +11,7 @@
 #include "anatomy/anatomy.h"
 #include "builder/spatial/surface_query.h"
 #include "formats/scene.h"
+#include "tests/paths/paths.h"
 #include "tools/anatomy/skull/figures.h"
 
 namespace fascia {
@@ -18,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path measured = FASCIA_MEASURED_DATA "/data";
+const fs::path measured = test::measured_data() / "data";
 
 const anatomy::GenericAnatomy& generic() {
   static const anatomy::GenericAnatomy anatomy = anatomy::load_generic();

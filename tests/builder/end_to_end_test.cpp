@@ -11,6 +11,7 @@
 #include "cli/demo_curves.h"
 #include "formats/scene.h"
 #include "tests/builder/face_checks.h"
+#include "tests/paths/paths.h"
 
 namespace fascia::testing {
 namespace {
@@ -116,7 +117,7 @@ constexpr const char* snapshot_landmarks[] = {"cheilion_left",
 
 TEST_F(EmbeddedHead, PosesAsInTheSnapshot) {
   const double tolerance_mm = 0.1;
-  const fs::path path = fs::path(FASCIA_SNAPSHOTS) / "embedded_head_poses.json";
+  const fs::path path = test::snapshots() / "embedded_head_poses.json";
   nlohmann::ordered_json now;
   for (const auto& [name, values] : snapshot_poses()) {
     face_->pose(values);

@@ -6,14 +6,15 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/builder/face_checks.h"
+#include "tests/paths/paths.h"
 
 namespace fascia::testing {
 namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path data = fs::path(FASCIA_MEASURED_DATA) / "data";
-const fs::path fixtures = FASCIA_TEST_DATA;
+const fs::path data = test::measured_data() / "data";
+const fs::path fixtures = test::data();
 
 /// Lengths of the fibres of a published finite-element face (ArtiSynth), and our part each stands for. Its
 /// medial depressor labii inferioris ends half way up the lip and is not held to it.

@@ -9,6 +9,7 @@
 #include "builder/spatial/surface_query.h"
 #include "cli/demo_curves.h"
 #include "geometry/connectivity.h"
+#include "tests/paths/paths.h"
 
 namespace fascia::testing {
 namespace {
@@ -97,7 +98,7 @@ void expect_sound(const Head& head, const smas::Result& smas) {
 class MeasuredHead : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(MeasuredHead, HasASoundSmas) {
-  const fs::path file = fs::path(FASCIA_MEASURED_DATA) / "data" / GetParam();
+  const fs::path file = test::measured_data() / "data" / GetParam();
   if (!fs::exists(file)) GTEST_SKIP() << "the measured heads are not at " << file;
   const Head head(file);
   expect_sound(head, smas::build(head.inputs));

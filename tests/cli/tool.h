@@ -9,6 +9,8 @@
 #include <iterator>
 #include <string>
 
+#include "tests/paths/paths.h"
+
 namespace fascia::cli {
 
 struct Outcome {
@@ -25,7 +27,7 @@ inline std::string text_of(const std::filesystem::path& path) {
 inline Outcome run_tool(const std::filesystem::path& folder, const std::string& arguments) {
   const std::string out = (folder / "stdout.txt").string(), err = (folder / "stderr.txt").string();
   const int status = std::system(
-      (std::string(FASCIA_TOOL) + " " + arguments + " >" + out + " 2>" + err + " </dev/null").c_str());
+      (test::tool().string() + " " + arguments + " >" + out + " 2>" + err + " </dev/null").c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(out), text_of(err)};
 }
 

@@ -12,6 +12,7 @@
 #include "builder/landmarks/samples.h"
 #include "builder/spatial/surface_query.h"
 #include "formats/landmark_file.h"
+#include "tests/paths/paths.h"
 
 namespace fascia::testing {
 
@@ -49,7 +50,7 @@ MeasuredHead changed(MeasuredHead head, const std::string& how, Change change) {
 }  // namespace
 
 fs::path measured_data() {
-  const fs::path data = fs::path(FASCIA_MEASURED_DATA) / "data";
+  const fs::path data = test::measured_data() / "data";
   return fs::exists(data / "ict/landmarks68.json") ? data : fs::path();
 }
 
@@ -93,7 +94,7 @@ MeasuredHead makehuman() {
   head.name = "makehuman";
   head.millimetres = 100;
   head.scene = formats::read(measured_data() / "heads/makehuman_body.obj");
-  const auto all = formats::read_landmarks(fs::path(FASCIA_TEST_DATA) / "makehuman_landmarks.json").points;
+  const auto all = formats::read_landmarks(test::data() / "makehuman_landmarks.json").points;
   for (const auto& [name, number] : multi_pie_numbers())
     if (const auto at = all.find(name); at != all.end()) head.truth[name] = at->second;
   return head;

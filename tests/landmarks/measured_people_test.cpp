@@ -9,6 +9,7 @@
 
 #include "builder/rigging/find_landmarks.h"
 #include "tests/landmarks/measured_heads.h"
+#include "tests/paths/paths.h"
 
 namespace fascia::testing {
 namespace {
@@ -21,7 +22,7 @@ const anatomy::GenericAnatomy& generic_anatomy() {
 class MeasuredPeople : public ::testing::Test {
  protected:
   void SetUp() override {
-    if (measured_data().empty()) GTEST_SKIP() << "needs the measured data in " << FASCIA_MEASURED_DATA;
+    if (measured_data().empty()) GTEST_SKIP() << "needs the measured data in " << test::measured_data();
   }
 
   static void expect_found(const MeasuredHead& head, bool has_ict_definitions = true) {

@@ -8,13 +8,14 @@
 #include "builder/skull/from_anatomy.h"
 #include "builder/skull/procrustes.h"
 #include "builder/spatial/surface_query.h"
+#include "tests/paths/paths.h"
 #include "tests/skull/ct_head.h"
 #include "tests/skull/ict_heads.h"
 
 namespace fascia::skull {
 namespace {
 
-const std::filesystem::path measured = FASCIA_MEASURED_DATA, fixtures = FASCIA_TEST_DATA;
+const std::filesystem::path measured = test::measured_data(), fixtures = test::data();
 using Targets = std::map<std::string, TargetLandmark>;
 
 Targets placed(const std::map<std::string, Vec3>& points,

@@ -11,6 +11,7 @@
 #include "builder/smas/trim.h"
 #include "geometry/connectivity.h"
 #include "geometry/error.h"
+#include "tests/paths/paths.h"
 
 namespace fascia::smas {
 namespace {
@@ -41,7 +42,7 @@ TriangleMesh sphere(double radius, int levels) {
 }
 
 Landmarks ict_landmarks() {
-  std::ifstream file(FASCIA_TEST_DATA "/ict_neutral_landmarks.json");
+  std::ifstream file(test::data() / "ict_neutral_landmarks.json");
   const nlohmann::json json = nlohmann::json::parse(file);
   Landmarks landmarks;
   for (const auto& [name, p] : json["landmarks"].items())

@@ -9,6 +9,7 @@
 #include "geometry/connectivity.h"
 #include "geometry/error.h"
 #include "sim/face.h"
+#include "tests/paths/paths.h"
 
 namespace fascia::tissue {
 namespace {
@@ -17,7 +18,7 @@ namespace {
 const TissueInputs& measured_head() {
   static const TissueInputs inputs = [] {
     TissueInputs in;
-    const std::filesystem::path path = std::filesystem::path(FASCIA_MEASURED_DATA) / "data/ict/neutral.glb";
+    const std::filesystem::path path = test::measured_data() / "data/ict/neutral.glb";
     if (!std::filesystem::exists(path)) return in;
     const formats::Scene scene = formats::read(path);
     for (const formats::SceneMesh& mesh : scene.meshes) {
