@@ -44,6 +44,12 @@ endif()
 # fascia_use_common_headers(TARGET): for targets whose sources include Eigen and are compiled with the common options.
 function(fascia_use_common_headers target)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    # g++ refuses a precompiled header of -fPIC in a source of -fPIE, which CMake gives to programs.
+    get_target_property(type ${target} TYPE)
+    if(type STREQUAL "EXECUTABLE")
+      set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
+      target_compile_options(${target} PRIVATE -fPIC)
+    endif()
     target_precompile_headers(${target} REUSE_FROM fascia_common_headers)
   endif()
 endfunction()
