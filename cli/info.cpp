@@ -5,6 +5,7 @@
 #include "formats/scene.h"
 #include "geometry/error.h"
 #include "rig/read/read.h"
+#include "sim/realtime/model.h"
 
 namespace fascia::cli {
 
@@ -79,13 +80,26 @@ void say(const Common& common, const Json& json, const rig::Rig& rig, const Requ
     common.say(key + ": " + value.dump());
 }
 
+/// Throws when some level of the tissue cannot be simulated.
+void check_tissue(const rig::Rig& rig, const std::string& name) {
+  for (size_t level = 0; level < rig.tissue.levels.size(); ++level) {
+    const std::string fault =
+        sim::realtime::model_fault(sim::lattice_of(rig.tissue.levels[level]), sim::jaw_of(rig.skull.jaw));
+    if (!fault.empty())
+      throw Error("'" + name + "': FASCIA_tissue/levels/" + std::to_string(level) + ": " + fault);
+  }
+}
+
 void run(const Common& common, const Request& request) {
   // Reading checks every index, accessor and fingerprint; what is unsound does not come through.
   const std::vector<uint8_t> bytes = formats::read_bytes(request.rig);
   const rig::RigFile file = rig::read(bytes, request.rig.string());
   Json json = contents(file);
   if (request.channels) json["channel_list"] = channel_list(file.rig);
-  if (request.validate) json["valid"] = true;
+  if (request.validate) {
+    check_tissue(file.rig, request.rig.string());
+    json["valid"] = true;
+  }
   say(common, json, file.rig, request);
   if (request.validate) common.say("'" + request.rig.string() + "' is sound");
   common.report(json);

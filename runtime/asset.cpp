@@ -3,6 +3,13 @@
 #include <charconv>
 
 namespace fascia::runtime {
+namespace {
+
+Failure unsound(std::size_t level, const std::string& fault) {
+  return {FASCIA_ERROR_FORMAT, "FASCIA_tissue/levels/" + std::to_string(level) + ": " + fault};
+}
+
+}  // namespace
 
 std::string lower_case(std::string_view text) {
   std::string lower(text);
@@ -16,6 +23,11 @@ Asset::Asset(std::span<const uint8_t> bytes)
   index_channels();
   index_sets();
   find_jaw_muscles();
+  if (const char* fault = sim::jaw_fault(sim::jaw_of(rig().skull.jaw)))
+    throw Failure(FASCIA_ERROR_FORMAT, std::string("FASCIA_skull/jaw: ") + fault);
+  for (std::size_t level = 0; level < models_.size(); ++level)
+    if (const char* fault = sim::lattice_fault(sim::lattice_of(rig().tissue.levels[level])))
+      throw unsound(level, fault);
   for (const rig::TissueLevel& level : rig().tissue.levels) {
     auto& muscles = fibre_muscles.emplace_back();
     for (const uint32_t muscle : level.fibre_muscle)
@@ -117,7 +129,11 @@ const sim::FaceModel& Asset::model(std::size_t level) const {
 const sim::realtime::Model& Asset::realtime_model(std::size_t level) const {
   const std::lock_guard lock(models_mutex_);
   auto& model = realtime_models_[level];
-  if (!model) model = std::make_unique<sim::realtime::Model>(model_under_lock(level));
+  if (!model) {
+    auto made = std::make_unique<sim::realtime::Model>(model_under_lock(level));
+    if (!made->valid()) throw unsound(level, made->fault());
+    model = std::move(made);
+  }
   return *model;
 }
 
@@ -137,9 +153,7 @@ const sim::FaceModel& Asset::model_under_lock(std::size_t level) const {
   if (!model) {
     auto made = std::make_unique<sim::FaceModel>(sim::lattice_of(rig().tissue.levels[level]),
                                                  sim::jaw_of(rig().skull.jaw));
-    if (!made->valid())
-      throw Failure(FASCIA_ERROR_FORMAT,
-                    "FASCIA_tissue/levels/" + std::to_string(level) + ": " + made->fault());
+    if (!made->valid()) throw unsound(level, made->fault());
     model = std::move(made);
   }
   return *model;

@@ -18,7 +18,9 @@ bool moves_with_bone(uint8_t kind) {
 
 FaceModel::FaceModel(const Lattice& lattice, const Jaw& jaw, const FaceModelOptions& options)
     : lattice_(lattice), jaw_(jaw), options_(options) {
-  if (const char* fault = lattice_fault(lattice)) {
+  const char* fault = lattice_fault(lattice);
+  if (fault == nullptr) fault = jaw_fault(jaw);
+  if (fault != nullptr) {
     fault_ = fault;
     return;
   }
@@ -28,6 +30,10 @@ FaceModel::FaceModel(const Lattice& lattice, const Jaw& jaw, const FaceModelOpti
   Positions gradient(rest_.size());
   raw_energy(frame, rest_.data(), gradient.data());
   balance_ = gradient;
+  if (!std::all_of(balance_.begin(), balance_.end(), [](const Vec3& force) { return force.allFinite(); })) {
+    fault_ = "an element pulls at rest with a force that is not finite";
+    return;
+  }
   if (!make_factors())
     fault_ = "the rest stiffness is not positive definite: some part of the lattice is held by nothing";
 }

@@ -31,6 +31,10 @@ struct JawPose {
   bool operator==(const JawPose&) const = default;
 };
 
+/// What is wrong with `jaw`, or null: axes that are not of length 1 and square to one another, numbers that
+/// are not finite or far from any joint's.
+const char* jaw_fault(const Jaw& jaw);
+
 /// `pose` within the joint's limits; values that are not finite become 0.
 JawPose clamped(const JawPose& pose);
 

@@ -173,6 +173,12 @@ void PanelFactor::pack(const Dissection::Front& from, const Eigen::MatrixXd& mat
 }
 
 bool PanelFactor::compute(const Dissection& dissection, const Matrix& matrix) {
+  if (factor(dissection, matrix)) return true;
+  *this = {};  // a part of a factor is none
+  return false;
+}
+
+bool PanelFactor::factor(const Dissection& dissection, const Matrix& matrix) {
   const auto& fronts = dissection.fronts();
   const auto& order = dissection.order();
   size_ = order.size();
@@ -220,6 +226,7 @@ bool PanelFactor::compute(const Dissection& dissection, const Matrix& matrix) {
     whole.topRows(width) =
         diagonal.triangularView<Eigen::Lower>().solve(Eigen::MatrixXd::Identity(width, width));
     whole.bottomRows(below).noalias() = -under * whole.topRows(width);
+    if (!whole.allFinite()) return false;
     pack(front, whole, values);
   }
   values_ = Floats(values.size());

@@ -44,8 +44,8 @@ class Dissection {
 /// rows, single precision (computed in double). Diagonal parts are kept as their inverses.
 class PanelFactor {
  public:
-  /// Factors `matrix`, which must have the pattern `dissection` was made for; false when it is not positive
-  /// definite.
+  /// Factors `matrix`, which must have the pattern `dissection` was made for. Returns false, and stays empty,
+  /// when the matrix is not positive definite.
   bool compute(const Dissection& dissection, const Eigen::SparseMatrix<double, Eigen::RowMajor>& matrix);
   Panels view() const { return {size_, fronts_.size(), fronts_.data(), rows_.data(), values_.data()}; }
   size_t entries() const { return values_.size(); }
@@ -53,6 +53,7 @@ class PanelFactor {
   size_t scratch() const { return scratch_; }  ///< floats that a solve needs to work in
 
  private:
+  bool factor(const Dissection& dissection, const Eigen::SparseMatrix<double, Eigen::RowMajor>& matrix);
   void pack(const Dissection::Front& from, const Eigen::MatrixXd& matrix, std::vector<float>& values);
 
   size_t size_ = 0, scratch_ = 0;

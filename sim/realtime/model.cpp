@@ -59,8 +59,10 @@ Model::Model(const FaceModel& face, lanes::InstructionSet instructions)
   pack_edges();
   pack_held();
   pack_fibres();
-  valid_ = make_factors();
-  if (valid_) find_balance();
+  if (!make_factors())
+    fault_ = "its stiffness has no factor: an element is far stiffer than the others, or flat at rest";
+  else if (!find_balance())
+    fault_ = "an element pulls at rest with a force that is not finite";
 }
 
 /// What fibres that pull add to the stiffness of the rest pose: each segment is a string under tension. At a
@@ -142,8 +144,8 @@ bool Model::make_factors() {
   return true;
 }
 
-void Model::find_balance() {
-  const std::unique_ptr<Workspace> work = borrow();
+bool Model::find_balance() {
+  std::unique_ptr<Workspace> work = borrow();
   Driven at_rest = driven(*work);
   set_jaw({}, at_rest);
   loops_->place(packed_, at_rest);
@@ -151,6 +153,9 @@ void Model::find_balance() {
   for (size_t i = 3; i < balance_.size(); i += 4)
     balance_.data()[i] = 0.0F;  // what is stiffer stays so
   packed_.balance = balance_.data();
+  give_back(std::move(work));
+  return std::all_of(balance_.data(), balance_.data() + balance_.size(),
+                     [](float value) { return std::isfinite(value); });
 }
 
 Driven Model::driven(Workspace& work) const {
@@ -180,6 +185,12 @@ void Model::set_jaw(const JawPose& pose, Driven& d) const {
     for (int column = 0; column < 3; ++column)
       d.jaw_rotation[3 * row + column] = f(mandible.rotation(row, column));
   }
+}
+
+std::string model_fault(const Lattice& lattice, const Jaw& jaw) {
+  const FaceModel face(lattice, jaw);
+  if (!face.valid()) return face.fault();
+  return Model(face).fault();
 }
 
 std::unique_ptr<Workspace> Model::borrow() const {

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <mutex>
+#include <string>
 #include <vector>
 
 #include "sim/face_model.h"
@@ -31,7 +32,8 @@ struct Workspace {
 /// Immutable but for the workspaces it lends, so any number of faces and threads may use one.
 class Model {
  public:
-  /// `face` must be valid and outlive this.
+  /// `face` must be valid and outlive this. Where its factors cannot be made `fault()` says so, and the model
+  /// must not be used.
   explicit Model(const FaceModel& face, lanes::InstructionSet instructions = lanes::instruction_set());
 
   const FaceModel& face() const { return *face_; }
@@ -67,7 +69,8 @@ class Model {
   /// past the last.
   size_t triangle_at(size_t batch, size_t lane) const { return lane * packed_.triangle_batches + batch; }
   size_t factor_entries() const { return pose_factor_.entries(); }
-  bool valid() const { return valid_; }
+  bool valid() const { return fault_.empty(); }
+  const std::string& fault() const { return fault_; }
 
   /// Lists and pointers for a drive; points into `work` and must be placed before use.
   Driven driven(Workspace& work) const;
@@ -82,7 +85,7 @@ class Model {
   void pack_edges();
   void pack_held();
   void pack_fibres();
-  void find_balance();
+  bool find_balance();  ///< false when it is not finite
   Eigen::SparseMatrix<double, Eigen::RowMajor> fibre_stiffness() const;
   bool make_factors();
 
@@ -107,9 +110,13 @@ class Model {
   std::vector<float> value_;
   PanelFactor pose_factor_, step_factor_;
   std::vector<float> pose_diagonal_, step_diagonal_;
-  bool valid_ = false;
+  std::string fault_;
   mutable std::mutex mutex_;
   mutable std::vector<std::unique_ptr<Workspace>> workspaces_;
 };
+
+/// What keeps a face from being simulated on `lattice` with `jaw`, or empty: makes everything a face needs,
+/// and throws it away again. Takes as long as making a first face (about 100 ms at medium detail).
+std::string model_fault(const Lattice& lattice, const Jaw& jaw);
 
 }  // namespace fascia::sim::realtime

@@ -138,6 +138,40 @@ TEST(Asset, ResultsTellFaultsApart) {
   EXPECT_EQ(asset, nullptr);
 }
 
+/// Result of loading the tiny rig with something changed, and of making a face when that went well.
+template <class Change>
+fascia_result outcome_with(const Change& change) {
+  fascia::rig::Rig rig = fascia::test::tiny_rig();
+  change(rig);
+  const std::vector<uint8_t> bytes = fascia::rig::write(fascia::test::tiny_head(), rig);
+  fascia_asset* asset = nullptr;
+  const fascia_result loaded = fascia_asset_load(bytes.data(), bytes.size(), &asset);
+  if (loaded != FASCIA_OK) return loaded;
+  fascia_face* face = nullptr;
+  const fascia_result made = fascia_face_create(asset, nullptr, &face);
+  fascia_face_release(face);
+  fascia_asset_release(asset);
+  return made;
+}
+
+TEST(Asset, WhatCannotBeSimulatedIsRefusedWithItsPlace) {
+  EXPECT_EQ(outcome_with([](auto&) {}), FASCIA_OK);
+  const auto says = [](const char* what) {
+    return std::string(fascia_last_message()).find(what) != std::string::npos;
+  };
+  EXPECT_EQ(outcome_with([](auto& rig) { rig.tissue.levels[0].spring_stiffness[7] = 1e30F; }),
+            FASCIA_ERROR_FORMAT);
+  EXPECT_TRUE(says("FASCIA_tissue/levels/0") && says("spring")) << fascia_last_message();
+  EXPECT_EQ(outcome_with([](auto& rig) {
+              for (auto& place : rig.tissue.levels[0].rest)
+                place.z() += 2e4F;
+            }),
+            FASCIA_ERROR_FORMAT);
+  EXPECT_TRUE(says("kilometre")) << fascia_last_message();
+  EXPECT_EQ(outcome_with([](auto& rig) { rig.skull.jaw.open_angle = 1e20F; }), FASCIA_ERROR_FORMAT);
+  EXPECT_TRUE(says("FASCIA_skull/jaw")) << fascia_last_message();
+}
+
 TEST(FaceTest, AtRestNothingMovesInAnySpace) {
   const Loaded rig;
   for (const fascia_space space : {FASCIA_SPACE_MESH, FASCIA_SPACE_INPUT, FASCIA_SPACE_METRES}) {
