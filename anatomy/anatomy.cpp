@@ -18,9 +18,12 @@ GenericAnatomy load(const DataFiles& files) {
   load_tissue_depths(files, anatomy);
   load_muscles(files, anatomy);
   load_tissue(files, anatomy);
+  load_mechanics(files, anatomy);
   load_actuation(files, anatomy);
-  if (files.has("head.obj")) anatomy.head = load_objects(files, "head.obj");
-  if (files.has("skull.obj")) anatomy.skull = load_objects(files, "skull.obj");
+  anatomy.head = load_objects(files, "head.obj");
+  anatomy.head_source = files.read("head.obj");
+  load_skin_regions(files, anatomy);
+  anatomy.skull = load_objects(files, "skull.obj");
   check_references(anatomy);
   return anatomy;
 }
@@ -72,7 +75,17 @@ GenericAnatomy load_generic() {
 GenericAnatomy load_generic(const std::filesystem::path& directory) {
   if (!std::filesystem::is_directory(directory))
     throw Error(directory.string() + ": is not a directory; name a copy of anatomy/data");
-  return load(DataFiles(directory));
+  const DataFiles files(directory);
+  files.check_directory();
+  return load(files);
+}
+
+std::vector<std::string> corrected_files(const std::filesystem::path& directory) {
+  const DataFiles files(directory);
+  std::vector<std::string> corrected;
+  for (const std::string& name : embedded_files())
+    if (files.read(name) != embedded_file(name)) corrected.push_back(name);
+  return corrected;
 }
 
 }  // namespace fascia::anatomy

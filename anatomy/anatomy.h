@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "anatomy/mechanics.h"
+#include "anatomy/side.h"
 #include "geometry/mesh.h"
 
 /// What is true of every human face: its named points, tissue depths, muscles, layers, channels and
@@ -15,8 +17,6 @@
 /// correct (anatomy/data); this is their reader. Everything here is in metres and radians, right-handed,
 /// +X to the subject's left, +Y up, the face looking along +Z; the files are in millimetres and degrees.
 namespace fascia::anatomy {
-
-enum class Side { midline, left, right };
 
 /// A named point of the face or the skull.
 struct Landmark {
@@ -68,6 +68,12 @@ struct MeshObject {
   std::string name;  ///< as in the file: skin, eye_left, cranium, mandible, teeth_upper, ...
   TriangleMesh mesh;
   std::vector<std::array<Vec2, 3>> corner_uvs;  ///< #triangles, or empty when the file has no UVs
+};
+
+/// A named part of the generic head's skin: polygons of the object `skin` in head.obj, counted from 0.
+struct SkinRegion {
+  std::string name;  ///< lip_upper, mouth_lining, nostril_left, ...
+  size_t first = 0, count = 0;
 };
 
 /// Where one end of a muscle is fastened.
@@ -127,18 +133,6 @@ struct Muscle {
   std::string source;
 };
 
-/// A layer of the soft tissue, from the skin inward.
-struct TissueLayer {
-  std::string name;
-  double thickness = 0.0;                 ///< metres, typical
-  double thinnest = 0.0, thickest = 0.0;  ///< metres, over the face
-  double young_modulus = 0.0;             ///< pascal, at small strain
-  double stiff_modulus = 0.0;  ///< pascal, beyond `limit_strain`; equal to young_modulus when not biphasic
-  double limit_strain = 0.0;
-  double density = 0.0;  ///< kg per cubic metre
-  std::string source;
-};
-
 /// A labelled area of the skin: the polygon in order around it, on the generic head's skin.
 struct Zone {
   std::string name;  ///< with its side
@@ -169,15 +163,11 @@ struct SmasDepth {
 };
 
 struct Tissue {
-  std::vector<TissueLayer> layers;     ///< from the skin inward
   double skin_attachment = 0.0;        ///< where no zone says otherwise
   double glide = 0.0;                  ///< where no zone says otherwise, metres
   std::vector<SmasDepth> smas_depths;  ///< interpolated between the landmarks
   std::vector<Zone> skin_attachments;  ///< value: SMAS to skin, 0 gliding .. 1 firm
   std::vector<Zone> gliding_planes;    ///< value: free travel of the SMAS over bone, metres
-  std::vector<Zone> fat_compartments;  ///< value: thickness, metres
-  std::vector<Zone> aesthetic_units;   ///< value: unused
-  std::vector<Zone> tarsal_plates;     ///< value: Young's modulus, pascal
   std::vector<RetainingLigament> ligaments;
 };
 
@@ -220,9 +210,12 @@ struct GenericAnatomy {
   std::vector<Curve> curves;
   std::vector<TissueDepthTable> depth_tables;  ///< the first is the default
   std::vector<MeshObject> head;                ///< skin, eyes, ... of the generic head
+  std::string head_source;                     ///< head.obj as it stands: polygons whole
+  std::vector<SkinRegion> skin_regions;        ///< of the generic head
   std::vector<MeshObject> skull;               ///< cranium, mandible, teeth
   std::vector<Muscle> muscles;                 ///< both sides
   Tissue tissue;
+  Mechanics mechanics;
   std::vector<Actuator> actuators;
   std::vector<Whole> wholes;
   std::vector<ExpressionSet> expression_sets;
@@ -242,10 +235,14 @@ struct GenericAnatomy {
 /// The anatomy built into the library; needs no file on the machine.
 GenericAnatomy load_generic();
 
-/// The anatomy in `directory`, laid out as anatomy/data: to work with a corrected copy of it.
-/// Throws fascia::Error naming the file, the entry and the remedy when a file is missing or malformed
-/// or a reference does not resolve.
+/// The anatomy in `directory`, laid out as anatomy/data: to work with a corrected copy of it. A file that is
+/// not there is the one built in, so that a directory may hold just the corrected ones.
+/// Throws fascia::Error naming the file, the entry and the remedy when a file is malformed, a reference does
+/// not resolve, the directory holds none of the files, or it holds a JSON or OBJ file of another name.
 GenericAnatomy load_generic(const std::filesystem::path& directory);
+
+/// Which data files of `directory`, by name, stand in for those built in and are not the same to the byte.
+std::vector<std::string> corrected_files(const std::filesystem::path& directory);
 
 /// Adds a muscle with its channel, and its name to its whole's members. One that bears the name of a muscle
 /// there is takes its place. Throws fascia::Error when the name is that of a channel or whole of another

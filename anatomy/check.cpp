@@ -71,12 +71,8 @@ void check_expressions(const GenericAnatomy& anatomy) {
 
 void check_tissue(const GenericAnatomy& anatomy) {
   const Tissue& tissue = anatomy.tissue;
-  if (tissue.layers.empty()) throw Error("tissue.json: has no layers");
-  unique_names(tissue.layers, "tissue.json");
   unique_names(tissue.ligaments, "tissue.json");
-  for (const std::vector<Zone>* zones :
-       {&tissue.skin_attachments, &tissue.gliding_planes, &tissue.fat_compartments, &tissue.aesthetic_units,
-        &tissue.tarsal_plates})
+  for (const std::vector<Zone>* zones : {&tissue.skin_attachments, &tissue.gliding_planes})
     unique_names(*zones, "tissue.json");
   if (tissue.smas_depths.empty()) throw Error("tissue.json: smas_depths has no sites");
   std::set<std::string> sites;

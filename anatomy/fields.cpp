@@ -1,5 +1,6 @@
 #include "anatomy/fields.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <sstream>
@@ -23,19 +24,32 @@ Vec3 triple(const Json& value, const Fields& fields, const char* key) {
 
 }  // namespace
 
-bool DataFiles::has(const std::string& name) const {
-  if (!directory_.empty()) return std::filesystem::exists(directory_ / name);
-  for (const std::string& file : embedded_files())
-    if (file == name) return true;
-  return false;
+void DataFiles::check_directory() const {
+  const std::vector<std::string> known = embedded_files();
+  bool any = false;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(directory_)) {
+    const std::string name = std::filesystem::relative(entry.path(), directory_).generic_string();
+    const bool is_known = std::find(known.begin(), known.end(), name) != known.end();
+    any = any || is_known;
+    const std::string extension = entry.path().extension().string();
+    if (!is_known && entry.is_regular_file() && (extension == ".json" || extension == ".obj"))
+      throw Error(entry.path().string() +
+                  ": nothing reads a file of this name; name it as in anatomy/data or take it out");
+  }
+  if (!any)
+    throw Error(directory_.string() + ": holds no file of anatomy/data; copy those to correct into it");
+}
+
+std::string DataFiles::place(const std::string& name) const {
+  const std::filesystem::path path = directory_ / name;
+  return !directory_.empty() && std::filesystem::exists(path) ? path.string() : name;
 }
 
 std::string DataFiles::read(const std::string& name) const {
-  if (directory_.empty()) return std::string(embedded_file(name));
+  if (const auto text = texts_.find(name); text != texts_.end()) return text->second;
+  if (place(name) == name) return std::string(embedded_file(name));
   std::ifstream stream(directory_ / name, std::ios::binary);
-  if (!stream)
-    throw Error((directory_ / name).string() +
-                ": cannot be read; an anatomy directory holds the same files as anatomy/data");
+  if (!stream) throw Error(place(name) + ": cannot be read");
   std::ostringstream bytes;
   bytes << stream.rdbuf();
   return bytes.str();
@@ -44,10 +58,10 @@ std::string DataFiles::read(const std::string& name) const {
 Json DataFiles::json(const std::string& name) const {
   try {
     Json document = Json::parse(read(name));
-    if (!document.is_object()) throw Error(name + ": must hold one JSON object");
+    if (!document.is_object()) throw Error(place(name) + ": must hold one JSON object");
     return document;
   } catch (const Json::exception& problem) {
-    throw Error(name + ": is not JSON: " + problem.what());
+    throw Error(place(name) + ": is not JSON: " + problem.what());
   }
 }
 
@@ -63,6 +77,19 @@ const Json& Fields::raw(const char* key) const {
   const auto found = object_->find(key);
   if (found == object_->end()) fail(std::string("\"") + key + "\" is missing");
   return *found;
+}
+
+std::vector<std::string> Fields::keys() const {
+  std::vector<std::string> keys;
+  for (const auto& item : object_->items())
+    keys.push_back(item.key());
+  return keys;
+}
+
+void Fields::allow_only(std::initializer_list<const char*> known) const {
+  for (const auto& item : object_->items())
+    if (std::find(known.begin(), known.end(), item.key()) == known.end())
+      fail("nothing reads \"" + item.key() + "\"; remove it or correct its name");
 }
 
 std::string Fields::text(const char* key) const {
@@ -84,6 +111,13 @@ double Fields::number(const char* key) const {
 
 double Fields::number_or(const char* key, double fallback) const {
   return has(key) ? number(key) : fallback;
+}
+
+int Fields::whole_number(const char* key) const {
+  const double value = number(key);
+  if (value != std::floor(value) || std::abs(value) > 1e6)
+    fail(std::string("\"") + key + "\" must be a whole number");
+  return static_cast<int>(value);
 }
 
 bool Fields::flag(const char* key) const {
@@ -110,7 +144,8 @@ Vec3 Fields::point_mm(const char* key) const {
 
 Vec3 Fields::direction(const char* key) const {
   const Vec3 vector = triple(raw(key), *this, key);
-  if (vector.norm() < 1e-9) fail(std::string("\"") + key + "\" must not be zero");
+  if (!(std::abs(vector.norm() - 1.0) < 0.02))
+    fail(std::string("\"") + key + "\" must be a direction of length 1");
   return vector.normalized();
 }
 

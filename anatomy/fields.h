@@ -1,5 +1,7 @@
 #pragma once
 
+#include <initializer_list>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
@@ -18,13 +20,20 @@ class DataFiles {
  public:
   DataFiles() = default;  ///< those built in
   explicit DataFiles(std::filesystem::path directory) : directory_(std::move(directory)) {}
-  bool has(const std::string& name) const;
-  /// The bytes of file `name`; throws fascia::Error when there is none.
+  /// Texts by file name in place of those built in.
+  explicit DataFiles(std::map<std::string, std::string> texts) : texts_(std::move(texts)) {}
+  /// Throws fascia::Error when the directory holds no data file, or one that nothing would read.
+  void check_directory() const;
+  /// The bytes of file `name`, of the directory's or, where it has none, the built-in one; throws
+  /// fascia::Error when there is neither.
   std::string read(const std::string& name) const;
+  /// Where file `name` stands, for messages.
+  std::string place(const std::string& name) const;
   Json json(const std::string& name) const;
 
  private:
   std::filesystem::path directory_;  // empty: built in
+  std::map<std::string, std::string> texts_;
 };
 
 /// A JSON object and where it stands, for messages such as "muscles.json, risorius: ...".
@@ -37,6 +46,7 @@ class Fields {
   std::string text_or(const char* key, const std::string& fallback) const;
   double number(const char* key) const;
   double number_or(const char* key, double fallback) const;
+  int whole_number(const char* key) const;
   bool flag(const char* key) const;
   std::vector<double> numbers(const char* key) const;
   Vec3 point_mm(const char* key) const;  ///< millimetres in the file, metres here
@@ -46,6 +56,10 @@ class Fields {
   std::vector<Fields> list(const char* key) const;
   Fields object(const char* key) const;
   const Json& raw(const char* key) const;
+  std::vector<std::string> keys() const;
+  /// Throws fascia::Error when there is a key that is not among `known`: what nothing reads would be
+  /// corrected in vain.
+  void allow_only(std::initializer_list<const char*> known) const;
   [[noreturn]] void fail(const std::string& what) const;
 
  private:
@@ -74,8 +88,10 @@ void load_landmarks(const DataFiles& files, GenericAnatomy& anatomy);
 void load_tissue_depths(const DataFiles& files, GenericAnatomy& anatomy);
 void load_muscles(const DataFiles& files, GenericAnatomy& anatomy);
 void load_tissue(const DataFiles& files, GenericAnatomy& anatomy);
+void load_mechanics(const DataFiles& files, GenericAnatomy& anatomy);
 void load_actuation(const DataFiles& files, GenericAnatomy& anatomy);
 std::vector<MeshObject> load_objects(const DataFiles& files, const std::string& name);
+void load_skin_regions(const DataFiles& files, GenericAnatomy& anatomy);
 
 /// Throws fascia::Error when a name is used twice or a reference does not resolve.
 void check_references(const GenericAnatomy& anatomy);

@@ -72,7 +72,7 @@ ExpressionSet set_of(const Json& document, const std::string& file) {
 
 void load_actuation(const DataFiles& files, GenericAnatomy& anatomy) {
   const Json document = files.json("actuators.json");
-  const Fields root(document, "actuators.json");
+  const Fields root(document, files.place("actuators.json"));
   add_muscles(root, anatomy);
   for (const Fields& entry : root.list("others"))
     add_actuators(entry, anatomy.actuators);
@@ -81,7 +81,7 @@ void load_actuation(const DataFiles& files, GenericAnatomy& anatomy) {
       anatomy.wholes.push_back({with_side(entry.text("name"), side), members_of(entry, side)});
   for (const char* file : {"expressions/arkit.json", "expressions/facs.json", "expressions/visemes.json",
                            "expressions/vrm.json", "expressions/smiles.json"})
-    anatomy.expression_sets.push_back(set_of(files.json(file), file));
+    anatomy.expression_sets.push_back(set_of(files.json(file), files.place(file)));
 }
 
 }  // namespace fascia::anatomy

@@ -54,7 +54,7 @@ void add_curve(const Fields& fields, std::vector<Curve>& curves) {
 
 void load_landmarks(const DataFiles& files, GenericAnatomy& anatomy) {
   const Json document = files.json("landmarks.json");
-  const Fields root(document, "landmarks.json");
+  const Fields root(document, files.place("landmarks.json"));
   for (const Fields& entry : root.list("landmarks"))
     anatomy.landmarks.push_back(landmark_of(entry));
   if (root.has("curves"))
@@ -64,7 +64,7 @@ void load_landmarks(const DataFiles& files, GenericAnatomy& anatomy) {
 
 void load_tissue_depths(const DataFiles& files, GenericAnatomy& anatomy) {
   const Json document = files.json("tissue_depths.json");
-  const Fields root(document, "tissue_depths.json");
+  const Fields root(document, files.place("tissue_depths.json"));
   for (const Fields& entry : root.list("tables")) {
     TissueDepthTable table;
     table.name = entry.text("name");

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <numbers>
 
@@ -98,13 +99,15 @@ Muscle read_muscle(const Fields& fields) {
     fields.fail("\"peak_shortening\" lies above 0 and up to 0.5");
   muscle.cross_section = fields.number("cross_section_mm2") * 1e-6;
   if (!(muscle.cross_section > 0.0)) fields.fail("\"cross_section_mm2\" must be positive");
-  muscle.bundles = std::max(1, static_cast<int>(fields.number_or("bundles", 1)));
+  muscle.bundles = fields.has("bundles") ? std::max(1, fields.whole_number("bundles")) : 1;
   muscle.prevalence = fields.number_or("prevalence", 1.0);
   if (fields.has("variants"))
     for (const Fields& entry : fields.list("variants"))
       muscle.variants.push_back(variant_of(entry));
-  for (const double unit : fields.numbers("action_units"))
+  for (const double unit : fields.numbers("action_units")) {
+    if (unit != std::floor(unit)) fields.fail("\"action_units\" must be whole numbers");
     muscle.action_units.push_back(static_cast<int>(unit));
+  }
   muscle.source = fields.text("source");
   return muscle;
 }
@@ -152,7 +155,7 @@ void put(std::vector<Entry>& entries, Entry entry) {
 
 void load_muscles(const DataFiles& files, GenericAnatomy& anatomy) {
   const Json document = files.json("muscles.json");
-  const Fields root(document, "muscles.json");
+  const Fields root(document, files.place("muscles.json"));
   for (const Fields& entry : root.list("muscles")) {
     const Muscle muscle = read_muscle(entry);
     for (const Side side : sides_of(entry))

@@ -1,5 +1,6 @@
 // TINYOBJLOADER_USE_DOUBLE is set for this room: its library is built with it.
 #include <tiny_obj_loader.h>
+#include <cmath>
 
 #include <sstream>
 #include <unordered_map>
@@ -66,12 +67,25 @@ std::vector<MeshObject> load_objects(const DataFiles& files, const std::string& 
   std::istringstream stream(objects_only(files.read(name)));
   const bool parsed =
       tinyobj::LoadObj(&attributes, &shapes, &materials, &warnings, &errors, &stream, nullptr, false);
-  if (!parsed || !errors.empty()) throw Error(name + ": is not a sound OBJ file: " + errors);
+  if (!parsed || !errors.empty()) throw Error(files.place(name) + ": is not a sound OBJ file: " + errors);
   std::vector<MeshObject> objects;
   for (const tinyobj::shape_t& shape : shapes)
     if (!shape.mesh.indices.empty()) objects.push_back(object_of(attributes, shape, name));
-  if (objects.empty()) throw Error(name + ": holds no faces");
+  if (objects.empty()) throw Error(files.place(name) + ": holds no faces");
   return objects;
+}
+
+void load_skin_regions(const DataFiles& files, GenericAnatomy& anatomy) {
+  const Json document = files.json("head_regions.json");
+  const Fields root(document, files.place("head_regions.json"));
+  const Fields faces = root.object("objects").object("skin").object("faces");
+  for (const std::string& name : faces.keys()) {
+    const Fields range = faces.object(name.c_str());
+    const double first = range.number("first"), count = range.number("count");
+    if (!(first >= 0.0 && count >= 1.0 && first == std::floor(first) && count == std::floor(count)))
+      range.fail("\"first\" and \"count\" must be whole numbers of polygons");
+    anatomy.skin_regions.push_back({name, static_cast<size_t>(first), static_cast<size_t>(count)});
+  }
 }
 
 }  // namespace fascia::anatomy

@@ -3,25 +3,6 @@
 namespace fascia::anatomy {
 namespace {
 
-TissueLayer layer_of(const Fields& fields) {
-  TissueLayer layer;
-  layer.name = fields.text("name");
-  layer.thickness = fields.number("thickness_mm") * 1e-3;
-  const std::vector<double> range = fields.numbers("thickness_range_mm");
-  if (range.size() != 2 || range[0] > range[1])
-    fields.fail("\"thickness_range_mm\" must be two rising numbers");
-  layer.thinnest = range[0] * 1e-3;
-  layer.thickest = range[1] * 1e-3;
-  layer.young_modulus = fields.number("young_modulus_pa");
-  layer.stiff_modulus = fields.number_or("stiff_modulus_pa", layer.young_modulus);
-  layer.limit_strain = fields.number_or("limit_strain", 0.0);
-  layer.density = fields.number("density_kg_m3");
-  layer.source = fields.text("source");
-  if (!(layer.thickness > 0.0 && layer.young_modulus > 0.0 && layer.density > 0.0))
-    fields.fail("thickness, modulus and density must be positive");
-  return layer;
-}
-
 /// `value_key` names the zone's value; `scale` turns it into SI.
 std::vector<Zone> zones_of(const Fields& root, const char* list, const char* value_key, double scale) {
   std::vector<Zone> zones;
@@ -67,10 +48,10 @@ void add_ligament(const Fields& entry, std::vector<RetainingLigament>& ligaments
 
 void load_tissue(const DataFiles& files, GenericAnatomy& anatomy) {
   const Json document = files.json("tissue.json");
-  const Fields root(document, "tissue.json");
+  const Fields root(document, files.place("tissue.json"));
   Tissue& tissue = anatomy.tissue;
-  for (const Fields& entry : root.list("layers"))
-    tissue.layers.push_back(layer_of(entry));
+  root.allow_only(
+      {"units", "frame", "smas_depths", "skin_attachments", "gliding_planes", "ligaments", "elsewhere"});
   const Fields elsewhere = root.object("elsewhere");
   tissue.skin_attachment = elsewhere.number("skin_attachment");
   tissue.glide = elsewhere.number("glide_mm") * 1e-3;
@@ -83,9 +64,6 @@ void load_tissue(const DataFiles& files, GenericAnatomy& anatomy) {
   }
   tissue.skin_attachments = zones_of(root, "skin_attachments", "strength", 1.0);
   tissue.gliding_planes = zones_of(root, "gliding_planes", "travel_mm", 1e-3);
-  tissue.fat_compartments = zones_of(root, "fat_compartments", "thickness_mm", 1e-3);
-  tissue.aesthetic_units = zones_of(root, "aesthetic_units", nullptr, 1.0);
-  tissue.tarsal_plates = zones_of(root, "tarsal_plates", "young_modulus_pa", 1.0);
   for (const Fields& entry : root.list("ligaments"))
     add_ligament(entry, tissue.ligaments);
 }

@@ -75,6 +75,7 @@ Json report_json(const rigging::BuildReport& report) {
       line.push_back(report.input_to_metres(row, column));
     matrix.push_back(line);
   }
+  json["anatomy"] = {{"corrected", report.corrected}};
   json["input"] = {{"units", report.units},
                    {"input_to_metres", matrix},
                    {"parts", Json::array()},
@@ -140,18 +141,34 @@ void say_report(const Common& common, const rigging::BuildReport& report,
              fixed(report.landmark_rms_mm, 1) + " mm; SMAS of " + std::to_string(report.smas_triangles) +
              " triangles; " + std::to_string(report.muscles.size()) + " muscles, " + std::to_string(fibres) +
              " fibres");
+  if (!report.corrected.empty()) {
+    std::string files;
+    for (const std::string& file : report.corrected)
+      files += (files.empty() ? "" : ", ") + file;
+    common.say("anatomy corrected: " + files);
+  }
   common.say("built in " + fixed(total, 2) + " s (" + stages + ")");
   common.say("wrote " + output.string());
 }
 
 }  // namespace
 
+anatomy::GenericAnatomy anatomy_for(const std::filesystem::path& directory) {
+  return directory.empty() ? anatomy::load_generic() : anatomy::load_generic(directory);
+}
+
+void add_anatomy_option(CLI::App& command, std::filesystem::path& directory) {
+  command.add_option("--anatomy", directory,
+                     "Folder with corrected copies of anatomy/data's files; those it lacks are the built-in "
+                     "ones, the default for all");
+}
+
 rigging::BuildReport build_file(const Common& common, const BuildRequest& request) {
   check_output(request.output);
   if (!request.report.empty()) check_output(request.report / report_name);
   if (request.output.extension() != ".glb")
     throw Error("'" + request.output.string() + "': a rig is a .glb file; give -o NAME.glb");
-  const anatomy::GenericAnatomy anatomy = anatomy::load_generic();
+  const anatomy::GenericAnatomy anatomy = anatomy_for(request.anatomy);
   const formats::Scene scene = formats::read(request.head);
   formats::LandmarkFile landmarks;
   if (!request.landmarks.empty()) landmarks = formats::read_landmarks(request.landmarks);
@@ -163,7 +180,8 @@ rigging::BuildReport build_file(const Common& common, const BuildRequest& reques
   if (request.fibre_spacing_mm > 0.0) options.edits.fibre_spacing = 1e-3 * request.fibre_spacing_mm;
   if (request.least_prevalence >= 0.0) options.edits.least_prevalence = request.least_prevalence;
   options.progress = [&](const std::string& stage) { common.progress(stage); };
-  const rigging::BuildResult result = rigging::build_rig(scene, landmarks, anatomy, options);
+  rigging::BuildResult result = rigging::build_rig(scene, landmarks, anatomy, options);
+  if (!request.anatomy.empty()) result.report.corrected = anatomy::corrected_files(request.anatomy);
   const std::vector<uint8_t> bytes =
       rig::write(rigging::gltf_source(scene, result.report.input_to_metres), result.rig);
   formats::write_bytes(request.output, bytes.data(), bytes.size());
@@ -184,17 +202,20 @@ void add_build(CLI::App& app, Common& common) {
   command->add_option("--up", request->options.prepare.up, "Up axis of the file")
       ->check(CLI::IsMember({"auto", "y", "z"}));
   command->add_option("--skin", request->options.prepare.skin, "Name of the mesh that is the skin");
+  add_anatomy_option(*command, request->anatomy);
   command->add_option("--tissue-scale", request->options.tissue_scale, "Scales every tissue depth")
       ->check(CLI::Range(0.2, 3.0));
   smas::ReachOptions& reach = request->options.smas.reach;
   command
-      ->add_option("--smas-galea", reach.galea,
-                   "How far the SMAS follows the galea: 0 the hairline, 1 the vertex")
+      ->add_option_function<double>(
+          "--smas-galea", [&reach](double share) { reach.galea = share; },
+          "How far the SMAS follows the galea: 0 the hairline, 1 the vertex; else as the anatomy says (0.35)")
       ->check(CLI::Range(0.0, 1.0));
   command
       ->add_option_function<double>(
           "--smas-neck", [&reach](double millimetres) { reach.neck = 1e-3 * millimetres; },
-          "How far it follows the platysma below the chin's angle, mm of an adult")
+          "How far it follows the platysma below the chin's angle, mm of an adult; else as the anatomy says "
+          "(30)")
       ->check(CLI::Range(0.0, 80.0));
   command->add_flag("--smas-nostrils,!--no-smas-nostrils", reach.nostrils,
                     "Open under the nose, the default, or not");

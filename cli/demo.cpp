@@ -137,14 +137,16 @@ void film(const std::filesystem::path& rig_path, const rig::Rig& rig,
   video.finish();
 }
 
-void run(const Common& common, const std::filesystem::path& folder) {
+void run(const Common& common, const std::filesystem::path& folder,
+         const std::filesystem::path& anatomy_folder) {
   std::filesystem::create_directories(folder);
   Clock clock(common);
   const std::filesystem::path head = folder / "head.obj", landmarks = folder / "head_landmarks.json",
                               rig_path = folder / "rig.glb", curves = folder / "curves.csv";
-  write_embedded_head(head, landmarks);
+  write_embedded_head(anatomy_for(anatomy_folder), head, landmarks);
   BuildRequest request;
   request.head = head;
+  request.anatomy = anatomy_folder;
   request.landmarks = landmarks;
   request.output = rig_path;
   const rigging::BuildReport report = build_file(common, request);
@@ -187,7 +189,9 @@ void add_demo(CLI::App& app, Common& common) {
   auto folder = std::make_shared<std::filesystem::path>("out");
   CLI::App* command = app.add_subcommand("demo", "The embedded head, end to end");
   command->add_option("--out", *folder, "Folder for the results");
-  command->callback([folder, &common] { run(common, *folder); });
+  auto anatomy_folder = std::make_shared<std::filesystem::path>();
+  add_anatomy_option(*command, *anatomy_folder);
+  command->callback([=, &common] { run(common, *folder, *anatomy_folder); });
 }
 
 }  // namespace fascia::cli

@@ -38,10 +38,10 @@ double speech(double time, double phase) {
 
 }  // namespace
 
-void write_embedded_head(const std::filesystem::path& head, const std::filesystem::path& landmarks) {
-  const anatomy::GenericAnatomy anatomy = anatomy::load_generic();
+void write_embedded_head(const anatomy::GenericAnatomy& anatomy, const std::filesystem::path& head,
+                         const std::filesystem::path& landmarks) {
   // The head as it is in the data, quads and texture coordinates too, and the skull's teeth with it.
-  std::string text(anatomy::embedded_file("head.obj"));
+  std::string text = anatomy.head_source;
   size_t base = 1;
   for (size_t at = 0; at != std::string::npos; at = text.find('\n', at)) {
     if (at > 0) ++at;
@@ -73,6 +73,10 @@ void write_embedded_head(const std::filesystem::path& head, const std::filesyste
       json["landmarks"][landmark.name] = {mm[0], mm[1], mm[2]};
     }
   formats::write_text(landmarks, json.dump(1) + "\n");
+}
+
+void write_embedded_head(const std::filesystem::path& head, const std::filesystem::path& landmarks) {
+  write_embedded_head(anatomy::load_generic(), head, landmarks);
 }
 
 void write_demo_curves(const std::filesystem::path& path) {

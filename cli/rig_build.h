@@ -5,6 +5,10 @@
 #include "builder/rigging/build_rig.h"
 #include "cli/common.h"
 
+namespace CLI {
+class App;
+}
+
 namespace fascia::cli {
 
 struct BuildRequest {
@@ -13,9 +17,16 @@ struct BuildRequest {
   std::vector<std::string> variants;           ///< MUSCLE=VARIANT
   double fibre_spacing_mm = 0.0;               ///< 0: as the edits say
   double least_prevalence = -1.0;              ///< below 0: as the edits say
+  std::filesystem::path anatomy;               ///< folder of corrected anatomy data; empty: all as built in
   std::filesystem::path report;                ///< folder of the page that shows the build; empty: none
   rigging::BuildOptions options;
 };
+
+/// The anatomy in `directory`, or the built-in one when that is empty. Throws fascia::Error.
+anatomy::GenericAnatomy anatomy_for(const std::filesystem::path& directory);
+
+/// Adds `--anatomy DIR` to a command that builds.
+void add_anatomy_option(CLI::App& command, std::filesystem::path& directory);
 
 /// Reads the head, builds its rig and writes it. Throws fascia::Error.
 rigging::BuildReport build_file(const Common& common, const BuildRequest& request);

@@ -97,7 +97,7 @@ TriangleMesh skin_surface(int triangles) {
 TriangleMesh smas_surface(int triangles) {
   const auto anatomy = anatomy::load_generic();
   const TriangleMesh skin = weld(anatomy.head_object("skin")->mesh, 1e-6, nullptr);
-  smas::Inputs inputs;
+  smas::Inputs inputs = smas::inputs_from(anatomy);
   inputs.skin = &skin;
   inputs.cranium = &anatomy.skull_object("cranium")->mesh;
   inputs.mandible = &anatomy.skull_object("mandible")->mesh;

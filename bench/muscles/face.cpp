@@ -9,7 +9,7 @@ std::unique_ptr<Face> embedded_face(double edge_length) {
   auto face = std::make_unique<Face>();
   face->anatomy = anatomy::load_generic();
   const TriangleMesh skin = weld(face->anatomy.head_object("skin")->mesh, 1e-6, nullptr);
-  smas::Inputs inputs;
+  smas::Inputs inputs = smas::inputs_from(face->anatomy);
   inputs.skin = &skin;
   inputs.cranium = &face->anatomy.skull_object("cranium")->mesh;
   inputs.mandible = &face->anatomy.skull_object("mandible")->mesh;

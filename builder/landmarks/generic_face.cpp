@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "builder/landmarks/spheres.h"
@@ -70,9 +69,10 @@ Ball eyeball(const anatomy::GenericAnatomy& anatomy, const char* name) {
   return eye ? fit_ball(eye->mesh.vertices) : Ball{};
 }
 
-/// First triangle of each polygon of the object `skin` in head.obj, as fans, and one past the last.
-std::vector<size_t> first_triangles() {
-  std::istringstream lines{std::string(anatomy::embedded_file("head.obj"))};
+/// First triangle of each polygon of the object `skin` in `head`, an OBJ file, as fans, and one past the
+/// last.
+std::vector<size_t> first_triangles(const std::string& head) {
+  std::istringstream lines{head};
   std::vector<size_t> first = {0};
   bool is_skin = false;
   for (std::string line; std::getline(lines, line);) {
@@ -86,22 +86,18 @@ std::vector<size_t> first_triangles() {
   return first;
 }
 
-/// Reads which polygons of the skin make up which region.
-void read_regions(GenericFace& face) {
-  const std::string_view text = anatomy::embedded_file("head_regions.json");
-  const nlohmann::json faces =
-      nlohmann::json::parse(text.begin(), text.end()).at("objects").at("skin").at("faces");
-  const std::vector<size_t> first = first_triangles();
+/// Takes over which polygons of the skin make up which region.
+void take_regions(const anatomy::GenericAnatomy& anatomy, GenericFace& face) {
+  const std::vector<size_t> first = first_triangles(anatomy.head_source);
   face.region_of_triangle.assign(face.skin.triangles.size(), -1);
-  for (const auto& [name, range] : faces.items()) {
-    const size_t begin = range.at("first").get<size_t>(), end = begin + range.at("count").get<size_t>();
+  for (const anatomy::SkinRegion& region : anatomy.skin_regions) {
+    const size_t end = region.first + region.count;
     if (end >= first.size() || first.back() != face.skin.triangles.size())
-      throw Error(
-          "head_regions.json does not belong to the skin of head.obj: make both with "
-          "tools/anatomy/make_head");
-    for (size_t t = first[begin]; t < first[end]; ++t)
+      throw Error("head_regions.json, " + region.name +
+                  ": does not belong to the skin of head.obj; make both with tools/anatomy/make_head");
+    for (size_t t = first[region.first]; t < first[end]; ++t)
       face.region_of_triangle[t] = static_cast<int>(face.region_names.size());
-    face.region_names.push_back(name);
+    face.region_names.push_back(region.name);
   }
 }
 
@@ -115,7 +111,7 @@ GenericFace generic_face(const anatomy::GenericAnatomy& anatomy) {
   face.eye_left = eyeball(anatomy, "eye_left");
   face.eye_right = eyeball(anatomy, "eye_right");
   face.nose_tip = place(anatomy, "pronasale");
-  read_regions(face);
+  take_regions(anatomy, face);
   const std::vector<Vec3> features = feature_points(anatomy);
   size_t landmark_count = 0;
   const Samples outer = outer_left(anatomy, face.skin, landmark_count);

@@ -143,7 +143,7 @@ BuildResult build_rig(const formats::Scene& scene, const formats::LandmarkFile& 
   report.warnings.insert(report.warnings.end(), skull.warnings.begin(), skull.warnings.end());
 
   const smas::Result smas = stages.run("smas", [&] {
-    smas::Inputs inputs;
+    smas::Inputs inputs = smas::inputs_from(anatomy);
     inputs.skin = &head.skin;
     inputs.cranium = &skull.cranium;
     inputs.mandible = &skull.mandible;
@@ -161,8 +161,10 @@ BuildResult build_rig(const formats::Scene& scene, const formats::LandmarkFile& 
   result.rig.smas = rig_smas(smas, skull, anatomy);
   result.rig.actuation = rig_actuation(anatomy, result.rig.muscles);
   result.rig.input_to_metres = head.input_to_metres.cast<float>();
-  result.rig.tissue = stages.run(
-      "tissue", [&] { return build_tissue(scene, head, skull, smas, points, result.rig, options, report); });
+  const tissue::TissueInputs inputs =
+      tissue_inputs(scene, head, skull, smas, points, anatomy.mechanics, result.rig);
+  result.rig.tissue =
+      stages.run("tissue", [&] { return build_tissue(scene, head, inputs, options, report); });
   return result;
 }
 

@@ -33,6 +33,8 @@ struct StageTime {
 
 /// Figures of a build, as `fascia build --json` prints them. Lengths in millimetres.
 struct BuildReport {
+  std::vector<std::string>
+      corrected;  ///< files of the anatomy that are not as built in; the caller's to fill
   std::string units;
   Mat4 input_to_metres = Mat4::Identity();
   struct PartFigures {

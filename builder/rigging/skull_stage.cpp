@@ -100,6 +100,13 @@ rig::Skull rig_skull(const skull::FitResult& skull, const prepare::PreparedHead&
   out.jaw.lateral = lateral.cast<float>();
   out.jaw.forward = forward.cast<float>();
   out.jaw.up = forward.cross(lateral).cast<float>();
+  const anatomy::mechanics::JawMotion& motion = skull.jaw.motion;
+  out.jaw.open_angle = static_cast<float>(motion.open_angle);
+  out.jaw.open_glide = Vec3(0.0, -motion.open_down, motion.open_forward).cast<float>();
+  out.jaw.forward_glide = static_cast<float>(motion.protrusion_forward);
+  out.jaw.forward_drop = static_cast<float>(motion.protrusion_down);
+  out.jaw.lateral_angle = static_cast<float>(motion.lateral_angle);
+  out.jaw.lateral_glide = static_cast<float>(motion.lateral_glide);
   out.eye_left = rig_eye(head.eye_left);
   out.eye_right = rig_eye(head.eye_right);
   return out;

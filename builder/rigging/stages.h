@@ -9,6 +9,7 @@
 #include "builder/rigging/build_rig.h"
 #include "builder/skull/skull.h"
 #include "builder/smas/smas.h"
+#include "builder/tissue/inputs.h"
 #include "rig/model/rig.h"
 
 /// Between the stages: each takes what the stages before made in their own terms and hands it on in the next
@@ -38,10 +39,17 @@ rig::Smas rig_smas(const smas::Result& smas, const skull::FitResult& skull,
 /// Channels and vocabularies; wholes such as orbicularis_oculi_left become the set `whole`.
 rig::Actuation rig_actuation(const anatomy::GenericAnatomy& anatomy, const std::vector<rig::Muscle>& muscles);
 
-/// Makes the lattice levels up to `options.detail` and binds every primitive of the scene.
+/// What the lattice is made from: the stages before, the parts of the scene, and the anatomy's constants.
+tissue::TissueInputs tissue_inputs(const formats::Scene& scene, const prepare::PreparedHead& head,
+                                   const skull::FitResult& skull, const smas::Result& smas,
+                                   const Points& landmarks, const anatomy::Mechanics& mechanics,
+                                   const rig::Rig& rig);
+
+/// Makes the lattice levels up to `options.detail` from `tissue_inputs` and binds every primitive of the
+/// scene.
 rig::Tissue build_tissue(const formats::Scene& scene, const prepare::PreparedHead& head,
-                         const skull::FitResult& skull, const smas::Result& smas, const Points& landmarks,
-                         const rig::Rig& rig, const BuildOptions& options, BuildReport& report);
+                         const tissue::TissueInputs& inputs, const BuildOptions& options,
+                         BuildReport& report);
 
 /// `mesh` in the rig's single precision.
 rig::Surface rig_surface(const TriangleMesh& mesh);

@@ -103,26 +103,32 @@ std::vector<tissue::LevelOptions> levels_up_to(const std::string& detail) {
 
 }  // namespace
 
-rig::Tissue build_tissue(const formats::Scene& scene, const prepare::PreparedHead& head,
-                         const skull::FitResult& skull, const smas::Result& smas, const Points& landmarks,
-                         const rig::Rig& rig, const BuildOptions& options, BuildReport& report) {
+tissue::TissueInputs tissue_inputs(const formats::Scene& scene, const prepare::PreparedHead& head,
+                                   const skull::FitResult& skull, const smas::Result& smas,
+                                   const Points& landmarks, const anatomy::Mechanics& mechanics,
+                                   const rig::Rig& rig) {
   tissue::TissueInputs inputs;
+  inputs.mechanics = mechanics;
   inputs.skin = head.skin;
   inputs.landmarks = landmarks;
   inputs.cranium = skull.cranium;
   inputs.mandible = skull.mandible;
   inputs.smas = smas.mesh;
   inputs.smas_bone_attachment = rig.smas.bone_attachment;
-  inputs.smas_skin_attachment = rig.smas.skin_attachment;
   inputs.jaw = rig.skull.jaw;
   inputs.eye_left = rig.skull.eye_left;
   inputs.eye_right = rig.skull.eye_right;
   inputs.ligaments = rig.smas.ligaments;
   inputs.muscles = rig.muscles;
   inputs.channels = rig.actuation.channels;
-  const std::vector<MeshPart> parts = take_apart(scene, head);
-  for (const MeshPart& part : parts)
+  for (const MeshPart& part : take_apart(scene, head))
     inputs.parts.push_back(part_mesh(head.meshes[part.mesh], part));
+  return inputs;
+}
+
+rig::Tissue build_tissue(const formats::Scene& scene, const prepare::PreparedHead& head,
+                         const tissue::TissueInputs& inputs, const BuildOptions& options,
+                         BuildReport& report) {
   tissue::TissueOptions tissue_options;
   tissue_options.levels = levels_up_to(options.detail);
   tissue::TissueResult built = tissue::build(inputs, tissue_options);
@@ -132,6 +138,7 @@ rig::Tissue build_tissue(const formats::Scene& scene, const prepare::PreparedHea
       report.warnings.push_back("level " + figures.level + " has " + std::to_string(figures.turned_prisms) +
                                 " turned prisms at rest");
   }
+  const std::vector<MeshPart> parts = take_apart(scene, head);
   for (std::vector<rig::Binding>& bindings : built.tissue.bindings)
     bindings = put_together(scene, head, parts, bindings);
   return std::move(built.tissue);

@@ -59,6 +59,7 @@ Generic from_anatomy(const anatomy::GenericAnatomy& anatomy, const std::string& 
       out.curves.push_back({curve.name, curve.closed, curve.points});
   out.condyle_left = condyle(anatomy, "left");
   out.condyle_right = condyle(anatomy, "right");
+  out.jaw = anatomy.mechanics.jaw;
   return out;
 }
 

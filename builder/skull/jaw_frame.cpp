@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <numbers>
 
 namespace fascia::skull {
 
@@ -16,12 +15,11 @@ JawFrame jaw_frame(const Generic& generic, const BoneMap& map, const Mat4& pose)
   jaw.hinge = across.norm() > 1e-6 ? Vec3(across.normalized()) : Vec3((turn * Vec3::UnitX()).normalized());
   const Vec3 front = (turn * Vec3::UnitZ()).normalized();
   jaw.forward = (front - front.dot(jaw.hinge) * jaw.hinge).normalized();
-  // The articular eminence slopes about 35 degrees down from the Frankfort plane.
-  jaw.glide = Eigen::AngleAxisd(35 * std::numbers::pi / 180, jaw.hinge) * jaw.forward;
+  jaw.motion = generic.jaw;
   const double scale = std::cbrt(std::abs(turn.determinant()));
-  jaw.glide_limit *= scale;
-  jaw.forward_limit *= scale;
-  jaw.lateral_limit *= scale;
+  for (double* length : {&jaw.motion.open_forward, &jaw.motion.open_down, &jaw.motion.protrusion_forward,
+                         &jaw.motion.protrusion_down, &jaw.motion.lateral_glide})
+    *length *= scale;
   return jaw;
 }
 

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "anatomy/mechanics.h"
 #include "builder/skull/exterior.h"
 #include "builder/splines/warp.h"
 #include "geometry/mesh.h"
@@ -42,6 +43,7 @@ struct Generic {
   std::vector<BoneCurve> curves;     ///< semilandmarks slide along them
   Vec3 condyle_left = Vec3::Zero();  ///< centres of the condyles, on the hinge axis
   Vec3 condyle_right = Vec3::Zero();
+  anatomy::mechanics::JawMotion jaw;  ///< how far the mandible moves
 };
 
 /// A landmark found or given on the head to fit.
@@ -86,12 +88,9 @@ struct JawFrame {
   Vec3 condyle_left = Vec3::Zero(), condyle_right = Vec3::Zero();  ///< m
   Vec3 origin = Vec3::Zero();                                      ///< midway between the condyles
   Vec3 hinge = Vec3::UnitX();    ///< unit axis to the subject's left; positive turns open the jaw
-  Vec3 glide = Vec3::UnitZ();    ///< unit, forward and down along the eminence
   Vec3 forward = Vec3::UnitZ();  ///< unit, along the occlusal plane
-  double open_limit = 0.52;      ///< radians of rotation
-  double glide_limit = 0.013;    ///< m along `glide`
-  double forward_limit = 0.010;  ///< m
-  double lateral_limit = 0.010;  ///< m to each side
+  anatomy::mechanics::JawMotion
+      motion;  ///< at full value of the jaw's channels, lengths as this head is large
 };
 
 /// The map from the generic's bone to the fitted bone: a smoothed thin-plate warp, replaced by one

@@ -8,13 +8,9 @@
 
 namespace fascia::smas {
 
-const std::vector<LayerSample>& adult_layers() {
-  static const std::vector<LayerSample> table = anatomy::load_generic().tissue.smas_depths;
-  return table;
-}
-
-LayerDepth::LayerDepth(const std::vector<LayerSample>& table, const Landmarks& landmarks, double scale)
-    : reach_(0.012 * scale) {
+LayerDepth::LayerDepth(const std::vector<LayerSample>& table, const anatomy::mechanics::SmasShape& shape,
+                       const Landmarks& landmarks, double scale)
+    : limits_(shape.depth_limits), reach_(shape.region_blend * scale) {
   for (const LayerSample& sample : table)
     for (const char* side : {"", "_left", "_right"}) {
       const auto found = landmarks.find(sample.landmark + side);
@@ -41,7 +37,7 @@ double LayerDepth::depth(const Vec3& skin, double to_bone) const {
   fraction /= weights;
   free_depth /= weights;
   if (!std::isfinite(to_bone)) return free_depth;
-  return std::clamp(std::min(fraction * to_bone, free_depth), 0.2 * to_bone, 0.8 * to_bone);
+  return std::clamp(std::min(fraction * to_bone, free_depth), limits_.begin * to_bone, limits_.end * to_bone);
 }
 
 }  // namespace fascia::smas

@@ -15,23 +15,21 @@ using Landmarks = std::map<std::string, Vec3>;
 /// How deep the SMAS lies near one landmark.
 using LayerSample = anatomy::SmasDepth;
 
-/// The layer table of an adult face.
-///
-/// Skin and subcutaneous fat lie over the SMAS, so that its depth is the thickness of those two. They
-/// are thin over galea, nose, lids and lips, and thick over the malar and nasolabial fat. The numbers and
-/// their sources are the `smas_depths` of anatomy/data/tissue.json.
-const std::vector<LayerSample>& adult_layers();
-
 /// Depth of the SMAS at any point of the skin, interpolated between the landmarks of a layer table.
 class LayerDepth {
  public:
-  /// `scale`: size of this face relative to an adult's; free depths are multiplied by it.
+  /// `table`: an adult's `anatomy::Tissue::smas_depths`. `scale`: size of this face relative to an adult's;
+  /// free depths are multiplied by it.
   /// @throws Error when none of the table's landmarks is there.
-  LayerDepth(const std::vector<LayerSample>& table, const Landmarks& landmarks, double scale);
+  LayerDepth(const std::vector<LayerSample>& table, const anatomy::mechanics::SmasShape& shape,
+             const Landmarks& landmarks, double scale);
 
   /// Depth under skin point `skin`, metres, when bone lies `to_bone` under it (infinite: none).
-  /// The regional fraction of `to_bone`, no more than the free depth, within [.2, .8] of `to_bone`.
+  /// The regional fraction of `to_bone`, no more than the free depth, within the depth limits.
   double depth(const Vec3& skin, double to_bone) const;
+
+  /// Least and greatest depth on the way from skin to bone.
+  const anatomy::Ramp& limits() const { return limits_; }
 
  private:
   struct Site {
@@ -39,6 +37,7 @@ class LayerDepth {
     double fraction, free_depth;
   };
   std::vector<Site> sites_;
+  anatomy::Ramp limits_;
   double reach_;
 };
 

@@ -27,18 +27,36 @@ const Vec3* maybe(const Landmarks& landmarks, const std::string& name) {
   return found == landmarks.end() || !found->second.allFinite() ? nullptr : &found->second;
 }
 
+// Rules that tell the openings' lining from the skin around them, and stand-ins for landmarks that are not
+// given. Lengths in metres of an adult; they describe how heads are modelled, not how faces are made.
+constexpr double kLeastOpening = 0.0025;  // half height of closed lids and lips
+constexpr double kLidCorner = 1.3;        // margin beside the canthi over that above and below the fissure
+constexpr double kEyeDepth = 0.020;       // before and behind the canthi an eye's opening reaches
+constexpr double kMouthFront = 0.020, kMouthBack = 0.030;      // before and behind the lips the mouth's does
+constexpr double kNostrilFront = 0.008, kNostrilBack = 0.004;  // before and behind the nostrils' rims
+constexpr double kNostrilRadius = 0.9;  // of the way up a nostril, in lengths of its rim
+constexpr double kNostrilHeight = 0.025, kNostrilBelow = 0.002;  // of that way, above and below the rim
+constexpr double kGlobe = 0.012;           // half of an adult's 24 mm (Gray's Anatomy, 41st ed.)
+constexpr double kBrowToHairline = 0.048;  // without a trichion: above glabella
+constexpr double kHairlineToVertex = 0.1;  // and along the scalp from there
+
 Vec3 perpendicular(const Vec3& v, const Vec3& axis) {
   return (v - axis * axis.dot(v)).normalized();
 }
 
 }  // namespace
 
-double face_scale(const Landmarks& landmarks) {
-  // Of the mean adult: outer canthi 89 mm apart, 110 mm from between them to gnathion.
+anatomy::mechanics::SmasShape with_options(anatomy::mechanics::SmasShape shape, const ReachOptions& options) {
+  shape.galea = options.galea.value_or(shape.galea);
+  shape.neck = options.neck.value_or(shape.neck);
+  return shape;
+}
+
+double face_scale(const Landmarks& landmarks, const anatomy::mechanics::SmasShape& shape) {
   const Vec3 &left = landmark(landmarks, "exocanthion_left"),
              &right = landmark(landmarks, "exocanthion_right");
   const double height = (landmark(landmarks, "gnathion") - 0.5 * (left + right)).norm();
-  const double scale = 0.5 * ((left - right).norm() / 0.089 + height / 0.110);
+  const double scale = 0.5 * ((left - right).norm() / shape.adult_width + height / shape.adult_height);
   if (!(scale > 1e-3)) throw Error("SMAS: exocanthion_left, exocanthion_right and gnathion lie at one point");
   return scale;
 }
@@ -60,16 +78,18 @@ double ReachField::Opening::across(const Vec3& point) const {
   return slope > 0.0 ? std::max((level - 1.0) / slope, -std::min(up, down)) : -std::min(up, down);
 }
 
-ReachField::ReachField(const Landmarks& landmarks, const ReachOptions& options, double band)
-    : scale_(face_scale(landmarks)), band_(band) {
+ReachField::ReachField(const Landmarks& landmarks, const anatomy::mechanics::SmasShape& shape, bool nostrils,
+                       double band)
+    : shape_(shape), scale_(face_scale(landmarks, shape)), band_(band) {
   for (const char* side : {"_left", "_right"})
-    add_eye(landmarks, side, options.lid_margin * scale_);
-  add_mouth(landmarks, std::clamp(options.lip_part, 0.1, 1.0));
-  if (options.nostrils) add_nostrils(landmarks);
-  add_limits(landmarks, options);
+    add_eye(landmarks, side);
+  add_mouth(landmarks);
+  if (nostrils) add_nostrils(landmarks);
+  add_limits(landmarks);
 }
 
-void ReachField::add_eye(const Landmarks& landmarks, const std::string& side, double margin) {
+void ReachField::add_eye(const Landmarks& landmarks, const std::string& side) {
+  const double margin = shape_.lid_margin * scale_;
   const Vec3 &outer = landmark(landmarks, "exocanthion" + side),
              &inner = landmark(landmarks, "endocanthion" + side);
   const Vec3 &above = landmark(landmarks, "palpebrale_superius" + side),
@@ -81,17 +101,17 @@ void ReachField::add_eye(const Landmarks& landmarks, const std::string& side, do
   const Vec3 up = landmark(landmarks, "nasion") - landmark(landmarks, "subnasale");
   eye.y = perpendicular(up, eye.x);
   eye.z = eye.x.cross(eye.y);
-  eye.half_width = 0.5 * (outer - inner).norm() + 1.3 * margin;
-  const double least = 0.0025 * scale_;
+  eye.half_width = 0.5 * (outer - inner).norm() + kLidCorner * margin;
+  const double least = kLeastOpening * scale_;
   eye.up = std::max((above - eye.centre).dot(eye.y), least) + margin;
   eye.down = std::max(-(below - eye.centre).dot(eye.y), least) + margin;
   eye.bend = 0.0;
-  eye.near = -0.020 * scale_, eye.far = 0.020 * scale_;
-  eye.globe = 0.012 * scale_;  // half of an adult's 24 mm
+  eye.near = -kEyeDepth * scale_, eye.far = kEyeDepth * scale_;
+  eye.globe = kGlobe * scale_;
   openings_.push_back(eye);
 }
 
-void ReachField::add_mouth(const Landmarks& landmarks, double part) {
+void ReachField::add_mouth(const Landmarks& landmarks) {
   const Vec3 &left = landmark(landmarks, "cheilion_left"), &right = landmark(landmarks, "cheilion_right");
   const Vec3& between = landmark(landmarks, "stomion");
   const Vec3 &above = landmark(landmarks, "labiale_superius"),
@@ -103,11 +123,11 @@ void ReachField::add_mouth(const Landmarks& landmarks, double part) {
   mouth.centre = between + mouth.x * mouth.x.dot(0.5 * (left + right) - between);
   const double corner = 0.5 * (left - right).norm();
   mouth.bend = (0.5 * (left + right) - mouth.centre).dot(mouth.y) / (corner * corner);
-  mouth.half_width = corner + 0.0022 * scale_;
-  const double least = 0.0025 * scale_;
-  mouth.up = std::max(part * (above - between).dot(mouth.y), least);
-  mouth.down = std::max(part * (between - below).dot(mouth.y), least);
-  mouth.near = -0.030 * scale_, mouth.far = 0.020 * scale_;
+  mouth.half_width = corner + shape_.lip_corner * scale_;
+  const double least = kLeastOpening * scale_;
+  mouth.up = std::max(shape_.lip_part * (above - between).dot(mouth.y), least);
+  mouth.down = std::max(shape_.lip_part * (between - below).dot(mouth.y), least);
+  mouth.near = -kMouthBack * scale_, mouth.far = kMouthFront * scale_;
   openings_.push_back(mouth);
 }
 
@@ -135,16 +155,17 @@ void ReachField::add_nostrils(const Landmarks& landmarks) {
   nose.y = nose.z.cross(nose.x);
   // As wide as the alae, of which the lowest part goes with it: their free edges are thinner than a triangle.
   const double wings = (landmark(landmarks, "alare_left") - landmark(landmarks, "alare_right")).norm();
-  nose.half_width = std::max(0.5 * wings, 0.5 * (centres[0] - centres[1]).norm() + 0.24 * length);
-  nose.up = nose.down = 0.3 * length;
+  nose.half_width =
+      std::max(0.5 * wings, 0.5 * (centres[0] - centres[1]).norm() + shape_.nostril_width * length);
+  nose.up = nose.down = shape_.nostril_height * length;
   // Bent, so that it passes in front of subnasale and back into the nostrils beside it.
   const double ahead = std::max((under - nose.centre).dot(nose.y) + 1.2 * nose.down, 0.0);
   nose.centre += ahead * nose.y;
   nose.bend = -1.5 * ahead / (nose.half_width * nose.half_width);
-  nose.near = -0.004 * scale_, nose.far = 0.008 * scale_;
+  nose.near = -kNostrilBack * scale_, nose.far = kNostrilFront * scale_;
   openings_.push_back(nose);
   for (const Vec3& rim : centres)
-    nostrils_.push_back({rim, nose.z, 0.9 * length});
+    nostrils_.push_back({rim, nose.z, kNostrilRadius * length});
 }
 
 bool ReachField::in_nostril(const Vec3& point, const Vec3& normal) const {
@@ -152,13 +173,14 @@ bool ReachField::in_nostril(const Vec3& point, const Vec3& normal) const {
     const Vec3 inwards = nostril.rim - point;
     const double along = inwards.dot(nostril.out);
     const Vec3 across = inwards - along * nostril.out;
-    if (along < -0.002 * scale_ || along > 0.025 * scale_ || across.norm() > nostril.radius) continue;
+    if (along < -kNostrilBelow * scale_ || along > kNostrilHeight * scale_ || across.norm() > nostril.radius)
+      continue;
     if (normal.dot(across) > 0.15 * across.norm()) return true;
   }
   return false;
 }
 
-void ReachField::add_limits(const Landmarks& landmarks, const ReachOptions& options) {
+void ReachField::add_limits(const Landmarks& landmarks) {
   const Vec3 &left = landmark(landmarks, "exocanthion_left"),
              &right = landmark(landmarks, "exocanthion_right");
   const Vec3 side = (left - right).normalized();
@@ -171,21 +193,21 @@ void ReachField::add_limits(const Landmarks& landmarks, const ReachOptions& opti
   for (const char* name :
        {"preaurale_left", "preaurale_right", "otobasion_superius_left", "otobasion_superius_right"})
     if (const Vec3* ear = maybe(landmarks, name)) foremost = std::max(foremost, ear->dot(front));
-  limits_.push_back({front * (foremost + options.ear_gap * scale_), front});
+  limits_.push_back({front * (foremost + shape_.ear_gap * scale_), front});
   // Behind the hairline.
   if (const Vec3* hairline = maybe(landmarks, "trichion")) {
     const Vec3* top = maybe(landmarks, "vertex");
     const Vec3 crown = top ? *top : Vec3(*hairline + scale_ * (0.040 * up - 0.095 * front));
     const Vec3 along = perpendicular(crown - *hairline, side);
-    limits_.push_back({*hairline + options.galea * (crown - *hairline), -along});
+    limits_.push_back({*hairline + shape_.galea * (crown - *hairline), -along});
   } else {
     const Vec3& brow = landmark(landmarks, "glabella");
-    limits_.push_back({brow + (0.048 + 0.1 * options.galea) * scale_ * up, -up});
+    limits_.push_back({brow + (kBrowToHairline + kHairlineToVertex * shape_.galea) * scale_ * up, -up});
   }
   // Along the neck: down from the angle of chin and neck.
   const Vec3* angle = maybe(landmarks, "cervicale");
   const Vec3 throat = angle ? *angle : Vec3(chin - scale_ * (0.011 * up + 0.04 * front));
-  limits_.push_back({throat - options.neck * scale_ * up, up});
+  limits_.push_back({throat - shape_.neck * scale_ * up, up});
 }
 
 double ReachField::within_limits(const Vec3& skin) const {

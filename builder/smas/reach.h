@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,34 +10,28 @@
 
 namespace fascia::smas {
 
-/// How far the SMAS goes, and how wide its openings are. Lengths in metres of an adult face; they are
-/// scaled with the face.
+/// What may be asked for instead of the anatomy's reach. Lengths in metres of an adult face.
 struct ReachOptions {
-  /// Upper end along the midline from trichion (0, the hairline) to vertex (1): the frontalis ends in the
-  /// galea behind the hairline.
-  double galea = 0.35;
-  /// How far below cervicale (the angle of chin and neck) it follows the platysma.
-  double neck = 0.030;
-  /// How far in front of the ear it ends.
-  double ear_gap = 0.010;
-  /// How far around the fissure of the lids it stays open.
-  double lid_margin = 0.0015;
-  /// How much of the vermilion, from the line between the lips, it stays open.
-  double lip_part = 0.45;
+  std::optional<double> galea;  ///< see anatomy::mechanics::SmasShape
+  std::optional<double> neck;   ///< likewise
   /// Leave the nostrils open (one opening, the columella between them with it).
   bool nostrils = true;
 };
 
-/// Size of a face relative to an adult's, from the landmarks of eyes, nose, mouth and chin.
+/// `shape` with what `options` ask for in its place.
+anatomy::mechanics::SmasShape with_options(anatomy::mechanics::SmasShape shape, const ReachOptions& options);
+
+/// Size of a face relative to the adult of `shape`, from the landmarks of eyes, nose, mouth and chin.
 /// @throws Error that names the landmarks missing.
-double face_scale(const Landmarks& landmarks);
+double face_scale(const Landmarks& landmarks, const anatomy::mechanics::SmasShape& shape);
 
 /// Where on the skin the SMAS may lie: a field in metres, positive inside, about the distance to the
 /// nearest edge (the outer limit, lids, mouth, nostrils).
 class ReachField {
  public:
   /// `band`: the field reaches -band within each opening. @throws Error that names the landmarks missing.
-  ReachField(const Landmarks& landmarks, const ReachOptions& options, double band);
+  ReachField(const Landmarks& landmarks, const anatomy::mechanics::SmasShape& shape, bool nostrils,
+             double band);
   double operator()(const Vec3& skin) const { return std::min(within_limits(skin), outside_openings(skin)); }
   double within_limits(const Vec3& skin) const;
   double outside_openings(const Vec3& skin) const;
@@ -63,10 +58,10 @@ class ReachField {
   struct Limit {
     Vec3 at, inward;
   };
-  void add_eye(const Landmarks& landmarks, const std::string& side, double margin);
-  void add_mouth(const Landmarks& landmarks, double part);
+  void add_eye(const Landmarks& landmarks, const std::string& side);
+  void add_mouth(const Landmarks& landmarks);
   void add_nostrils(const Landmarks& landmarks);
-  void add_limits(const Landmarks& landmarks, const ReachOptions& options);
+  void add_limits(const Landmarks& landmarks);
 
   // The way up into a nostril: what looks towards it, beside and above its rim, is its wall.
   struct Nostril {
@@ -78,6 +73,7 @@ class ReachField {
   std::vector<Opening> openings_;
   std::vector<Nostril> nostrils_;
   std::vector<Limit> limits_;
+  anatomy::mechanics::SmasShape shape_;
   double scale_, band_;
 };
 

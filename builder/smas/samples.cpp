@@ -100,7 +100,7 @@ void smooth_depths(double radius, std::vector<DepthSample>* samples) {
 std::vector<DepthSample> depth_samples(const FacialSkin& face, const Bones& bones, const LayerDepth& layers,
                                        double scale, double spacing) {
   const std::vector<Vec3> normals = blended_normals(face.mesh);
-  const double far = 0.045 * scale;
+  const double far = 0.045 * scale;  // farther bone is not under this skin
   VertexGrid grid(spacing);
   std::vector<int> near;
   std::vector<DepthSample> samples;
@@ -118,8 +118,8 @@ std::vector<DepthSample> depth_samples(const FacialSkin& face, const Bones& bone
     sample.depth = layers.depth(at, to_bone);
     // Beside an edge of the bone the free depth must not reach into it.
     const double room = std::isfinite(to_bone) ? to_bone : std::max(closest, 0.0);
-    sample.most = 0.8 * room;
-    sample.least = std::isfinite(to_bone) ? 0.2 * to_bone : 0.0;
+    sample.most = layers.limits().end * room;
+    sample.least = std::isfinite(to_bone) ? layers.limits().begin * to_bone : 0.0;
     sample.depth = std::min(sample.depth, sample.most);
     samples.push_back(sample);
     grid.add(at);

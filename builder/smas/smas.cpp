@@ -68,18 +68,28 @@ int count_folds(const TriangleMesh& mesh, const std::vector<Vec3>& normals) {
 
 }  // namespace
 
+Inputs inputs_from(const anatomy::GenericAnatomy& anatomy) {
+  Inputs inputs;
+  inputs.depths = anatomy.tissue.smas_depths;
+  inputs.shape = anatomy.mechanics.smas_shape;
+  return inputs;
+}
+
 Result build(const Inputs& inputs, const Options& options) {
   if (!inputs.skin || inputs.skin->empty()) throw Error("SMAS: the head has no skin triangles");
   if (!(options.edge_length > 0.0)) throw Error("SMAS: edge_length must be positive");
-  const double scale = face_scale(inputs.landmarks);
+  if (inputs.depths.empty() || !(inputs.shape.adult_width > 0.0))
+    throw Error("SMAS: the depths and the shape of the anatomy are missing among the inputs");
+  const double scale = face_scale(inputs.landmarks, inputs.shape);
   const double edge = options.edge_length * scale;
   const double band = 2.4 * edge;
-  const ReachField reach(inputs.landmarks, options.reach, band);
+  const ReachField reach(inputs.landmarks, with_options(inputs.shape, options.reach), options.reach.nostrils,
+                         band);
   const FacialSkin face = facial_skin(*inputs.skin, inputs.landmarks, reach, band);
   const spatial::SurfaceQuery skin(face.mesh);
   const Bones bones(inputs.cranium, inputs.mandible,
                     [&](const Vec3& p) { return reach.within_limits(p) > -0.03 * scale; });
-  const LayerDepth layers(options.layers.empty() ? adult_layers() : options.layers, inputs.landmarks, scale);
+  const LayerDepth layers(inputs.depths, inputs.shape, inputs.landmarks, scale);
 
   const std::vector<DepthSample> samples = depth_samples(face, bones, layers, scale, 0.8 * edge);
   const HeightFit height = fit_height(samples, options, scale, area_of(face.mesh));
@@ -133,7 +143,7 @@ Result build(const Inputs& inputs, const Options& options) {
                 at.barycentric[2] * skin_normals[t[2]]);
   };
   const std::vector<Lie> lies =
-      order_layers({skin, bones, options.clearance * scale, 0.06 * scale, outward}, &surface);
+      order_layers({skin, bones, inputs.shape.clearance * scale, 0.06 * scale, outward}, &surface);
   result.mesh = std::move(surface.mesh);
   result.normals = std::move(surface.normals);
   for (const Lie& lie : lies) {

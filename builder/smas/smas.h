@@ -21,7 +21,12 @@ struct Inputs {
   /// labiale_superius, labiale_inferius, gnathion. Used when there: all of the layer table, trichion,
   /// vertex, columella, subalare, preaurale, otobasion_superius, cervicale.
   Landmarks landmarks;
+  std::vector<LayerSample> depths;      ///< of an adult, by region: `anatomy::Tissue::smas_depths`
+  anatomy::mechanics::SmasShape shape;  ///< how far it reaches: `anatomy::Mechanics::smas_shape`
 };
+
+/// Inputs that hold the depths and the shape of `anatomy`; the rest is to be filled in.
+Inputs inputs_from(const anatomy::GenericAnatomy& anatomy);
 
 /// What the implicit function is told besides where it is 0.
 enum class ImplicitForm {
@@ -33,15 +38,11 @@ enum class ImplicitForm {
 struct Options {
   double edge_length = 0.004;
   ReachOptions reach;
-  /// Depth of the SMAS by region; empty: `adult_layers()`.
-  std::vector<LayerSample> layers;
   ImplicitForm form = ImplicitForm::variational;
   /// Data of the implicit function at most: accuracy against time, which grows with the cube.
   int max_centres = 700;
   /// Distance to the depth asked for at which no more centres are added.
   double fit_tolerance = 0.0002;
-  /// Least distance that is kept to skin and to bone, where there is room; otherwise the middle is taken.
-  double clearance = 0.0003;
 };
 
 /// The SMAS, and how it lies between skin and bone.

@@ -8,24 +8,22 @@ namespace fascia::tissue {
 int channel_index(const std::vector<rig::Channel>& channels, const std::string& name);
 
 /// Lays each muscle's fibres onto the level's SMAS nodes. A muscle without a channel is left out.
-void add_fibres(const TissueInputs& inputs, const TissueOptions& options, const Columns& columns,
-                rig::TissueLevel& level);
+void add_fibres(const TissueInputs& inputs, const Columns& columns, rig::TissueLevel& level);
 
 /// Lids carried about the globe: `lid_upper_<side>` closes from 0 to 1 (below 0 it opens wider),
 /// `lid_lower_<side>` raises the lower lid, `eye_pitch_<side>` takes both lids along; and the globes they
 /// rest on.
-void add_lids(const TissueInputs& inputs, const TissueOptions& options, const FaceRegion& region,
-              const Columns& columns, rig::TissueLevel& level);
+void add_lids(const TissueInputs& inputs, const FaceRegion& region, const Columns& columns,
+              rig::TissueLevel& level);
 
 /// Air in the mouth: `buccal_pressure_<side>` on its half of the
 /// vestibule, behind cheek and lips.
-void add_pressures(const TissueInputs& inputs, const TissueOptions& options, const Columns& columns,
-                   rig::TissueLevel& level);
+void add_pressures(const TissueInputs& inputs, const Columns& columns, rig::TissueLevel& level);
 
 /// Lips rolled over the teeth (`lip_roll_upper_<side>`, `lip_roll_lower_<side>` above 0) or turned out (below
 /// 0).
-void add_lip_rolls(const TissueInputs& inputs, const TissueOptions& options, const FaceRegion& region,
-                   const Beneath& beneath, const Columns& columns, rig::TissueLevel& level);
+void add_lip_rolls(const TissueInputs& inputs, const FaceRegion& region, const Beneath& beneath,
+                   const Columns& columns, rig::TissueLevel& level);
 
 /// Retaining ligaments from bone through the fascia to the skin: springs that only resist being stretched.
 void add_ligaments(const TissueInputs& inputs, const Columns& columns, rig::TissueLevel& level);

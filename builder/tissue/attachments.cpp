@@ -8,124 +8,126 @@
 namespace fascia::tissue {
 namespace {
 
-struct Patch {
+/// A place of this face, and over how many metres its effect falls to 1/e.
+struct Spot {
   Vec3 centre;
-  double radius, bone, skin;
-};
-
-/// The face's planes and firm places by landmarks: wide gliding at forehead, prezygomatic space and buccal
-/// cheek; firm at the bridge of the nose, the parotid region, temple line and the mandibular ligament
-/// (Mendelson & Wong 2012; Keller's attachment strengths after Rohrich & Pessa 2007).
-std::vector<Patch> patches_of(const TissueInputs& inputs) {
-  const Vec3 glabella = landmark(inputs, "glabella"), nose = landmark(inputs, "subnasale"),
-             tip = landmark(inputs, "pronasale");
-  const double third = glabella.y() - nose.y();
-  std::vector<Patch> patches;
-  patches.push_back({glabella + Vec3(0, 0.55, -0.1) * third, 0.6 * third, 0.30, 0.8});
-  patches.push_back({0.5 * (landmark(inputs, "sellion") + tip), 0.22 * third, 3.0, 1.3});
-  patches.push_back({landmark(inputs, "gnathion") + Vec3(0, 0.15, 0.05) * third, 0.3 * third, 1.2, 2.0});
-  for (const char* side : {"_left", "_right"}) {
-    const std::string s = side;
-    const Vec3 outer = landmark(inputs, "exocanthion" + s), corner = landmark(inputs, "cheilion" + s);
-    const Vec3 ear = landmark(inputs, "tragion" + s), inner = landmark(inputs, "endocanthion" + s);
-    patches.push_back(
-        {glabella + Vec3(outer.x() * 0.8, 0.45 * third, -0.25 * third), 0.45 * third, 0.35, 0.8});
-    patches.push_back(
-        {0.5 * (0.5 * (inner + outer) + corner) + 0.2 * (ear - corner), 0.3 * third, 0.45, 0.7});
-    patches.push_back({ear + 0.15 * (corner - ear), 0.45 * third, 3.0, 1.2});
-    patches.push_back({0.5 * (ear + outer) + Vec3(0, 0.15 * third, 0), 0.25 * third, 1.6, 0.8});
-    patches.push_back({corner + Vec3(0.1 * corner.x(), -0.45 * third, -0.2 * third), 0.18 * third, 1.5, 1.0});
-    patches.push_back({corner + 0.12 * (ear - corner), 0.25 * third, 0.6, 2.5});  // modiolus
-    patches.push_back({0.5 * (corner + nose), 0.2 * third, 0.9, 2.0});            // nasolabial line
-    patches.push_back(
-        {glabella + Vec3(0.6 * outer.x(), 0.05 * third, -0.1 * third), 0.3 * third, 0.6, 2.5});  // brow
-    patches.push_back({0.5 * (corner + ear) + Vec3(0, -0.05 * third, 0), 0.3 * third, 0.6, 0.7});
+  double radius;
+  double weight(const Vec3& point) const {
+    const double r = (point - centre).norm() / radius;
+    return std::exp(-r * r);
   }
-  return patches;
-}
-
-/// What cartilage, frenula and the mentalis hold to the skull beyond their surroundings: nose, lips, chin.
-struct Hold {
-  Vec3 centre;
-  double radius, factor;
 };
 
-std::vector<Hold> holds_of(const TissueInputs& inputs) {
-  const Vec3 glabella = landmark(inputs, "glabella"), nose = landmark(inputs, "subnasale"),
-             tip = landmark(inputs, "pronasale");
-  const Vec3 chin = landmark(inputs, "gnathion"), sellion = landmark(inputs, "sellion");
-  const Vec3 mouth = 0.5 * (landmark(inputs, "cheilion_left") + landmark(inputs, "cheilion_right"));
-  const double third = glabella.y() - nose.y();
-  const Vec3 upper_lip(nose.x(), nose.y() + 0.45 * (mouth.y() - nose.y()), nose.z());
-  const Vec3 lower_lip(chin.x(), 0.6 * mouth.y() + 0.4 * chin.y(), 0.5 * (chin.z() + nose.z()));
-  return {{tip, 0.4 * third, 3.9},
-          {0.5 * (sellion + tip), 0.4 * third, 2.9},
-          {upper_lip, 0.28 * third, 5.0},
-          {lower_lip, 0.3 * third, 6.0},
-          {chin + Vec3(0, 0.1, 0) * third, 0.45 * third, 1.4}};
+Spot spot_of(const TissueInputs& inputs, const anatomy::FacePlace& place) {
+  const double third = face_third(inputs);
+  Vec3 centre = third * place.offset;
+  for (const anatomy::FacePlace::Part& part : place.parts)
+    centre += part.share.cwiseProduct(landmark(inputs, part.landmark));
+  return {centre, place.radius * third};
 }
 
-double smoothstep(double low, double high, double x) {
-  const double t = std::clamp((x - low) / (high - low), 0.0, 1.0);
-  return t * t * (3.0 - 2.0 * t);
-}
+/// Factors of the hold of bone on the SMAS and of the SMAS on the skin, from the face's gliding and firm
+/// places.
+class Regions {
+ public:
+  explicit Regions(const TissueInputs& inputs) : regions_(inputs.mechanics.attachment_regions) {
+    for (const anatomy::AttachmentRegion& region : regions_)
+      spots_.push_back(spot_of(inputs, region.place));
+  }
+  /// Logarithms of both factors at `point`: the mean of those of the places that overlap there.
+  Vec2 at(const Vec3& point) const {
+    Vec2 sum = Vec2::Zero();
+    double weights = 0.0;
+    for (size_t i = 0; i < spots_.size(); ++i) {
+      const double weight = spots_[i].weight(point);
+      sum += weight * Vec2(std::log(regions_[i].bone), std::log(regions_[i].skin));
+      weights += weight;
+    }
+    return sum / std::max(1.0, weights);
+  }
+
+ private:
+  const std::vector<anatomy::AttachmentRegion>& regions_;
+  std::vector<Spot> spots_;
+};
+
+/// What the holds of nose, lips and chin make of the hold of bone.
+class Holds {
+ public:
+  explicit Holds(const TissueInputs& inputs) : holds_(inputs.mechanics.holds) {
+    for (const anatomy::Hold& hold : holds_)
+      spots_.push_back(spot_of(inputs, hold.place));
+  }
+  double at(const Vec3& point) const {
+    double strongest = 1.0;
+    for (size_t i = 0; i < spots_.size(); ++i)
+      strongest = std::max(strongest, 1.0 + (holds_[i].factor - 1.0) * spots_[i].weight(point));
+    return strongest;
+  }
+
+ private:
+  const std::vector<anatomy::Hold>& holds_;
+  std::vector<Spot> spots_;
+};
+
+/// The zones of the SMAS: how firmly it is attached to bone.
+class Zones {
+ public:
+  explicit Zones(const TissueInputs& inputs) : inputs_(inputs) {
+    if (!inputs.smas.empty() && inputs.smas_bone_attachment.size() == inputs.smas.vertices.size())
+      query_.emplace(inputs.smas);
+  }
+  bool known() const { return query_.has_value(); }
+  /// 0 gliding .. 1 firm.
+  double firmness(const Vec3& point) const {
+    const SurfacePoint p = query_->closest(point).surface;
+    double firm = 0.0;
+    for (int k = 0; k < 3; ++k)
+      firm += p.barycentric[k] *
+              static_cast<double>(inputs_.smas_bone_attachment[static_cast<size_t>(
+                  inputs_.smas.triangles[static_cast<size_t>(p.triangle)][static_cast<size_t>(k)])]);
+    return std::clamp(firm, 0.0, 1.0);
+  }
+
+ private:
+  const TissueInputs& inputs_;
+  std::optional<spatial::SurfaceQuery> query_;
+};
 
 }  // namespace
 
 Attachments attachments_of(const TissueInputs& inputs, const Columns& c) {
+  const anatomy::mechanics::Attachment& m = inputs.mechanics.attachment;
   const auto n = static_cast<size_t>(c.count());
   Attachments a;
   a.bone.assign(n, 1.0);
   a.skin.assign(n, 1.0);
   a.normal.assign(n, 1.0);
-  const std::vector<Patch> patches = patches_of(inputs);
-  const std::vector<Hold> holds = holds_of(inputs);
+  const Regions regions(inputs);
+  const Holds holds(inputs);
+  const Zones zones(inputs);
   const Vestibule vestibule(inputs);
-  std::optional<spatial::SurfaceQuery> smas;
-  const bool measured =
-      !inputs.smas.empty() && inputs.smas_bone_attachment.size() == inputs.smas.vertices.size();
-  if (measured) smas.emplace(inputs.smas);
   for (size_t v = 0; v < n; ++v) {
-    double bone = 0.0, skin = 0.0, sum = 0.0;  // mean of logarithms where patches overlap
-    for (const Patch& patch : patches) {
-      const double r = (c.mesh.vertices[v] - patch.centre).norm() / patch.radius, weight = std::exp(-r * r);
-      bone += weight * std::log(patch.bone);
-      skin += weight * std::log(patch.skin);
-      sum += weight;
+    const Vec3& p = c.mesh.vertices[v];
+    const Vec2 factors = regions.at(p);
+    double bone = factors[0];
+    if (zones.known()) {
+      const double zone =
+          std::log(m.free_factor * std::pow(m.firm_factor / m.free_factor, zones.firmness(c.smas[v])));
+      bone = (1.0 - m.zone_share) * bone + m.zone_share * zone;
     }
-    bone /= std::max(1.0, sum);
-    skin /= std::max(1.0, sum);
-    a.bone[v] = std::exp(bone);
-    a.skin[v] = std::exp(skin);
-    if (measured) {
-      const SurfacePoint p = smas->closest(c.smas[v]).surface;
-      double firm = 0.0;
-      for (int k = 0; k < 3; ++k)
-        firm += p.barycentric[k] *
-                static_cast<double>(inputs.smas_bone_attachment[static_cast<size_t>(
-                    inputs.smas.triangles[static_cast<size_t>(p.triangle)][static_cast<size_t>(k)])]);
-      a.bone[v] = std::exp(0.5 * (bone + std::log(0.25 * std::pow(12.0, std::clamp(firm, 0.0, 1.0)))));
-    }
-    // Lips hang on no bone nearer than 15 mm; lids are held by their plates, not by tethers.
-    const double lips = smoothstep(0.005, 0.016, c.opening_distance[static_cast<size_t>(Opening::mouth)][v]);
-    const double lids = smoothstep(0.005, 0.012,
-                                   std::min(c.opening_distance[static_cast<size_t>(Opening::eye_left)][v],
-                                            c.opening_distance[static_cast<size_t>(Opening::eye_right)][v]));
-    const double near = 0.08 + 0.92 * lids * (0.08 + 0.92 * lips);
-    a.bone[v] *= near;
-    a.normal[v] = near;
+    // Lips hang on no bone near their edge; lids are held by their plates, not by tethers.
+    const double lips = m.lip_fade.rise(c.opening_distance[static_cast<size_t>(Opening::mouth)][v]);
+    const double lids =
+        m.lid_fade.rise(std::min(c.opening_distance[static_cast<size_t>(Opening::eye_left)][v],
+                                 c.opening_distance[static_cast<size_t>(Opening::eye_right)][v]));
+    const double near = m.lid_share + (1.0 - m.lid_share) * lids * (m.lip_share + (1.0 - m.lip_share) * lips);
     // Mucosa behind, and air: also where a mesh has no lining there.
-    const double air =
-        c.bone[v] ? vestibule.share(c.mesh.vertices[v]) * smoothstep(0.006, 0.010, c.inner_depth[v]) : 1.0;
-    a.bone[v] *= 1.0 - 0.65 * air;
-    a.normal[v] *= 1.0 - 0.9 * air;
-    double hold = 1.0;
-    for (const Hold& h : holds) {
-      const double r = (c.mesh.vertices[v] - h.centre).norm() / h.radius;
-      hold = std::max(hold, 1.0 + (h.factor - 1.0) * std::exp(-r * r));
-    }
-    a.bone[v] *= hold;
-    a.normal[v] *= hold;
+    const double air = c.bone[v] ? vestibule.share(p) * m.air_depth.rise(c.inner_depth[v]) : 1.0;
+    const double hold = holds.at(p);
+    a.skin[v] = std::exp(factors[1]);
+    a.bone[v] = std::exp(bone) * near * (1.0 - m.air_shear_loss * air) * hold;
+    a.normal[v] = near * (1.0 - m.air_normal_loss * air) * hold;
   }
   return a;
 }

@@ -8,6 +8,7 @@
 #include "builder/tissue/laplacian.h"
 #include "geometry/connectivity.h"
 #include "geometry/error.h"
+#include "geometry/smoothstep.h"
 
 namespace fascia::tissue {
 namespace {
@@ -20,12 +21,20 @@ void append(TriangleMesh& mesh, const std::vector<Vec3>& vertices,
     mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
 }
 
+/// The least depth of the inner layer that leaves the prisms between it and the SMAS a volume, metres.
+double below_smas(double smas_depth) {
+  return 1.3 * smas_depth + 2e-4;
+}
+
 /// Depths of the layers along the normals, and whether bone lies there.
 void find_depths(const TissueInputs& inputs, const FaceRegion& region, const Bones& bones, Beneath& beneath) {
   const spatial::SurfaceQuery skin(inputs.skin), cranium(bones.cranium), mandible(bones.mandible);
   std::optional<spatial::SurfaceQuery> smas;
   if (!inputs.smas.empty()) smas.emplace(inputs.smas);
-  constexpr double reach = 0.03, skip = 3e-4;
+  constexpr double skip = 3e-4;  // metres: past the skin a ray begins on
+  const anatomy::mechanics::Depths& m = inputs.mechanics.depths;
+  const double reach = m.bone_reach;
+  constexpr double smas_range = 0.02, smas_skip = 2e-4;  // metres along a ray
   for (size_t v = 0; v < region.mesh.vertices.size(); ++v) {
     const Vec3 p = region.mesh.vertices[v], down = -beneath.normals[v];
     const bool outer = region.outer[v];
@@ -36,20 +45,21 @@ void find_depths(const TissueInputs& inputs, const FaceRegion& region, const Bon
       if (const auto hit = query->first_hit(p, down, reach, skip); hit) bone = std::min(bone, hit->distance);
     // A ray may pass a thin border of bone, as under the chin: what it would stop beside lies on it all the
     // same.
-    constexpr double beside = 0.0035, deepest = 0.012;
     if (outer && !(bone < thickness) && thickness >= reach)
       for (const auto* query : {&cranium, &mandible})
-        if (query->closest(p + deepest * down, beside).found()) bone = deepest;
+        if (query->closest(p + m.rim_depth * down, m.rim_reach).found()) bone = m.rim_depth;
     const bool on_bone = outer && bone < thickness && bone < reach;
-    const double room = on_bone ? bone : 0.8 * thickness;
-    double smas_depth = std::clamp(0.45 * room, 0.0010, 0.006);
+    const double room = on_bone ? bone : m.flesh_share * thickness;
+    double smas_depth = std::clamp(m.smas_share * room, m.smas_limits.begin, m.smas_limits.end);
     if (smas && outer)
-      if (const auto hit = smas->first_hit(p, down, 0.02, 2e-4); hit) smas_depth = hit->distance;
-    smas_depth = std::min(smas_depth, outer ? 0.6 * room : std::min(0.25 * room, 0.002));
-    const double inner = outer ? std::min(room, smas_depth + 0.012) : std::min(0.4 * room, 0.0035);
+      if (const auto hit = smas->first_hit(p, down, smas_range, smas_skip); hit) smas_depth = hit->distance;
+    smas_depth = std::min(smas_depth, outer ? m.smas_most_share * room
+                                            : std::min(m.lining_smas_share * room, m.lining_smas_most));
+    const double inner =
+        outer ? std::min(room, smas_depth + m.behind_smas) : std::min(m.lining_share * room, m.lining_most);
     beneath.bone[v] = on_bone ? 1.0 : 0.0;
     beneath.smas_depth[v] = smas_depth;
-    beneath.inner_depth[v] = std::max(inner, 1.3 * smas_depth + 2e-4);
+    beneath.inner_depth[v] = std::max(inner, below_smas(smas_depth));
   }
 }
 
@@ -69,8 +79,7 @@ Bones bones_of(const TissueInputs& inputs) {
 }
 
 double edge_growth(const TissueOptions& options, double feature_distance) {
-  const double t = std::clamp(feature_distance / options.edge_growth, 0.0, 1.0);
-  return 1.0 + (options.edge_ratio - 1.0) * t * t * (3.0 - 2.0 * t);
+  return 1.0 + (options.edge_ratio - 1.0) * smoothstep(0.0, options.edge_growth, feature_distance);
 }
 
 Beneath find_beneath(const TissueInputs& inputs, const FaceRegion& region, const TissueOptions& options) {
@@ -80,8 +89,11 @@ Beneath find_beneath(const TissueInputs& inputs, const FaceRegion& region, const
   beneath.inner_depth.resize(n);
   beneath.bone.resize(n);
   std::vector<double> lengths(n);
+  constexpr double smoothing = 0.002;  // metres beside lips and lids
+  constexpr double smas_rise = 1.3,
+                   inner_rise = 1.15;  // over what was found that smoothing may deepen layers
   for (size_t v = 0; v < n; ++v)
-    lengths[v] = 0.002 * edge_growth(options, region.feature_distance[v]);
+    lengths[v] = smoothing * edge_growth(options, region.feature_distance[v]);
   const SurfaceSmoother smoother(region.mesh, lengths);
   beneath.normals = vertex_normals(region.mesh);
   smoother.smooth(beneath.normals);
@@ -93,9 +105,9 @@ Beneath find_beneath(const TissueInputs& inputs, const FaceRegion& region, const
   smoother.smooth(beneath.smas_depth);
   smoother.smooth(beneath.inner_depth);
   for (size_t v = 0; v < n; ++v) {
-    beneath.smas_depth[v] = std::min(beneath.smas_depth[v], 1.3 * smas_limit[v]);
-    beneath.inner_depth[v] =
-        std::max(std::min(beneath.inner_depth[v], 1.15 * inner_limit[v]), 1.3 * beneath.smas_depth[v] + 2e-4);
+    beneath.smas_depth[v] = std::min(beneath.smas_depth[v], smas_rise * smas_limit[v]);
+    beneath.inner_depth[v] = std::max(std::min(beneath.inner_depth[v], inner_rise * inner_limit[v]),
+                                      below_smas(beneath.smas_depth[v]));
   }
   std::vector<bool> rim(n, false);
   for (const auto& loop : boundary_loops(region.mesh, connectivity(region.mesh)))
@@ -104,7 +116,8 @@ Beneath find_beneath(const TissueInputs& inputs, const FaceRegion& region, const
   std::vector<double> lips = region.opening_distance[static_cast<size_t>(Opening::mouth)];
   if (lips.empty()) lips.assign(n, 1e9);
   beneath.lower_lip = lower_lip(inputs, region.mesh, region.outer, lips);
-  beneath.jaw_weight = jaw_weights(region.mesh, rim, bones, {lips, beneath.lower_lip});
+  beneath.jaw_weight =
+      jaw_weights(region.mesh, rim, bones, {lips, beneath.lower_lip}, inputs.mechanics.jaw_influence);
   return beneath;
 }
 

@@ -40,6 +40,6 @@ std::vector<double> lower_lip(const TissueInputs& inputs, const TriangleMesh& me
 /// nearer, 0 on the rim, and between a smooth field over the surface (screened Laplace equation), which does
 /// not cross from lip to lip.
 std::vector<double> jaw_weights(const TriangleMesh& mesh, const std::vector<bool>& rim, const Bones& bones,
-                                const Lips& lips);
+                                const Lips& lips, const anatomy::mechanics::JawInfluence& influence);
 
 }  // namespace fascia::tissue

@@ -7,6 +7,7 @@
 #include "builder/tissue/bind.h"
 #include "builder/tissue/distance.h"
 #include "geometry/connectivity.h"
+#include "geometry/smoothstep.h"
 
 namespace fascia::tissue {
 namespace {
@@ -191,8 +192,7 @@ std::vector<float> between_the_jaws(const PartMesh& part, const TissueInputs& in
     const double share = std::isinf(to_upper)   ? 1.0
                          : std::isinf(to_lower) ? 0.0
                                                 : to_upper / std::max(to_upper + to_lower, 1e-9);
-    const double t = std::clamp((share - 0.25) / 0.5, 0.0, 1.0);
-    weights[v] = static_cast<float>(t * t * (3.0 - 2.0 * t));
+    weights[v] = static_cast<float>(smoothstep(0.25, 0.75, share));
   }
   return weights;
 }

@@ -38,16 +38,18 @@ TissueResult::Figures figures_of(const rig::TissueLevel& level) {
 }  // namespace
 
 TissueResult build(const TissueInputs& inputs, const TissueOptions& options) {
+  if (!(inputs.mechanics.tissue.density > 0.0))
+    throw Error("the tissue needs the constants of the anatomy: fill TissueInputs::mechanics");
   TissueResult result;
   const FaceRegion region = find_region(inputs, options);
   const Beneath beneath = find_beneath(inputs, region, options);
   for (const LevelOptions& wanted : options.levels) {
     const Columns columns = make_columns(inputs, region, beneath, wanted, options);
-    rig::TissueLevel level = make_level(inputs, options, wanted, columns);
-    add_fibres(inputs, options, columns, level);
-    add_lids(inputs, options, region, columns, level);
-    add_lip_rolls(inputs, options, region, beneath, columns, level);
-    add_pressures(inputs, options, columns, level);
+    rig::TissueLevel level = make_level(inputs, wanted, columns);
+    add_fibres(inputs, columns, level);
+    add_lids(inputs, region, columns, level);
+    add_lip_rolls(inputs, region, beneath, columns, level);
+    add_pressures(inputs, columns, level);
     if (options.contact) {
       add_ligaments(inputs, columns, level);
       add_contact(inputs, columns, level);

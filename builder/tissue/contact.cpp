@@ -39,6 +39,8 @@ void add_field(const TriangleMesh& bone, uint8_t which, const Bounds& near, doub
 }  // namespace
 
 void add_contact(const TissueInputs& inputs, const Columns& c, rig::TissueLevel& level) {
+  constexpr double field_spacing = 0.0025;  // metres
+  const anatomy::Mechanics& m = inputs.mechanics;
   const auto n = static_cast<size_t>(c.count());
   const auto& mouth = c.opening_distance[static_cast<size_t>(Opening::mouth)];
   // What may meet bone and teeth: lips' and cheeks' inside with both jaws, the fascia with the bone it glides
@@ -46,11 +48,11 @@ void add_contact(const TissueInputs& inputs, const Columns& c, rig::TissueLevel&
   std::array<std::vector<uint32_t>, 2> nodes;
   for (size_t v = 0; v < n; ++v) {
     if (c.rim[v]) continue;
-    const bool lining = !c.outer[v] && mouth[v] < 0.03;
+    const bool lining = !c.outer[v] && mouth[v] < m.lips.lining_reach;
     for (uint32_t bone = 0; bone < 2; ++bone) {
       if (lining) nodes[bone].push_back(static_cast<uint32_t>(v));
       if (c.outer[v] && !c.bone[v]) nodes[bone].push_back(static_cast<uint32_t>(2 * n + v));
-      if (c.outer[v] && mouth[v] < 0.012) nodes[bone].push_back(static_cast<uint32_t>(v));
+      if (c.outer[v] && mouth[v] < m.contact.lip_reach) nodes[bone].push_back(static_cast<uint32_t>(v));
     }
     if (c.outer[v] && c.bone[v]) nodes[c.jaw_weight[v] > 0.5 ? 1 : 0].push_back(static_cast<uint32_t>(n + v));
   }
@@ -64,7 +66,7 @@ void add_contact(const TissueInputs& inputs, const Columns& c, rig::TissueLevel&
       box.upper = box.upper.cwiseMax(p);
     }
     const auto field = static_cast<uint32_t>(level.contact_field_bone.size());
-    add_field(bone == 0 ? bones.cranium : bones.mandible, bone, box, 0.0025, level);
+    add_field(bone == 0 ? bones.cranium : bones.mandible, bone, box, field_spacing, level);
     for (const uint32_t node : nodes[bone]) {
       level.contact_node.push_back(node);
       level.contact_field.push_back(field);
@@ -93,7 +95,6 @@ std::vector<bool> edge_columns(const Columns& c) {
 /// The lids' edges, with the triangles around them.
 void add_lid_facing(const TissueInputs& inputs, const FaceRegion& region, const Columns& c, bool left,
                     rig::TissueLevel& level) {
-  constexpr double depth = 0.010;  // metres along the skin from the opening
   const Fissure fissure(inputs, region, left);
   const auto& opening =
       c.opening_distance[static_cast<size_t>(left ? Opening::eye_left : Opening::eye_right)];
@@ -105,7 +106,7 @@ void add_lid_facing(const TissueInputs& inputs, const FaceRegion& region, const 
       const auto v = static_cast<size_t>(i);
       const double place = fissure.place(c.mesh.vertices[v]);
       is_edge = is_edge || edge[v];
-      is_near = is_near && opening[v] < depth && place > 0.0 && place < 1.0;
+      is_near = is_near && opening[v] < inputs.mechanics.contact.lid_reach && place > 0.0 && place < 1.0;
       upper += fissure.is_upper(c.mesh.vertices[v]) ? 1 : 0;
     }
     if (!is_edge || !is_near || (upper != 0 && upper != 3)) continue;  // at the canthi both lids are one
@@ -117,6 +118,7 @@ void add_lid_facing(const TissueInputs& inputs, const FaceRegion& region, const 
 
 void add_facing(const TissueInputs& inputs, const FaceRegion& region, const Columns& c,
                 rig::TissueLevel& level) {
+  constexpr double corner_share = 0.06;  // of the way from lip to lip, by Columns::lower_lip
   for (size_t t = 0; t < c.mesh.triangles.size(); ++t) {
     double lower = 0.0, distance = 0.0;
     for (const int i : c.mesh.triangles[t]) {
@@ -124,7 +126,8 @@ void add_facing(const TissueInputs& inputs, const FaceRegion& region, const Colu
       lower += c.lower_lip[v] / 3.0;
       distance = std::max(distance, c.opening_distance[static_cast<size_t>(Opening::mouth)][v]);
     }
-    if (distance > 0.012 || std::abs(lower - 0.5) < 0.06) continue;  // at the corner both lips are one
+    // At the corner both lips are one.
+    if (distance > inputs.mechanics.contact.lip_reach || std::abs(lower - 0.5) < corner_share) continue;
     face(level, t, lower < 0.5 ? 0 : 1);
   }
   for (const bool left : {true, false})

@@ -6,8 +6,7 @@ namespace fascia::tissue {
 
 /// Nodes, layers, springs and tethers of a level from its columns: everything that does not depend on
 /// channels.
-rig::TissueLevel make_level(const TissueInputs& inputs, const TissueOptions& options,
-                            const LevelOptions& level, const Columns& columns);
+rig::TissueLevel make_level(const TissueInputs& inputs, const LevelOptions& level, const Columns& columns);
 
 /// How firmly each column's SMAS is held by what lies behind it, along the plane it glides on (`bone`) and
 /// across it

@@ -8,8 +8,6 @@
 namespace fascia::tissue {
 namespace {
 
-constexpr double deep_course = 0.010;  // metres from the fascia, beyond which a fibre no longer goes with it
-
 /// `points` thinned so that steps are at least `spacing` long; both ends stay.
 std::vector<size_t> thinned(const std::vector<rig::Vec3f>& points, size_t first, size_t last,
                             double spacing) {
@@ -29,10 +27,11 @@ std::vector<size_t> thinned(const std::vector<rig::Vec3f>& points, size_t first,
 }
 
 /// Whether a fibre from bone ends across the midline, where its fellow of the other side begins.
-bool meets_fellow(const rig::Muscle& muscle, size_t first, size_t last) {
+bool meets_fellow(const TissueInputs& inputs, const rig::Muscle& muscle, size_t first, size_t last) {
+  const auto reach = static_cast<float>(inputs.mechanics.fibres.midline_reach);
   const rig::Vec3f way = muscle.points[last - 1] - muscle.points[last - 2];
   return (muscle.origin == rig::FibreEnd::cranium || muscle.origin == rig::FibreEnd::mandible) &&
-         last > first + 2 && std::abs(muscle.points[last - 1].x()) < 0.006F &&
+         last > first + 2 && std::abs(muscle.points[last - 1].x()) < reach &&
          std::abs(way.x()) > 0.5F * way.norm();
 }
 
@@ -41,7 +40,7 @@ bool is_from_orbit(const TissueInputs& inputs, const rig::Muscle& muscle, size_t
   const rig::Vec3f &begin = muscle.points[first], &end = muscle.points[last - 1];
   const rig::Eye eye = eye_of(inputs, end.x() > 0.0F);
   return muscle.origin == rig::FibreEnd::cranium && begin.z() < eye.centre.z() - eye.radius &&
-         (end - eye.centre).norm() < eye.radius + 0.006F;
+         (end - eye.centre).norm() < eye.radius + static_cast<float>(inputs.mechanics.fibres.orbit_reach);
 }
 
 bool is_bony(rig::FibreEnd end) {
@@ -66,15 +65,17 @@ struct LayerSurface {
 /// lids with their lining, where the tarsal plates are.
 struct Surfaces {
   LayerSurface outer, lips, lids;
-  explicit Surfaces(const Columns& c)
+  Surfaces(const Columns& c, const anatomy::Mechanics& m)
       : outer(c.smas, c, [&](size_t v) { return c.outer[v]; }),
         lips(c.mesh.vertices, c,
              [&](size_t v) {
-               return !c.outer[v] && c.opening_distance[static_cast<size_t>(Opening::mouth)][v] < 0.03;
+               return !c.outer[v] &&
+                      c.opening_distance[static_cast<size_t>(Opening::mouth)][v] < m.lips.lining_reach;
              }),
         lids(c.smas, c, [&](size_t v) {
           return std::min(c.opening_distance[static_cast<size_t>(Opening::eye_left)][v],
-                          c.opening_distance[static_cast<size_t>(Opening::eye_right)][v]) < 0.010;
+                          c.opening_distance[static_cast<size_t>(Opening::eye_right)][v]) <
+                 m.fibres.lid_reach;
         }) {}
 };
 
@@ -89,7 +90,7 @@ void add_point(const LayerSurface& surface, uint32_t layer, const rig::Vec3f& po
   level.fibre_weights.push_back(place.barycentric.cast<float>());
   level.fibre_rest.push_back(point);
   level.fibre_anchor.push_back(end);
-  level.fibre_taper.push_back(static_cast<float>(std::clamp(taper, 0.15, 1.0)));
+  level.fibre_taper.push_back(static_cast<float>(taper));
 }
 
 /// A fibre of a compressor runs through the lip from its skin to its lining.
@@ -110,8 +111,8 @@ void lay_from_orbit(const rig::Muscle& muscle, const std::vector<size_t>& kept, 
 
 /// A fibre along the fascia. `spread`: metres over which its pull comes in at a free end.
 void lay_along(const rig::Muscle& muscle, const std::vector<size_t>& kept, const std::vector<double>& along,
-               double spread, bool meets_fellow, uint32_t smas, const Surfaces& surfaces,
-               rig::TissueLevel& level) {
+               double spread, bool meets_fellow, uint32_t smas, const anatomy::mechanics::Fibres& m,
+               const Surfaces& surfaces, rig::TissueLevel& level) {
   const double length = along.back();
   bool is_deep = is_bony(muscle.origin);
   for (size_t k = 0; k < kept.size(); ++k) {
@@ -119,7 +120,7 @@ void lay_along(const rig::Muscle& muscle, const std::vector<size_t>& kept, const
     const bool is_last = k + 1 == kept.size();
     // Where it still runs far beneath the fascia its sheath holds it by the bone.
     is_deep =
-        is_deep && !is_last && surfaces.outer.query->closest(point.cast<double>()).distance > deep_course;
+        is_deep && !is_last && surfaces.outer.query->closest(point.cast<double>()).distance > m.deep_course;
     const rig::FibreEnd end = k == 0 || is_deep ? muscle.origin
                               : is_last         ? muscle.insertion
                                                 : rig::FibreEnd::smas;
@@ -129,6 +130,7 @@ void lay_along(const rig::Muscle& muscle, const std::vector<size_t>& kept, const
     // Slung over the bridge of the nose, a muscle ends on its fellow of the other side, which holds it.
     if (!is_bony(muscle.insertion) && !meets_fellow) taper = std::min(taper, (length - middle) / spread);
     if (!is_bony(muscle.origin)) taper = std::min(taper, middle / spread);
+    taper = std::clamp(taper, m.least_tension, 1.0);
     add_point(surfaces.outer, end == rig::FibreEnd::skin ? 0 : smas, point, end, taper, level);
   }
 }
@@ -141,10 +143,12 @@ int channel_index(const std::vector<rig::Channel>& channels, const std::string& 
   return -1;
 }
 
-void add_fibres(const TissueInputs& inputs, const TissueOptions& options, const Columns& c,
-                rig::TissueLevel& level) {
+void add_fibres(const TissueInputs& inputs, const Columns& c, rig::TissueLevel& level) {
+  constexpr double spacing = 0.004;                 // metres between a fibre's points
+  constexpr double shortest = 0.3, longest = 0.95;  // of the rest length: where the pull may end at all
+  const anatomy::mechanics::Fibres& constants = inputs.mechanics.fibres;
   level.fibre_offsets.assign(1, 0);
-  const Surfaces surfaces(c);
+  const Surfaces surfaces(c, inputs.mechanics);
   if (!surfaces.outer.query) return;
   const auto smas = static_cast<uint32_t>(c.count());
   for (size_t m = 0; m < inputs.muscles.size(); ++m) {
@@ -157,7 +161,7 @@ void add_fibres(const TissueInputs& inputs, const TissueOptions& options, const 
     for (size_t f = 0; f < fibres; ++f) {
       const size_t first = muscle.fibre_offsets[f], last = muscle.fibre_offsets[f + 1];
       if (last < first + 2) continue;
-      const std::vector<size_t> kept = thinned(muscle.points, first, last, 0.004);
+      const std::vector<size_t> kept = thinned(muscle.points, first, last, spacing);
       std::vector<double> along(kept.size(), 0.0);
       for (size_t k = 1; k < kept.size(); ++k)
         along[k] =
@@ -168,26 +172,26 @@ void add_fibres(const TissueInputs& inputs, const TissueOptions& options, const 
       const bool hung_ring =
           muscle.kind == "sphincter_ring" && is_bony(muscle.origin) != is_bony(muscle.insertion);
       const double spread =
-          hung_ring ? 0.9 * length : std::min(options.material.insertion_spread, 0.35 * length);
+          hung_ring ? constants.ring_spread_share * length
+                    : std::min(constants.insertion_spread, constants.insertion_spread_share * length);
       if (muscle.kind == "compressor" && surfaces.lips.query)
         lay_through(muscle, kept, surfaces, level);
       else if (surfaces.lids.query && is_from_orbit(inputs, muscle, first, last))
         lay_from_orbit(muscle, kept, smas, surfaces, level);
       else
-        lay_along(muscle, kept, along, spread, meets_fellow(muscle, first, last), smas, surfaces, level);
+        lay_along(muscle, kept, along, spread, meets_fellow(inputs, muscle, first, last), smas, constants,
+                  surfaces, level);
       level.fibre_offsets.push_back(static_cast<uint32_t>(level.fibre_nodes.size()));
       level.fibre_muscle.push_back(static_cast<uint32_t>(m));
       level.fibre_channel.push_back(static_cast<uint32_t>(channel));
       level.fibre_strength.push_back(muscle.strength / static_cast<float>(fibres));
       level.fibre_shortest.push_back(static_cast<float>(std::clamp(
-          1.0 - options.material.fibre_shortest_factor * static_cast<double>(muscle.peak_shortening), 0.3,
-          0.95)));
+          1.0 - constants.shortest_factor * static_cast<double>(muscle.peak_shortening), shortest, longest)));
     }
   }
 }
 
-void add_pressures(const TissueInputs& inputs, const TissueOptions& options, const Columns& c,
-                   rig::TissueLevel& level) {
+void add_pressures(const TissueInputs& inputs, const Columns& c, rig::TissueLevel& level) {
   const Vestibule vestibule(inputs);
   for (const double side : {1.0, -1.0}) {
     const int channel =
@@ -206,7 +210,7 @@ void add_pressures(const TissueInputs& inputs, const TissueOptions& options, con
       if (share < 0.02) continue;
       level.pressure_channel.push_back(static_cast<uint32_t>(channel));
       level.pressure_prism.push_back(static_cast<uint32_t>(t));
-      level.pressure.push_back(static_cast<float>(options.material.mouth_pressure * share));
+      level.pressure.push_back(static_cast<float>(inputs.mechanics.vestibule.pressure * share));
     }
   }
 }

@@ -10,14 +10,10 @@
 #include "builder/tissue/bind.h"
 #include "builder/tissue/distance.h"
 #include "builder/tissue/laplacian.h"
+#include "geometry/smoothstep.h"
 
 namespace fascia::tissue {
 namespace {
-
-double smoothstep(double low, double high, double x) {
-  const double t = std::clamp((x - low) / (high - low), 0.0, 1.0);
-  return t * t * (3.0 - 2.0 * t);
-}
 
 /// The column triangle each region vertex lies on: the best by distance and direction among those near the
 /// column that is nearest along the surface.
@@ -90,14 +86,16 @@ void smooth(const TriangleMesh& mesh, const Columns& c, int passes, std::vector<
 /// lids.
 std::vector<double> easing(const TissueInputs& inputs, const FaceRegion& region) {
   const Vec3 corners[] = {landmark(inputs, "cheilion_left"), landmark(inputs, "cheilion_right")};
+  constexpr double at_corners = 0.0015, corner_begin = 0.010, corner_end = 0.018;  // metres
+  constexpr double at_lids = 0.0007, lid_begin = 0.003, lid_end = 0.008;
   std::vector<double> lengths(region.mesh.vertices.size());
   for (size_t v = 0; v < lengths.size(); ++v) {
     const Vec3& p = region.mesh.vertices[v];
     const double corner = std::min((p - corners[0]).norm(), (p - corners[1]).norm());
     const double lid = std::min(region.opening_distance[static_cast<size_t>(Opening::eye_left)][v],
                                 region.opening_distance[static_cast<size_t>(Opening::eye_right)][v]);
-    lengths[v] = std::max(0.0015 * (1.0 - smoothstep(0.010, 0.018, corner)),
-                          0.0007 * (1.0 - smoothstep(0.003, 0.008, lid)));
+    lengths[v] = std::max(at_corners * (1.0 - smoothstep(corner_begin, corner_end, corner)),
+                          at_lids * (1.0 - smoothstep(lid_begin, lid_end, lid)));
   }
   return lengths;
 }
@@ -212,16 +210,20 @@ class DeepMouth {
 
   /// The row of skin vertex `v` at `p`, so far along the surface from the lining's edge.
   Row row(size_t v, const Vec3& p, double distance) const {
+    constexpr double range = 0.02, skip = 2e-4;    // metres along a ray
+    constexpr double thin = 0.009, thick = 0.018;  // metres: surely, surely not the wall of lip or cheek
+    constexpr double between_jaws = 0.008;         // metres from the mouth's height
+    constexpr double throat_begin = 0.02, throat_end = 0.065;  // metres from the lining's edge
     Row row;
-    const auto hit = query_->first_hit(p, -normals_[v], 0.02, 2e-4);
-    const double wall = hit ? 1.0 - smoothstep(0.009, 0.018, hit->distance) : 0.0;
+    const auto hit = query_->first_hit(p, -normals_[v], range, skip);
+    const double wall = hit ? 1.0 - smoothstep(thin, thick, hit->distance) : 0.0;
     if (wall > 0.0)
       for (int k = 0; k < 3; ++k)
         add(rows_[static_cast<size_t>(
                 outer_.triangles[static_cast<size_t>(hit->surface.triangle)][static_cast<size_t>(k)])],
             wall * hit->surface.barycentric[k], row);
-    const double jaw =
-        (1.0 - smoothstep(-0.008, 0.008, p.y() - height_)) * (1.0 - smoothstep(0.02, 0.065, distance));
+    const double jaw = (1.0 - smoothstep(-between_jaws, between_jaws, p.y() - height_)) *
+                       (1.0 - smoothstep(throat_begin, throat_end, distance));
     if (jaw > 0.0) row[jaw_entry] += (1.0 - wall) * jaw;
     return row;
   }
@@ -289,7 +291,8 @@ std::vector<Follow> follow_skin(const TissueInputs& inputs, const FaceRegion& re
     add(rows[v], share[v], skin[s]);
     if (region.opening[s] != Opening::none) edge.push_back({region.skin_vertex[v]});
   }
-  // Deeper than the simulated lining: carried on from its edge.
+  // Deeper than the simulated lining: carried on from its edge, over so many metres.
+  constexpr double over_mouth = 0.018, over_others = 0.008;
   std::vector<bool> deep(skin.size()), deep_mouth(skin.size());
   for (size_t v = 0; v < deep.size(); ++v)
     deep[v] = region.region_vertex[v] < 0 && region.opening[v] != Opening::none;
@@ -298,7 +301,7 @@ std::vector<Follow> follow_skin(const TissueInputs& inputs, const FaceRegion& re
   for (size_t v = 0; v < skin.size(); ++v) {
     if (!deep[v] || beyond.seed[v] < 0) continue;
     deep_mouth[v] = region.opening[v] == Opening::mouth;
-    const double lining = 1.0 - smoothstep(0.0, deep_mouth[v] ? 0.018 : 0.008, beyond.distance[v]);
+    const double lining = 1.0 - smoothstep(0.0, deep_mouth[v] ? over_mouth : over_others, beyond.distance[v]);
     add(skin[static_cast<size_t>(edge[static_cast<size_t>(beyond.seed[v])].vertex)], lining, skin[v]);
     if (deep_mouth[v]) add(mouth.row(v, inputs.skin.vertices[v], beyond.distance[v]), 1.0 - lining, skin[v]);
   }

@@ -8,25 +8,19 @@
 #include "geometry/error.h"
 
 namespace fascia::tissue {
-namespace {
-
-double smoothstep(double low, double high, double x) {
-  const double t = std::clamp((x - low) / (high - low), 0.0, 1.0);
-  return t * t * (3.0 - 2.0 * t);
-}
-
-}  // namespace
-
 std::vector<double> lower_lip(const TissueInputs& inputs, const TriangleMesh& mesh,
                               const std::vector<bool>& outer, const std::vector<double>& distance) {
   const Vec3 left = landmark(inputs, "cheilion_left"), right = landmark(inputs, "cheilion_right"),
              centre = 0.5 * (left + right);
   const double half = 0.5 * (left - right).norm();
+  // Skin that is of one lip for certain: metres from the lips' edge and from the mouth's height, and half
+  // widths of the mouth.
+  constexpr double nearest = 0.004, farthest = 0.016, height = 0.006, widest = 0.7;
   std::array<std::vector<DistanceSeed>, 2> seeds;
   for (size_t v = 0; v < mesh.vertices.size(); ++v) {
     const Vec3 p = mesh.vertices[v] - centre;
-    if (!outer[v] || distance[v] < 0.004 || distance[v] > 0.016 || std::abs(p.x()) > 0.7 * half ||
-        std::abs(p.y()) < 0.006)
+    if (!outer[v] || distance[v] < nearest || distance[v] > farthest || std::abs(p.x()) > widest * half ||
+        std::abs(p.y()) < height)
       continue;
     seeds[p.y() < 0.0].push_back({static_cast<int>(v)});
   }
@@ -40,11 +34,11 @@ std::vector<double> lower_lip(const TissueInputs& inputs, const TriangleMesh& me
 }
 
 std::vector<double> jaw_weights(const TriangleMesh& mesh, const std::vector<bool>& rim, const Bones& bones,
-                                const Lips& lips) {
-  constexpr double spread = 0.008;  // metres over which the field goes from one bone to the other
+                                const Lips& lips, const anatomy::mechanics::JawInfluence& m) {
+  constexpr double undecided = 0.002;  // least weight of a place no bone decides: keeps the field solvable
   const spatial::SurfaceQuery cranium(bones.cranium), mandible(bones.mandible);
   const int n = mesh.vertex_count();
-  Eigen::SparseMatrix<double> matrix = laplacian(mesh, std::vector<double>(mesh.vertices.size(), spread));
+  Eigen::SparseMatrix<double> matrix = laplacian(mesh, std::vector<double>(mesh.vertices.size(), m.spread));
   const std::vector<double> area = vertex_areas(mesh);
   Eigen::VectorXd right = Eigen::VectorXd::Zero(n);
   for (int v = 0; v < n; ++v) {
@@ -52,14 +46,13 @@ std::vector<double> jaw_weights(const TriangleMesh& mesh, const std::vector<bool
     const double share = area[static_cast<size_t>(v)];
     const double to_cranium = cranium.closest(p).distance, to_mandible = mandible.closest(p).distance;
     const double near = std::min(to_cranium, to_mandible), far = std::max(to_cranium, to_mandible);
-    const double sure =
-        smoothstep(1.25, 2.2, far / std::max(near, 1e-4)) * (1.0 - smoothstep(0.018, 0.035, near));
-    double weight = share * (0.002 + sure), goal = to_mandible < to_cranium ? sure / (sure + 0.002) : 0.0;
+    const double sure = m.certain_ratio.rise(far / std::max(near, 1e-4)) * m.bone_distance.fall(near);
+    double weight = share * (undecided + sure),
+           goal = to_mandible < to_cranium ? sure / (sure + undecided) : 0.0;
     // Bones are no guide between the lips, where both rows of teeth are near; which lip it is, is. From the
     // corner, which goes half the way, the share changes along the whole lip.
-    const double lip = share * (1.0 - smoothstep(0.012, 0.020, lips.distance[static_cast<size_t>(v)]));
-    goal =
-        (weight * goal + lip * smoothstep(0.10, 0.90, lips.lower[static_cast<size_t>(v)])) / (weight + lip);
+    const double lip = share * m.lip_fade.fall(lips.distance[static_cast<size_t>(v)]);
+    goal = (weight * goal + lip * m.lip_passage.rise(lips.lower[static_cast<size_t>(v)])) / (weight + lip);
     weight += lip;
     if (rim[static_cast<size_t>(v)]) {
       weight = 1e3 * share + 1e-6;

@@ -8,16 +8,9 @@
 namespace fascia::tissue {
 namespace {
 
-double smoothstep(double low, double high, double x) {
-  const double t = std::clamp((x - low) / (high - low), 0.0, 1.0);
-  return t * t * (3.0 - 2.0 * t);
-}
-
-// Shares of the fissure's height that a lid is driven at full value; what the skin's resistance takes is
-// added, towards the inner canthus most. Where lids meet they stop each other.
-constexpr double closing = 1.06, raising = 0.28;
-constexpr double canthal = 0.10;       // radians
-constexpr double opening_wide = 0.32;  // of closing: the levator lifts the lid some 3 mm above rest
+// Few columns give way to their neighbours more than many: what is added to the closing a metre of their
+// spacing over that of the medium level.
+constexpr double closing_of_spacing = 60.0, medium_spacing = 0.002;
 
 void carry(rig::TissueLevel& level, int channel, size_t node, const Fissure& f, const Vec3& axis,
            double angle, double stiffness, double reverse) {
@@ -59,8 +52,9 @@ double chord_room(const Columns& c, const std::vector<double>& opening, double r
 }
 
 /// An eye's lids: nodes near the fissure, and what each channel does to them.
-void add_eye(const TissueInputs& inputs, const TissueOptions& options, const FaceRegion& region,
-             const Columns& c, bool left, rig::TissueLevel& level) {
+void add_eye(const TissueInputs& inputs, const FaceRegion& region, const Columns& c, bool left,
+             rig::TissueLevel& level) {
+  const anatomy::mechanics::Lids& m = inputs.mechanics.lids;
   const Fissure f(inputs, region, left);
   const std::string side = left ? "_left" : "_right";
   const auto& opening =
@@ -74,27 +68,25 @@ void add_eye(const TissueInputs& inputs, const TissueOptions& options, const Fac
   const int pitch = channel_index(inputs.channels, "eye_pitch" + side);
   level.globe_centre.push_back(f.centre.cast<float>());
   level.globe_radius.push_back(static_cast<float>(f.radius));
-  // The cornea bulges before the globe, 7.8 mm round where the globe is 12 (Gray's Anatomy).
-  const double bulge = 0.65 * f.radius, apex = apex_of(inputs, left, f);
+  const double bulge = m.cornea_radius_share * f.radius, apex = apex_of(inputs, left, f);
   const bool has_cornea = apex > f.radius + 1e-4;
   if (has_cornea) {
     level.globe_centre.push_back((f.centre + (apex - bulge) * f.front).cast<float>());
     level.globe_radius.push_back(static_cast<float>(bulge + chord_room(c, opening, bulge)));
   }
   for (size_t v = 0; v < n; ++v) {
-    if (!(opening[v] < 0.016) || c.rim[v]) continue;
+    if (!(opening[v] < m.reach) || c.rim[v]) continue;
     const Vec3& p = c.mesh.vertices[v];
     const double place = f.place(p), distance = opening[v];
     const bool is_upper = f.is_upper(p);
     // The plate goes as one, full at the edge and in the lining; none beyond the canthi. Above it the skin
     // folds in at the crease, where the levator's aponeurosis holds it.
-    const double across = smoothstep(-0.18, 0.02, place) * (1.0 - smoothstep(0.98, 1.18, place));
+    const double across = m.canthal_fade.rise(place) * m.canthal_fade.rise(1.0 - place);
     const double fade =
-        (c.outer[v] ? 1.0 - smoothstep(0.004, is_upper ? 0.012 : 0.013, distance) : 1.0) * across;
+        (c.outer[v] ? (is_upper ? m.upper_plate : m.lower_plate).fall(distance) : 1.0) * across;
     // Skin that the lid takes down unfolds from the crease, so that it goes less far than the edge.
-    const double unfolding = (c.outer[v] ? 1.0 - smoothstep(0.0015, 0.010, distance) : 1.0) * across;
-    const double held =
-        std::max(fade, c.outer[v] && is_upper ? across * (1.0 - smoothstep(0.010, 0.015, distance)) : 0.0);
+    const double unfolding = (c.outer[v] ? m.unfolding.fall(distance) : 1.0) * across;
+    const double held = std::max(fade, c.outer[v] && is_upper ? across * m.crease.fall(distance) : 0.0);
     const auto last = static_cast<uint32_t>(level.globe_centre.size() - 1);
     for (const size_t node : {v, n + v})
       for (uint32_t globe = has_cornea ? last - 1 : last; globe <= last; ++globe) {
@@ -104,27 +96,26 @@ void add_eye(const TissueInputs& inputs, const TissueOptions& options, const Fac
     if (held < 0.01) continue;
     const double gap = f.gap(place);
     for (const size_t node : {v, n + v}) {
-      const double stiffness = options.material.lid_hold * c.area[v] * held;
+      const double stiffness = m.hold * c.area[v] * held;
       // A positive turn about the leftward axis lowers what lies in front.
       const size_t before = level.carrier_node.size();
       const auto turn = [&](int channel, const Vec3& axis, double angle, double reverse) {
         if (channel >= 0) carry(level, channel, node, f, axis, angle, stiffness, reverse);
       };
-      const double coarse = std::max(
-          0.0, std::sqrt(c.area[v]) - 0.002);  // metres: few columns give way to their neighbours more
-      const double lid = (closing + 60.0 * coarse) * gap +
-                         canthal * std::max(0.0, (left ? -1.0 : 1.0) * (2.0 * place - 1.0));
+      const double coarse = std::max(0.0, std::sqrt(c.area[v]) - medium_spacing);
+      const double lid = (m.closing + closing_of_spacing * coarse) * gap +
+                         m.canthal_turn * std::max(0.0, (left ? -1.0 : 1.0) * (2.0 * place - 1.0));
       if (is_upper)
-        turn(close, f.lateral, lid * unfolding, -opening_wide * lid * fade);
+        turn(close, f.lateral, lid * unfolding, -m.opening * lid * fade);
       else
-        turn(raise, f.lateral, -raising * gap * fade, raising * gap * fade);
-      const double follows = (is_upper ? 0.75 : 0.4) * fade;
+        turn(raise, f.lateral, -m.raising * gap * fade, m.raising * gap * fade);
+      const double follows = (is_upper ? m.upper_follows_pitch : m.lower_follows_pitch) * fade;
       turn(pitch, f.lateral, -follows, follows);
       // Horner's part of the pretarsal muscle draws the plates, the lower one most, towards the nose.
-      const double drawn = (left ? -1.0 : 1.0) * (is_upper ? 0.10 : 0.30) * fade;
+      const double drawn = (left ? -1.0 : 1.0) * (is_upper ? m.upper_drawn : m.lower_drawn) * fade;
       turn(is_upper ? draw_upper : draw_lower, f.up, drawn, -drawn);
       // The cornea's bulge takes both lids a little way sideways.
-      turn(yaw, f.up, 0.18 * fade, -0.18 * fade);
+      turn(yaw, f.up, m.follows_yaw * fade, -m.follows_yaw * fade);
       // One of a node's carriers holds it, however many move it.
       if (level.carrier_node.size() > before) level.carrier_stiffness[before] = static_cast<float>(stiffness);
     }
@@ -133,10 +124,10 @@ void add_eye(const TissueInputs& inputs, const TissueOptions& options, const Fac
 
 }  // namespace
 
-void add_lids(const TissueInputs& inputs, const TissueOptions& options, const FaceRegion& region,
-              const Columns& columns, rig::TissueLevel& level) {
+void add_lids(const TissueInputs& inputs, const FaceRegion& region, const Columns& columns,
+              rig::TissueLevel& level) {
   for (const bool left : {true, false})
-    add_eye(inputs, options, region, columns, left, level);
+    add_eye(inputs, region, columns, left, level);
 }
 
 }  // namespace fascia::tissue

@@ -17,12 +17,11 @@ void one_sided(rig::TissueLevel& level, size_t a, size_t b, float stiffness) {
 }  // namespace
 
 void add_ligaments(const TissueInputs& inputs, const Columns& c, rig::TissueLevel& level) {
-  constexpr double reach = 0.012;  // metres: farther off the ligament is not of the simulated part
-  constexpr double tuft = 0.006;
+  const auto& [reach, tuft] = inputs.mechanics.ligaments;
   const auto n = static_cast<size_t>(c.count());
   const auto nearest_root = [&](const Vec3& p) {
     size_t best = n;
-    double distance = reach;
+    double distance = inputs.mechanics.ligaments.reach;
     for (size_t v = 0; v < n; ++v) {
       if (c.rim[v] || !c.outer[v] || !c.bone[v]) continue;
       const double d = (c.inner[v] - p).norm();

@@ -4,19 +4,13 @@
 
 #include "builder/tissue/actuators.h"
 #include "builder/tissue/margin.h"
+#include "geometry/smoothstep.h"
 
 namespace fascia::tissue {
-namespace {
-
-double smoothstep(double low, double high, double x) {
-  const double t = std::clamp((x - low) / (high - low), 0.0, 1.0);
-  return t * t * (3.0 - 2.0 * t);
-}
-
-}  // namespace
-
-void add_lip_rolls(const TissueInputs& inputs, const TissueOptions& options, const FaceRegion& region,
-                   const Beneath& beneath, const Columns& c, rig::TissueLevel& level) {
+void add_lip_rolls(const TissueInputs& inputs, const FaceRegion& region, const Beneath& beneath,
+                   const Columns& c, rig::TissueLevel& level) {
+  constexpr double side_blend = 0.005;  // metres from the midline over which left passes into right
+  const anatomy::mechanics::Lips& m = inputs.mechanics.lips;
   const Vec3 left = landmark(inputs, "cheilion_left"), right = landmark(inputs, "cheilion_right");
   const Vec3 centre = 0.5 * (left + right);
   const double half = 0.5 * (left - right).norm();
@@ -33,15 +27,16 @@ void add_lip_rolls(const TissueInputs& inputs, const TissueOptions& options, con
     if (edge.empty()) continue;
     for (size_t v = 0; v < n; ++v) {
       const Vec3& p = c.mesh.vertices[v];
-      if (c.rim[v] || distance[v] > 0.014 || (c.lower_lip[v] < 0.5) != upper) continue;
+      if (c.rim[v] || distance[v] > m.roll_fade.end || (c.lower_lip[v] < 0.5) != upper) continue;
       // The lip's body lies above (below) and behind its edge: the vermilion turns about that, the white lip
       // stays.
       const Eigen::Vector2d at = edge.at(place_of(p));
-      const Vec3 origin(p.x(), at.x() + (upper ? 0.006 : -0.006), at.y() - 0.006);
-      const double fade = (1.0 - smoothstep(0.005, 0.014, distance[v])) *
-                          (1.0 - smoothstep(0.55, 1.0, std::abs(p.x() - centre.x()) / half));
+      const Vec3 origin(p.x(), at.x() + (upper ? m.roll_depth : -m.roll_depth), at.y() - m.roll_depth);
+      const double fade =
+          m.roll_fade.fall(distance[v]) * m.roll_lateral_fade.fall(std::abs(p.x() - centre.x()) / half);
       for (const bool is_left : {true, false}) {
-        const double side = smoothstep(-0.005, 0.005, is_left ? p.x() - centre.x() : centre.x() - p.x());
+        const double side =
+            smoothstep(-side_blend, side_blend, is_left ? p.x() - centre.x() : centre.x() - p.x());
         const int channel =
             channel_index(inputs.channels, std::string("lip_roll_") + (upper ? "upper" : "lower") +
                                                (is_left ? "_left" : "_right"));
@@ -51,11 +46,10 @@ void add_lip_rolls(const TissueInputs& inputs, const TissueOptions& options, con
           level.carrier_node.push_back(static_cast<uint32_t>(node));
           level.carrier_origin.push_back(origin.cast<float>());
           level.carrier_axis.push_back(rig::Vec3f::UnitX());
-          level.carrier_angle.push_back(upper ? 0.9F : -0.9F);
-          level.carrier_reverse.push_back(upper ? -0.7F : 0.7F);
+          level.carrier_angle.push_back(static_cast<float>(upper ? m.roll_in : -m.roll_in));
+          level.carrier_reverse.push_back(static_cast<float>(upper ? -m.roll_out : m.roll_out));
           level.carrier_stiffness.push_back(0.0F);  // lips are moved, never held
-          level.carrier_drive.push_back(
-              static_cast<float>(options.material.lip_drive * c.area[v] * fade * side));
+          level.carrier_drive.push_back(static_cast<float>(m.roll_drive * c.area[v] * fade * side));
         }
       }
     }

@@ -7,6 +7,7 @@
 #include "builder/tissue/distance.h"
 #include "geometry/connectivity.h"
 #include "geometry/error.h"
+#include "geometry/smoothstep.h"
 
 namespace fascia::tissue {
 namespace {
@@ -14,16 +15,16 @@ namespace {
 /// How far inside the region's limits a point lies, metres; negative outside.
 double margin_at(const TissueInputs& inputs, const Vec3& p) {
   const Vec3 ear = 0.5 * (landmark(inputs, "tragion_left") + landmark(inputs, "tragion_right"));
-  const Vec3 glabella = landmark(inputs, "glabella"), nose = landmark(inputs, "subnasale");
-  const Vec3 chin = landmark(inputs, "gnathion");
-  const double third = glabella.y() - nose.y();
+  const Vec3 glabella = landmark(inputs, "glabella"), chin = landmark(inputs, "gnathion");
+  const anatomy::mechanics::Region& m = inputs.mechanics.region;
+  const double third = face_third(inputs);
   const auto hairline = inputs.landmarks.find("trichion");
-  const double top =
-      (hairline != inputs.landmarks.end() ? hairline->second.y() : glabella.y() + third) + 0.15 * third;
-  const double bottom = chin.y() - 0.9 * third;
+  const double top = (hairline != inputs.landmarks.end() ? hairline->second.y() : glabella.y() + third) +
+                     m.above_hairline * third;
+  const double bottom = chin.y() - m.below_chin * third;
   // In front of the ear; below the jaw's angle the neck turns away, so the limit goes back a little.
-  const double below = std::clamp((ear.y() - 0.7 * third - p.y()) / third, 0.0, 1.0);
-  const double back = ear.z() + third * (0.18 - 0.28 * below);
+  const double below = std::clamp((ear.y() - m.jaw_angle * third - p.y()) / third, 0.0, 1.0);
+  const double back = ear.z() + third * (m.before_ear - m.back_below_jaw * below);
   return std::min({top - p.y(), p.y() - bottom, p.z() - back});
 }
 
@@ -39,17 +40,19 @@ std::vector<bool> seen_from_outside(const TissueInputs& inputs, const std::vecto
     for (const fascia::Triangle& t : part.triangles)
       blocking.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
   }
+  constexpr double beyond = 0.01;  // metres past the region's limits that are looked at
+  constexpr double socket = 1.01;  // radii of the globe: nearer is inside the orbit
   const spatial::SurfaceQuery query(blocking);
   const std::vector<Vec3> normals = vertex_normals(inputs.skin);
   const rig::Eye eyes[] = {eye_of(inputs, true), eye_of(inputs, false)};
   std::vector<bool> seen(inputs.skin.vertices.size(), false);
   for (size_t v = 0; v < seen.size(); ++v) {
-    if (margin[v] < -0.01) continue;
+    if (margin[v] < -beyond) continue;
     const Vec3& p = inputs.skin.vertices[v];
     bool in_socket = false;  // seen through an open fissure of a head without eyeballs, yet inside
     for (const rig::Eye& eye : eyes)
       in_socket =
-          in_socket || (p - eye.centre.cast<double>()).norm() < 1.01 * static_cast<double>(eye.radius);
+          in_socket || (p - eye.centre.cast<double>()).norm() < socket * static_cast<double>(eye.radius);
     if (in_socket) continue;
     const Vec3 start = p + 2e-4 * normals[v];
     for (int turn = -3; turn <= 3 && !seen[v]; ++turn)
@@ -88,30 +91,23 @@ Opening opening_at(const TissueInputs& inputs, const Vec3& p) {
   const double half_width = 0.5 * across.norm();
   const rig::Eye left = eye_of(inputs, true), right = eye_of(inputs, false);
   const Vec3 nose = 0.5 * (landmark(inputs, "subnasale") + landmark(inputs, "pronasale"));
+  constexpr double lids = 1.6;  // radii of the globe, as far as half the mouth's width in other scores
+  constexpr double none = 2.5;  // half widths: farther off it is no opening of the face
   const double scores[] = {
-      (p - mouth).norm() / half_width, (p - left.centre.cast<double>()).norm() / (1.6 * left.radius),
-      (p - right.centre.cast<double>()).norm() / (1.6 * right.radius), (p - nose).norm() / half_width};
+      (p - mouth).norm() / half_width, (p - left.centre.cast<double>()).norm() / (lids * left.radius),
+      (p - right.centre.cast<double>()).norm() / (lids * right.radius), (p - nose).norm() / half_width};
   const auto best = std::min_element(std::begin(scores), std::end(scores)) - std::begin(scores);
-  return scores[best] < 2.5 ? static_cast<Opening>(best + 1) : Opening::none;
+  return scores[best] < none ? static_cast<Opening>(best + 1) : Opening::none;
 }
 
 }  // namespace
 
-namespace {
-
-double falling(double from, double to, double x) {
-  const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
-  return 1.0 - t * t * (3.0 - 2.0 * t);
-}
-
-}  // namespace
-
-Vestibule::Vestibule(const TissueInputs& inputs) {
+Vestibule::Vestibule(const TissueInputs& inputs) : mechanics_(inputs.mechanics.vestibule) {
   const Vec3 left = landmark(inputs, "cheilion_left"), right = landmark(inputs, "cheilion_right");
   mouth_ = 0.5 * (left + right);
   half_width_ = 0.5 * (left - right).norm();
   top_ = landmark(inputs, "subnasale").y() - mouth_.y();
-  bottom_ = 0.75 * (landmark(inputs, "gnathion").y() - mouth_.y());
+  bottom_ = mechanics_.lower_fold * (landmark(inputs, "gnathion").y() - mouth_.y());
   for (const size_t side : {0U, 1U}) {
     corners_[side] = side ? left : right;
     to_ears_[side] = landmark(inputs, side ? "tragion_left" : "tragion_right") - corners_[side];
@@ -120,15 +116,18 @@ Vestibule::Vestibule(const TissueInputs& inputs) {
 
 double Vestibule::share(const Vec3& p) const {
   const double up = p.y() - mouth_.y(), height = up > 0.0 ? up / top_ : up / bottom_;
-  // The masseter's front edge lies a little before the middle of the way from the corner of the mouth to the
-  // ear.
   const size_t side = p.x() > mouth_.x();
   const double back = (p - corners_[side]).dot(to_ears_[side]) / to_ears_[side].squaredNorm();
-  return falling(0.36, 0.50, back) * falling(0.55, 1.15, height);
+  return mechanics_.back.fall(back) * mechanics_.height.fall(height);
 }
 
 double Vestibule::side(const Vec3& p, bool left) const {
-  return falling(-0.2, 0.2, (left ? -1.0 : 1.0) * (p.x() - mouth_.x()) / half_width_);
+  const double blend = mechanics_.midline_blend;
+  return 1.0 - smoothstep(-blend, blend, (left ? -1.0 : 1.0) * (p.x() - mouth_.x()) / half_width_);
+}
+
+double face_third(const TissueInputs& inputs) {
+  return landmark(inputs, "glabella").y() - landmark(inputs, "subnasale").y();
 }
 
 Vec3 landmark(const TissueInputs& inputs, const std::string& name) {
@@ -143,9 +142,11 @@ rig::Eye eye_of(const TissueInputs& inputs, bool left) {
   if (given.radius > 0.0F) return given;
   const std::string side = left ? "_left" : "_right";
   const Vec3 inner = landmark(inputs, "endocanthion" + side), outer = landmark(inputs, "exocanthion" + side);
-  rig::Eye eye;  // a fissure is some 30 mm wide before a globe of 24 mm, whose front stands before the canthi
-  eye.radius = static_cast<float>(0.4 * (outer - inner).norm());
-  eye.centre = (0.5 * (inner + outer) - Vec3(0, 0, 0.7 * static_cast<double>(eye.radius))).cast<float>();
+  const anatomy::mechanics::Lids& m = inputs.mechanics.lids;
+  const double radius = m.globe_radius_share * (outer - inner).norm();
+  rig::Eye eye;
+  eye.radius = static_cast<float>(radius);
+  eye.centre = (0.5 * (inner + outer) - Vec3(0, 0, m.globe_depth_share * radius)).cast<float>();
   return eye;
 }
 

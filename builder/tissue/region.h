@@ -38,10 +38,14 @@ class Vestibule {
   double side(const Vec3& point, bool left) const;
 
  private:
+  anatomy::mechanics::Vestibule mechanics_;
   Vec3 mouth_;
   std::array<Vec3, 2> corners_, to_ears_;  // right, left
   double half_width_, top_, bottom_;
 };
+
+/// The height from subnasale to glabella, a third of the face, metres.
+double face_third(const TissueInputs& inputs);
 
 /// The landmark `name`; throws Error that names it when it is missing.
 Vec3 landmark(const TissueInputs& inputs, const std::string& name);

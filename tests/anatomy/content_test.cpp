@@ -265,15 +265,38 @@ TEST(Expressions, LeftMirrorsRight) {
   EXPECT_EQ(pairs, 20);
 }
 
-TEST(Tissue, LayersFromTheSkinInwardAndFractionsInRange) {
-  const Tissue& tissue = generic().tissue;
-  ASSERT_EQ(tissue.layers.size(), 5U);
-  EXPECT_EQ(tissue.layers.front().name, "skin");
-  for (const TissueLayer& layer : tissue.layers) {
-    EXPECT_LE(layer.thinnest, layer.thickness) << layer.name;
-    EXPECT_GE(layer.thickest, layer.thickness) << layer.name;
-    EXPECT_GE(layer.stiff_modulus, layer.young_modulus) << layer.name;
+TEST(Mechanics, InMetresRadiansAndPascal) {
+  const Mechanics& m = generic().mechanics;
+  EXPECT_EQ(m.skin.young_modulus, 14000.0);
+  EXPECT_EQ(m.skin.thickness, 0.0017);
+  EXPECT_EQ(m.lids.crease.begin, 0.010);
+  EXPECT_EQ(m.lids.crease.end, 0.015);
+  EXPECT_NEAR(m.jaw.open_angle, 25.0 * 3.14159265358979 / 180.0, 1e-12);
+  EXPECT_NEAR(m.lids.crease.rise(0.0125), 0.5, 1e-12);
+  EXPECT_EQ(m.lids.crease.fall(0.009), 1.0);
+}
+
+TEST(Mechanics, PlacesOfTheFaceStandOnBothSides) {
+  const Mechanics& m = generic().mechanics;
+  EXPECT_EQ(m.attachment_regions.size(), 21U);  // three of the midline, nine pairs
+  const auto named = [&](const std::string& name) -> const AttachmentRegion& {
+    return *std::find_if(m.attachment_regions.begin(), m.attachment_regions.end(),
+                         [&](const AttachmentRegion& region) { return region.name == name; });
+  };
+  EXPECT_EQ(named("buccal_space_right").place.parts[0].landmark, "cheilion_right");
+  EXPECT_EQ(named("forehead_lateral_left").place.parts[1].share, Vec3(0.8, 0.0, 0.0));
+  // Of places made from whole landmarks the shares sum to one, or they would move with the head's origin.
+  for (const AttachmentRegion& region : m.attachment_regions) {
+    Vec3 sum = Vec3::Zero();
+    for (const FacePlace::Part& part : region.place.parts)
+      sum += part.share;
+    EXPECT_NEAR(sum.y(), 1.0, 1e-12) << region.name;
+    EXPECT_NEAR(sum.z(), 1.0, 1e-12) << region.name;
   }
+}
+
+TEST(Tissue, ZonesInRangeAndLigamentsOfPlausibleLength) {
+  const Tissue& tissue = generic().tissue;
   for (const Zone& zone : tissue.skin_attachments) {
     EXPECT_GT(zone.value, 0.0) << zone.name;
     EXPECT_LE(zone.value, 1.0) << zone.name;

@@ -144,9 +144,7 @@ TEST(HeadAndSkull, CurvesLieOnTheirSurfacesAndMirror) {
 
 TEST(HeadAndSkull, RegionsLieOnTheSkin) {
   const Tissue& tissue = surfaces().anatomy.tissue;
-  for (const std::vector<Zone>* zones :
-       {&tissue.skin_attachments, &tissue.gliding_planes, &tissue.fat_compartments, &tissue.aesthetic_units,
-        &tissue.tarsal_plates}) {
+  for (const std::vector<Zone>* zones : {&tissue.skin_attachments, &tissue.gliding_planes}) {
     EXPECT_FALSE(zones->empty());
     for (const Zone& zone : *zones) {
       for (const Vec3& corner : zone.polygon) {

@@ -67,9 +67,6 @@ TEST(LoadAnatomy, DirectoryHoldsWhatIsBuiltIn) {
 
 TEST(LoadAnatomy, MissingPlacesAreNamed) {
   EXPECT_NE(message("/nowhere/at/all").find("/nowhere/at/all"), std::string::npos);
-  const Copy copy;
-  fs::remove(copy.path() / "muscles.json");
-  EXPECT_NE(message(copy.path()).find("muscles.json"), std::string::npos);
   EXPECT_THROW(embedded_file("no_such.json"), Error);
 }
 
@@ -111,7 +108,34 @@ INSTANTIATE_TEST_SUITE_P(
         Spoilt{"muscles.json", "\"name\": \"procerus\"", "\"name\": \"procer\"", "procerus"},
         Spoilt{"actuators.json", "\"minimum\": 0, \"maximum\": 1", "\"minimum\": 2, \"maximum\": 1",
                "jaw_open"},
-        Spoilt{"tissue.json", "\"thickness_mm\": 1.7", "\"thickness_mm\": \"thin\"", "skin"}));
+        Spoilt{"tissue.json", "\"strength\": 1.0", "\"strength\": \"firm\"", "glabella"},
+        Spoilt{"tissue.json", "\"elsewhere\"", "\"layers\": [], \"elsewhere\"", "layers"},
+        Spoilt{"mechanics.json", "\"value\": 14000", "\"value\": 140000", "skin, young_modulus"},
+        Spoilt{"mechanics.json", "\"value\": 1.7, \"unit\": \"mm\"", "\"value\": 0.0017, \"unit\": \"m\"",
+               "skin, thickness"},
+        Spoilt{"mechanics.json", "\"softness_fade\"", "\"softness_fades\"", "softness_fade"},
+        Spoilt{"mechanics.json", "\"lips\": {", "\"lisp\": {", "lips"},
+        Spoilt{"mechanics.json", "\"landmark\": \"sellion\"", "\"landmark\": \"selion\"", "nose_bridge"}));
+
+TEST(LoadAnatomy, ADirectoryMayHoldJustTheCorrectedFiles) {
+  const Copy copy;
+  copy.edit("mechanics.json", "\"value\": 14000", "\"value\": 16000");
+  for (const std::string& name : embedded_files())
+    if (name != "mechanics.json") fs::remove(copy.path() / name);
+  EXPECT_EQ(load_generic(copy.path()).mechanics.skin.young_modulus, 16000.0);
+  EXPECT_EQ(load_generic(copy.path()).muscles.size(), load_generic().muscles.size());
+  EXPECT_EQ(corrected_files(copy.path()), std::vector<std::string>{"mechanics.json"});
+}
+
+TEST(LoadAnatomy, AFileThatNothingReadsIsRefused) {
+  const Copy copy;
+  fs::rename(copy.path() / "mechanics.json", copy.path() / "mechanic.json");
+  EXPECT_NE(message(copy.path()).find("mechanic.json"), std::string::npos);
+  for (const std::string& name : embedded_files())
+    fs::remove(copy.path() / name);
+  fs::remove(copy.path() / "mechanic.json");
+  EXPECT_NE(message(copy.path()).find("holds no file"), std::string::npos);
+}
 
 TEST(LoadAnatomy, UnknownChannelInATable) {
   const Copy copy;

@@ -26,6 +26,7 @@ struct Head {
     static const anatomy::GenericAnatomy anatomy = anatomy::load_generic();
     found = rigging::find_landmarks(formats::read(file), {}, anatomy);
     skull = rigging::fit_skull(anatomy, found.head, found.landmarks, 1.0);
+    inputs = smas::inputs_from(anatomy);
     inputs.skin = &found.head.skin;
     inputs.cranium = &skull.cranium;
     inputs.mandible = &skull.mandible;

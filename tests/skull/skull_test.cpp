@@ -79,8 +79,25 @@ TEST(SkullFit, SymmetricHeadGetsASymmetricSkull) {
     }
   EXPECT_LT((result.jaw.condyle_left - mirrored(result.jaw.condyle_right)).norm(), 1e-6);
   EXPECT_LT((result.jaw.hinge - Vec3::UnitX()).norm(), 1e-6);
-  EXPECT_GT(result.jaw.glide.z(), 0);
-  EXPECT_LT(result.jaw.glide.y(), 0);
+}
+
+TEST(SkullFit, LengthsOfTheJawsMotionScaleWithTheHead) {
+  Generic generic = round_head();
+  generic.condyle_left = Vec3(0.05, 0, 0.01);
+  generic.condyle_right = Vec3(-0.05, 0, 0.01);
+  generic.jaw = {0.4, 0.008, 0.006, 0.007, 0.003, 0.15, 0.002};
+  const Map small = [](const Vec3& p) { return Vec3(0.75 * p); };
+  FitOptions options;
+  options.tissue_scale = 0.75;
+  const FitResult result = fit(generic, mapped(globe(skin_radii), small), carried(generic, small), options);
+  const anatomy::mechanics::JawMotion& motion = result.jaw.motion;
+  EXPECT_EQ(motion.open_angle, 0.4);
+  EXPECT_EQ(motion.lateral_angle, 0.15);
+  EXPECT_NEAR(motion.open_forward, 0.0060, 1e-4);
+  EXPECT_NEAR(motion.open_down, 0.0045, 1e-4);
+  EXPECT_NEAR(motion.protrusion_forward, 0.00525, 1e-4);
+  EXPECT_NEAR(motion.protrusion_down, 0.00225, 1e-4);
+  EXPECT_NEAR(motion.lateral_glide, 0.0015, 1e-4);
 }
 
 TEST(SkullFit, BoneStaysUnderTheSkinWhereNoLandmarkTells) {

@@ -41,6 +41,11 @@ TriangleMesh sphere(double radius, int levels) {
   return mesh;
 }
 
+const anatomy::GenericAnatomy& generic() {
+  static const anatomy::GenericAnatomy anatomy = anatomy::load_generic();
+  return anatomy;
+}
+
 Landmarks ict_landmarks() {
   std::ifstream file(test::data() / "ict_neutral_landmarks.json");
   const nlohmann::json json = nlohmann::json::parse(file);
@@ -69,13 +74,13 @@ int euler(const TriangleMesh& mesh) {
 class RoundHead : public testing::Test {
  protected:
   TriangleMesh skin = sphere(0.1, 6), bone = sphere(0.09, 5);
-  Inputs inputs{&skin, &bone, nullptr, round_face()};
+  Inputs inputs = inputs_from(generic());
+  RoundHead() { inputs.skin = &skin, inputs.cranium = &bone, inputs.landmarks = round_face(); }
 };
 
 TEST_F(RoundHead, LiesAtTheDepthAskedFor) {
-  Options options;
-  options.layers = {{"glabella", 0.4, 0.1}};
-  const Result result = build(inputs, options);
+  inputs.depths = {{"glabella", 0.4, 0.1}};
+  const Result result = build(inputs);
   ASSERT_GT(result.mesh.triangle_count(), 1000);
   for (const Vec3& p : result.mesh.vertices)
     EXPECT_NEAR((p - kCentre).norm(), 0.096, 0.0002);
@@ -121,9 +126,8 @@ TEST_F(RoundHead, StaysBetweenLayersOneMillimetreApart) {
   const TriangleMesh close = sphere(0.099, 5);
   Inputs tight = inputs;
   tight.cranium = &close;
-  Options options;
-  options.layers = {{"glabella", 0.75, 0.1}};
-  const Result result = build(tight, options);
+  tight.depths = {{"glabella", 0.75, 0.1}};
+  const Result result = build(tight);
   EXPECT_EQ(result.outside_layers, 0);
   for (size_t v = 0; v < result.mesh.vertices.size(); ++v) {
     EXPECT_GT(result.skin_distance[v], 0.0);
@@ -133,7 +137,8 @@ TEST_F(RoundHead, StaysBetweenLayersOneMillimetreApart) {
 
 TEST_F(RoundHead, ScalesWithTheFace) {
   TriangleMesh half = skin, half_bone = bone;
-  Inputs child{&half, &half_bone, nullptr, inputs.landmarks};
+  Inputs child = inputs;
+  child.skin = &half, child.cranium = &half_bone;
   for (TriangleMesh* mesh : {&half, &half_bone})
     for (Vec3& v : mesh->vertices)
       v *= 0.5;
@@ -174,7 +179,7 @@ TEST_F(RoundHead, SaysWhatIsMissing) {
 }
 
 TEST(LayerDepth, KeepsWithinBoneAndSkin) {
-  const LayerDepth layers(adult_layers(), ict_landmarks(), 1.0);
+  const LayerDepth layers(generic().tissue.smas_depths, generic().mechanics.smas_shape, ict_landmarks(), 1.0);
   const Landmarks landmarks = ict_landmarks();
   const double none = std::numeric_limits<double>::infinity();
   for (const auto& [name, p] : landmarks)
@@ -192,7 +197,7 @@ TEST(LayerDepth, KeepsWithinBoneAndSkin) {
 
 TEST(ReachField, TellsTheLiningOfAnEyeSocketFromLidsAndNose) {
   const Landmarks landmarks = ict_landmarks();
-  const ReachField field(landmarks, {}, 0.0096);
+  const ReachField field(landmarks, generic().mechanics.smas_shape, true, 0.0096);
   for (const char* side : {"_left", "_right"}) {
     const auto at = [&](const char* name) { return landmarks.at(std::string(name) + side); };
     const Vec3 globe = 0.5 * (at("exocanthion") + at("endocanthion")) - Vec3(0, 0, 0.010);

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "anatomy/anatomy.h"
 #include "builder/tissue/region.h"
 #include "formats/scene.h"
 #include "geometry/connectivity.h"
@@ -18,6 +19,7 @@ namespace {
 const TissueInputs& measured_head() {
   static const TissueInputs inputs = [] {
     TissueInputs in;
+    in.mechanics = anatomy::load_generic().mechanics;
     const std::filesystem::path path = test::measured_data() / "data/ict/neutral.glb";
     if (!std::filesystem::exists(path)) return in;
     const formats::Scene scene = formats::read(path);

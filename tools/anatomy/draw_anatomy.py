@@ -199,9 +199,8 @@ def draw_muscles(muscles):
 
 
 def draw_regions(tissue):
-    lists = [("skin_attachments", "SMAS to skin: attachment"), ("gliding_planes", "gliding planes"),
-             ("fat_compartments", "fat compartments"), ("aesthetic_units", "aesthetic units"),
-             ("tarsal_plates", "tarsal plates, ligaments (red: at the bone)")]
+    lists = [("skin_attachments", "SMAS to skin: attachment"),
+             ("gliding_planes", "gliding planes, ligaments (red: at the bone)")]
     points, normals = sampled("skin", 0.6)
     rows = []
     for view, box in (("front", (-85, 85, -100, 115)), ("three-quarter", (-95, 95, -100, 115))):
@@ -219,7 +218,7 @@ def draw_regions(tissue):
             for zone in tissue[key]:
                 for polygon in both(zone["polygon"], zone.get("midline", False)):
                     panel.line(polygon, (60, 40, 40), True, 3.0)
-            if key == "tarsal_plates":
+            if key == "gliding_planes":
                 for ligament in tissue["ligaments"]:
                     for bone, skin in zip(both(ligament["bone"]), both(ligament["skin"])):
                         panel.line(skin, BLUE, False, 3.0) if len(skin) > 1 else panel.dots(skin, BLUE)
