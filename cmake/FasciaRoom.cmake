@@ -67,6 +67,13 @@ function(fascia_room name)
   add_library(fascia::${name} ALIAS fascia_${name})
 endfunction()
 
+# fascia_library(NAME ...): a room no product path uses, a library for tools, benchmarks and whoever builds on Fascia;
+# built only where something links it.
+function(fascia_library name)
+  fascia_room(${name} ${ARGN})
+  set_target_properties(fascia_${name} PROPERTIES EXCLUDE_FROM_ALL ON)
+endfunction()
+
 # fascia_test(NAME [WHOLE] SOURCES file... LINKS target...): one GoogleTest program of tests/<room>/. WHOLE runs it
 # as one test, for programs whose cases share a costly set-up.
 function(fascia_test name)

@@ -91,16 +91,17 @@ sim::JawPose Face::wanted_jaw() const {
       effective_));
 }
 
-sim::Drive Face::drive() const {
-  sim::Drive drive;
-  drive.activations = effective_;
-  drive.jaw = jaw_;
-  drive.acceleration = acceleration_ + inertia_;
-  drive.touches = touches_;
-  return drive;
+sim::Controls Face::controls() const {
+  sim::Controls controls;
+  controls.activations = effective_;
+  controls.jaw = jaw_;
+  controls.acceleration = acceleration_ + inertia_;
+  controls.touches = touches_;
+  return controls;
 }
 
 void Face::follow() {
+  solver_->displacements(displacements_);
   const BoneChannels& channels = asset_->bones();
   bones_.jaw = sim::jaw_transform(model_->jaw(), jaw_);
   for (std::size_t eye = 0; eye < 2; ++eye)
@@ -162,7 +163,7 @@ void Face::pose() {
   inertia_.setZero();
   gather();
   jaw_ = wanted_jaw();
-  solver_->pose(drive(), displacements_);
+  solver_->settle(controls());
   follow();
 }
 
@@ -170,9 +171,9 @@ bool Face::step(double seconds) {
   inertia_ = inertia(seconds);
   gather();
   if (std::isfinite(seconds)) jaw_ = sim::approached(jaw_, wanted_jaw(), seconds);
-  const bool sound = solver_->step(seconds, drive(), displacements_);
+  const bool is_sound = solver_->step(seconds, controls()).status == sim::StepStatus::done;
   follow();
-  return sound;
+  return is_sound;
 }
 
 void Face::reset() {
@@ -180,7 +181,7 @@ void Face::reset() {
   inertia_.setZero();
   gather();
   jaw_ = wanted_jaw();
-  solver_->reset(drive(), displacements_);
+  solver_->reset(controls());
   follow();
 }
 

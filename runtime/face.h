@@ -51,7 +51,7 @@ class Face {
  private:
   /// Adds up own values, members and curves into `effective_` and uses the curves up.
   void gather();
-  sim::Drive drive() const;
+  sim::Controls controls() const;
   /// Where channels and masticatory muscles want the jaw.
   sim::JawPose wanted_jaw() const;
   /// What the head's own motion over `seconds` does to loose tissue, m/s^2 in its frame.
@@ -65,7 +65,7 @@ class Face {
   std::shared_ptr<const Asset> asset_;
   std::size_t level_ = 0;
   const sim::FaceModel* model_ = nullptr;
-  std::unique_ptr<Solver> solver_;
+  std::unique_ptr<sim::Solver> solver_;
   std::vector<float> values_, members_, curve_channels_, curve_members_, effective_;
   sim::Vec3 acceleration_ = sim::Vec3::Zero(), inertia_ = sim::Vec3::Zero();
   struct HeadMotion {

@@ -7,72 +7,9 @@
 #include "runtime/asset.h"
 #include "runtime/message.h"
 #include "sim/realtime/face.h"
-#include "sim/solver.h"
 
 namespace fascia::runtime {
 namespace {
-
-/// Fascia's own solver: in real time, or the reference, whose faces speak alike.
-template <class Face, class StepOptions>
-class FaceSolver : public Solver {
- public:
-  template <class Model, class Options>
-  FaceSolver(const Model& model, std::size_t channels, int pose_iterations, const Options& step)
-      : face_(model, channels), step_(step) {
-    pose_.solver.iterations = pose_iterations;
-  }
-
-  void pose(const sim::Drive& drive, std::span<sim::Vec3f> displacements) override {
-    face_.settle(drive, pose_);
-    face_.displacements(displacements);
-  }
-  bool step(double seconds, const sim::Drive& drive, std::span<sim::Vec3f> displacements) override {
-    const sim::StepResult result = face_.step(seconds, drive, step_);
-    face_.displacements(displacements);
-    return result.status == sim::StepStatus::done;
-  }
-  void reset(const sim::Drive& drive, std::span<sim::Vec3f> displacements) override {
-    face_.reset(drive);
-    face_.displacements(displacements);
-  }
-
- private:
-  Face face_;
-  StepOptions step_;
-  sim::PoseOptions pose_;
-};
-
-/// A solver from a module, behind sim's interface, which speaks of positions.
-class ModuleSolver : public Solver {
- public:
-  ModuleSolver(std::unique_ptr<sim::Solver> solver, const sim::FaceModel& model)
-      : solver_(std::move(solver)), model_(model) {}
-
-  void pose(const sim::Drive& drive, std::span<sim::Vec3f> displacements) override {
-    solver_->static_pose(drive, displacements);
-    subtract_rest(displacements);
-  }
-  bool step(double seconds, const sim::Drive& drive, std::span<sim::Vec3f> displacements) override {
-    const sim::StepResult result = solver_->step(seconds, drive);
-    solver_->positions(displacements);
-    subtract_rest(displacements);
-    return result.status == sim::StepStatus::done;
-  }
-  void reset(const sim::Drive& drive, std::span<sim::Vec3f> displacements) override {
-    solver_->reset(drive);
-    solver_->positions(displacements);
-    subtract_rest(displacements);
-  }
-
- private:
-  void subtract_rest(std::span<sim::Vec3f> positions) const {
-    for (std::size_t i = 0; i < positions.size(); ++i)
-      positions[i] -= model_.lattice().rest[i];
-  }
-
-  std::unique_ptr<sim::Solver> solver_;
-  const sim::FaceModel& model_;
-};
 
 /// Folder this library lies in, with a slash at its end; empty when it is not known.
 std::string own_folder() {
@@ -103,26 +40,31 @@ sim::MakeSolver bullet_entry() {
 
 }  // namespace
 
-std::unique_ptr<Solver> make_solver(const fascia_face_options& options, const Asset& asset,
-                                    std::size_t level) {
+std::unique_ptr<sim::Solver> make_solver(const fascia_face_options& options, const Asset& asset,
+                                         std::size_t level) {
   const std::size_t channels = asset.channel_names.size();
   const fascia_solver kind = options.solver;
   require(options.iterations >= 0 && options.iterations <= 32, "iterations must lie between 0 and 32");
+  sim::PoseOptions pose;
   if (kind == FASCIA_SOLVER_OWN) {
+    pose.solver.iterations = 2000;
     sim::realtime::StepOptions step;
     if (options.iterations > 0) step.iterations = options.iterations;
-    return std::make_unique<FaceSolver<sim::realtime::Face, sim::realtime::StepOptions>>(
-        asset.realtime_model(level), channels, 2000, step);
+    return std::make_unique<sim::realtime::Face>(asset.realtime_model(level), channels, pose, step);
   }
   const sim::FaceModel& model = asset.model(level);
-  if (kind == FASCIA_SOLVER_REFERENCE)
-    return std::make_unique<FaceSolver<sim::Face, sim::StepOptions>>(model, channels, 200,
-                                                                     sim::StepOptions{});
+  if (kind == FASCIA_SOLVER_REFERENCE) {
+    if (!model.has_factors())
+      throw Failure(FASCIA_ERROR_FORMAT, "FASCIA_tissue/levels/" + std::to_string(level) +
+                                             ": its stiffness has no factor; build the rig again");
+    pose.solver.iterations = 200;
+    return std::make_unique<sim::Face>(model, channels, pose);
+  }
   require(kind == FASCIA_SOLVER_BULLET, "unknown solver");
   std::unique_ptr<sim::Solver> solver(bullet_entry()(&model, channels));
   if (!solver)
     throw Failure(FASCIA_ERROR_MODULE, "the module libfascia_bullet could not make a solver of this rig");
-  return std::make_unique<ModuleSolver>(std::move(solver), model);
+  return solver;
 }
 
 }  // namespace fascia::runtime

@@ -10,13 +10,13 @@
 // faces).
 namespace fascia::sim {
 
-AdjointResult Face::static_gradient(const Drive& drive, std::span<const Vec3> slope,
+AdjointResult Face::static_gradient(const Controls& controls, std::span<const Vec3> slope,
                                     std::span<double> by_channel, std::array<double, 3>& by_jaw,
                                     const AdjointOptions& options) {
   AdjointResult result;
   const auto& unknowns = model_->unknowns();
   const size_t nodes = pose_.size();
-  model_->place(drive, pose_frame_);
+  model_->place(controls, pose_frame_);
   Adjoint& a = adjoint_;
   a.resize(nodes, unknowns.size());
   // Conjugate gradients on H lambda = slope, the rest factor as preconditioner.
@@ -64,7 +64,7 @@ AdjointResult Face::static_gradient(const Drive& drive, std::span<const Vec3> sl
   result.converged = result.residual <= options.tolerance;
 
   std::fill(by_channel.begin(), by_channel.end(), 0.0);
-  model_->channel_slopes(pose_frame_, drive, pose_.data(), a.lambda.data(), by_channel);
+  model_->channel_slopes(pose_frame_, controls, pose_.data(), a.lambda.data(), by_channel);
   for (double& value : by_channel)
     value = -value;
   // The jaw moves bones, anchors and prescribed nodes all at once: differences of the gradient, at free
@@ -73,7 +73,7 @@ AdjointResult Face::static_gradient(const Drive& drive, std::span<const Vec3> sl
     const float step = 1e-3F;
     double ends[2];
     for (int end = 0; end < 2; ++end) {
-      Drive moved = drive;
+      Controls moved = controls;
       float* const value = k == 0 ? &moved.jaw.open : k == 1 ? &moved.jaw.forward : &moved.jaw.lateral;
       *value += end == 0 ? -step : step;
       model_->place(moved, pose_frame_);
@@ -87,14 +87,16 @@ AdjointResult Face::static_gradient(const Drive& drive, std::span<const Vec3> sl
         sum -= a.lambda[i].dot(a.product[i]);
       ends[end] = sum;
     }
-    const JawPose low = clamped({drive.jaw.open - step, drive.jaw.forward - step, drive.jaw.lateral - step});
-    const JawPose high = clamped({drive.jaw.open + step, drive.jaw.forward + step, drive.jaw.lateral + step});
+    const JawPose low =
+        clamped({controls.jaw.open - step, controls.jaw.forward - step, controls.jaw.lateral - step});
+    const JawPose high =
+        clamped({controls.jaw.open + step, controls.jaw.forward + step, controls.jaw.lateral + step});
     const double width = k == 0   ? high.open - low.open
                          : k == 1 ? high.forward - low.forward
                                   : high.lateral - low.lateral;
     by_jaw[k] = width > 0.0 ? (ends[1] - ends[0]) / width : 0.0;
   }
-  model_->place(drive, pose_frame_);
+  model_->place(controls, pose_frame_);
   return result;
 }
 

@@ -152,16 +152,10 @@ Contacts::Touch Contacts::globe_touch(size_t c, const Vec3* x) const {
 }
 
 Contacts::Touch Contacts::bone_touch(size_t c, const RigidTransform& mandible, const Vec3* x) const {
-  const bool moves = field_bones_[bone_fields_[c]] == 1;
   const Vec3& place = x[bone_nodes_[c]];
-  Touch touch;
-  Vec3 gradient;
-  const double distance = fields_[bone_fields_[c]].sample(
-      moves ? Vec3(mandible.rotation.transpose() * (place - mandible.translation)) : place, gradient);
-  if (!(distance < bone_margins_[c])) return touch;
-  touch.depth = bone_margins_[c] - distance;
-  touch.normal =
-      moves ? Vec3(mandible.rotation * gradient) : gradient;  // the field's slope: unit but for its grid
+  if (!bone_moves(c)) return bone_touch(c, place);
+  Touch touch = bone_touch(c, Vec3(mandible.rotation.transpose() * (place - mandible.translation)));
+  touch.normal = mandible.rotation * touch.normal;
   return touch;
 }
 
@@ -176,41 +170,6 @@ double Contacts::energy(const RigidTransform& mandible, const Vec3* x, Vec3* gra
     push(globe_nodes_[c], globe_touch(c, x), options_.globe_stiffness);
   for (size_t c = 0; c < bone_nodes_.size(); ++c)
     push(bone_nodes_[c], bone_touch(c, mandible, x), options_.bone_stiffness);
-  return energy;
-}
-
-double Contacts::facing_energy(std::span<const FacingPair> pairs, const Vec3* x, Vec3* gradient) const {
-  double energy = 0.0;
-  for (const FacingPair& pair : pairs) {
-    if (!pair.is_found()) continue;
-    const double depth = pair.margin - pair.gap(x);
-    if (depth <= 0.0) continue;
-    const Vec3 push = (options_.facing_stiffness * depth) * pair.normal;
-    energy += 0.5 * options_.facing_stiffness * depth * depth;
-    gradient[pair.node] -= push;
-    for (size_t k = 0; k < 3; ++k)
-      gradient[pair.corners[k]] += pair.weights[static_cast<int>(k)] * push;
-  }
-  return energy;
-}
-
-double Contacts::grip_energy(std::span<const Grip> grips, const Vec3* x, Vec3* gradient) const {
-  double energy = 0.0;
-  for (const Grip& grip : grips) {
-    Vec3 slip = x[grip.node] - grip.anchor;
-    const bool facing = grip.corners[0] != FacingPair::none;
-    if (facing)
-      for (size_t k = 0; k < 3; ++k)
-        slip -= grip.weights[static_cast<int>(k)] * x[grip.corners[k]];
-    const double along = grip.normal.dot(slip);
-    const Vec3 force =
-        grip.stiffness * (slip - along * grip.normal) + (grip.normal_stiffness * along) * grip.normal;
-    energy += 0.5 * force.dot(slip);
-    gradient[grip.node] += force;
-    if (facing)
-      for (size_t k = 0; k < 3; ++k)
-        gradient[grip.corners[k]] -= grip.weights[static_cast<int>(k)] * force;
-  }
   return energy;
 }
 

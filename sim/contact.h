@@ -89,8 +89,27 @@ class Contacts {
   /// Energies of nodes against eyeballs and bones, joules; adds to the gradient.
   double energy(const RigidTransform& mandible, const Vec3* x, Vec3* gradient) const;
   /// Energy of found pairs.
-  double facing_energy(std::span<const FacingPair> pairs, const Vec3* x, Vec3* gradient) const;
-  double grip_energy(std::span<const Grip> grips, const Vec3* x, Vec3* gradient) const;
+  /// The same for pairs and grips, wherever a solver keeps its numbers: `place(node)` is where a node is, and
+  /// `add(node, force, stiffness)` adds to its gradient, and by how much the contact makes it stiffer (newton
+  /// per metre).
+  template <class Place, class Add>
+  double facing_energy(std::span<const FacingPair> pairs, const Place& place, const Add& add) const;
+  template <class Place, class Add>
+  static double grip_energy(std::span<const Grip> grips, const Place& place, const Add& add);
+
+  /// A node against a surface: how far it has come beyond its margin (negative: how far before it), metres,
+  /// and the surface's normal.
+  struct Touch {
+    double depth = 0.0;
+    Vec3 normal = Vec3::Zero();
+  };
+  /// Of a contact with bone, at the node's place in the bone's own frame, as is the normal: the field's
+  /// slope, of length 1 but for its grid.
+  Touch bone_touch(size_t contact, const Vec3& local) const {
+    Touch touch;
+    touch.depth = bone_margins_[contact] - bone_field(contact).sample(local, touch.normal);
+    return touch;
+  }
 
   /// Adds what they add to the Hessian: globes, bones, pairs and grips; the surfaces' own bend is left out.
   void add_curvature(const RigidTransform& mandible, std::span<const FacingPair> pairs,
@@ -117,7 +136,6 @@ class Contacts {
   std::span<const uint32_t> soft_nodes() const {
     return soft_nodes_;
   }  ///< against eyeballs, and of surfaces that face others
-  std::span<const double> bone_margins() const { return bone_margins_; }
   bool bone_moves(size_t contact) const {
     return field_bones_[bone_fields_[contact]] == 1;
   }  ///< with the mandible
@@ -134,10 +152,6 @@ class Contacts {
     std::vector<std::array<uint32_t, 3>> triangles;
     std::vector<std::array<uint32_t, 3>> corners;  ///< of each triangle: its corners' places in `fans`
     std::vector<std::vector<uint32_t>> fans;       ///< of each node: the side's triangles around it
-  };
-  struct Touch {
-    double depth = 0.0;
-    Vec3 normal = Vec3::Zero();
   };
   Touch globe_touch(size_t contact, const Vec3* x) const;
   Touch bone_touch(size_t contact, const RigidTransform& mandible, const Vec3* x) const;
@@ -160,5 +174,46 @@ class Contacts {
   std::vector<double> facing_margins_;
   std::vector<uint32_t> facing_fans_;  ///< of each facing node: its place in its side's `fans`
 };
+
+template <class Place, class Add>
+double Contacts::facing_energy(std::span<const FacingPair> pairs, const Place& place, const Add& add) const {
+  double energy = 0.0;
+  for (const FacingPair& pair : pairs) {
+    if (!pair.is_found()) continue;
+    Vec3 gap = place(pair.node);
+    for (size_t k = 0; k < 3; ++k)
+      gap -= pair.weights[static_cast<int>(k)] * place(pair.corners[k]);
+    const double depth = pair.margin - pair.normal.dot(gap);
+    if (depth <= 0.0) continue;
+    const Vec3 push = (options_.facing_stiffness * depth) * pair.normal;
+    const double stiffness = 2.0 * options_.facing_stiffness;  // both sides yield
+    energy += 0.5 * options_.facing_stiffness * depth * depth;
+    add(pair.node, -push, stiffness);
+    for (size_t k = 0; k < 3; ++k) {
+      const double weight = pair.weights[static_cast<int>(k)];
+      add(pair.corners[k], weight * push, weight * stiffness);
+    }
+  }
+  return energy;
+}
+
+template <class Place, class Add>
+double Contacts::grip_energy(std::span<const Grip> grips, const Place& place, const Add& add) {
+  double energy = 0.0;
+  for (const Grip& grip : grips) {
+    Vec3 slip = place(grip.node) - grip.anchor;
+    const bool facing = grip.corners[0] != FacingPair::none;
+    for (size_t k = 0; facing && k < 3; ++k)
+      slip -= grip.weights[static_cast<int>(k)] * place(grip.corners[k]);
+    const double along = grip.normal.dot(slip);
+    const Vec3 force =
+        grip.stiffness * (slip - along * grip.normal) + (grip.normal_stiffness * along) * grip.normal;
+    energy += 0.5 * force.dot(slip);
+    add(grip.node, force, grip.stiffness + grip.normal_stiffness);
+    for (size_t k = 0; facing && k < 3; ++k)
+      add(grip.corners[k], -grip.weights[static_cast<int>(k)] * force, 0.0);
+  }
+  return energy;
+}
 
 }  // namespace fascia::sim

@@ -121,7 +121,7 @@ void add_membrane(const Membrane& m, const Vec3* x, Curvature& out) {
   u1 /= s1;
   u2 /= s2;
   const Vec3 n = u1.cross(u2);
-  const MembraneCrush crush = membrane_crush(m, s1 * s2);
+  const formulas::Wall<double> crush = membrane_crush(m, s1 * s2);
   const double w1 = 2.0 * m.mu * (s1 - 1.0) + m.lambda * (s1 + s2 - 2.0) + crush.slope * s2;
   const double w2 = 2.0 * m.mu * (s2 - 1.0) + m.lambda * (s1 + s2 - 2.0) + crush.slope * s1;
   Curvature::Plate plate{m.nodes, m.inverse_rest, Eigen::Matrix<double, 6, 6>::Zero()};

@@ -10,17 +10,6 @@ namespace {
 
 constexpr double tiny_area = 1e-16;  // square metres: an edge of 10 nanometres
 
-/// The closed surface of a prism as triangles with their weights: both ends, and each bilinear side
-/// as the mean of its two diagonal splits. Corners 0..2 outer, 3..5 inner; outward.
-struct Face {
-  int a, b, c;
-  double weight;
-};
-constexpr Face prism_faces[] = {{0, 1, 2, 1.0}, {3, 5, 4, 1.0},                                  // ends
-                                {0, 3, 4, 0.5}, {0, 4, 1, 0.5}, {0, 3, 1, 0.5}, {1, 3, 4, 0.5},  // sides
-                                {1, 4, 5, 0.5}, {1, 5, 2, 0.5}, {1, 4, 2, 0.5}, {2, 4, 5, 0.5},
-                                {2, 5, 3, 0.5}, {2, 3, 0, 0.5}, {2, 5, 0, 0.5}, {0, 5, 3, 0.5}};
-
 struct HingeFrame {
   Vec3 edge, normal_a, normal_b;  // normals scaled by twice the areas
   double length, area_a, area_b;  // areas squared times four
@@ -44,16 +33,10 @@ double angle_of(const HingeFrame& f) {
 }  // namespace
 
 double spring_energy(const Spring& s, const Vec3* x, Vec3* gradient) {
-  const Vec3 along = x[s.nodes[1]] - x[s.nodes[0]];
-  const double length = along.norm(), stretch = length - s.length;
-  if ((s.one_sided && stretch <= 0.0) || length < 1e-12) return 0.0;
-  const double beyond = std::max(0.0, stretch - s.limit), extra = s.second_stiffness - s.stiffness;
-  double energy = 0.5 * s.stiffness * stretch * stretch, force = s.stiffness * stretch;
-  if (beyond > 0.0) {
-    energy += 0.5 * extra * beyond * beyond;
-    force += extra * beyond;
-  }
-  const Vec3 pull = (force / length) * along;
+  double energy = 0.0, stiffer = 0.0;
+  const formulas::SpringRest<double> rest{s.length, s.stiffness, s.limit, s.second_stiffness - s.stiffness};
+  const Vec3 pull = vec3(formulas::spring(rest, s.one_sided ? 0.0 : formulas::no_slack,
+                                          three(x[s.nodes[1]] - x[s.nodes[0]]), stiffer, energy));
   gradient[s.nodes[0]] -= pull;
   gradient[s.nodes[1]] += pull;
   return energy;
@@ -74,55 +57,22 @@ Membrane make_membrane(std::array<uint32_t, 3> nodes, double youngs_thickness, d
   return m;
 }
 
-namespace {
-
-/// (begin / ratio - 1)^2 below `begin`, from `end` on as its parabola; with both derivatives by the ratio.
-struct Wall {
-  double value = 0.0, slope = 0.0, curvature = 0.0;
-};
-Wall wall(double ratio, double begin, double end) {
-  if (ratio >= begin) return {};
-  const double r = std::max(ratio, end), share = begin / r, lack = share - 1.0, below = ratio - r;
-  const double slope = -2.0 * lack * share / r, curvature = 2.0 * share * (3.0 * share - 2.0) / (r * r);
-  return {lack * lack + slope * below + 0.5 * curvature * below * below, slope + curvature * below,
-          curvature};
-}
-
-}  // namespace
-
-MembraneCrush membrane_crush(const Membrane& m, double ratio) {
-  const Wall w = wall(ratio, crush_begin, crush_end);
-  return {m.mu * w.value, m.mu * w.slope, m.mu * w.curvature};
+formulas::Wall<double> membrane_crush(const Membrane& m, double ratio) {
+  const formulas::Wall<double> wall = formulas::wall_at(ratio, formulas::crush_begin, formulas::crush_end);
+  return {m.mu * wall.value, m.mu * wall.slope, m.mu * wall.curvature};
 }
 
 double membrane_energy(const Membrane& m, const Vec3* x, Vec3* gradient) {
-  using Mat32 = Eigen::Matrix<double, 3, 2>;
-  Mat32 edges;
-  edges.col(0) = x[m.nodes[1]] - x[m.nodes[0]];
-  edges.col(1) = x[m.nodes[2]] - x[m.nodes[0]];
-  const Mat32 deformation = edges * m.inverse_rest;
-  const Vec3 f0 = deformation.col(0), f1 = deformation.col(1);
-  Vec3 normal = f0.cross(f1);
-  const double area_ratio = normal.norm();
-  normal = area_ratio > 1e-14 ? Vec3(normal / area_ratio) : Vec3::Zero();
-  const double squares = f0.squaredNorm() + f1.squaredNorm();
-  // For a 3 x 2 matrix tr S = sqrt(|F|^2 + 2 det S), and R = (F + cofactor of F) / tr S.
-  const double trace = std::max(std::sqrt(squares + 2.0 * area_ratio), 1e-12);
-  Mat32 rotation;
-  rotation.col(0) = (f0 + f1.cross(normal)) / trace;
-  rotation.col(1) = (f1 + normal.cross(f0)) / trace;
-  const double spread = trace - 2.0;
-  Mat32 stress = 2.0 * m.mu * (deformation - rotation) + m.lambda * spread * rotation;
-  const MembraneCrush crush = membrane_crush(m, area_ratio);
-  if (crush.slope != 0.0) {
-    stress.col(0) += crush.slope * f1.cross(normal);
-    stress.col(1) += crush.slope * normal.cross(f0);
-  }
-  const Mat32 forces = m.area * stress * m.inverse_rest.transpose();
-  gradient[m.nodes[0]] -= forces.col(0) + forces.col(1);
-  gradient[m.nodes[1]] += forces.col(0);
-  gradient[m.nodes[2]] += forces.col(1);
-  return m.area * (m.mu * (squares - 2.0 * trace + 2.0) + 0.5 * m.lambda * spread * spread + crush.energy);
+  const formulas::MembraneRest<double> rest{m.inverse_rest(0, 0), m.inverse_rest(0, 1), m.inverse_rest(1, 1),
+                                            m.area * m.mu, m.area * m.lambda};
+  formulas::Three<double> place[3], force[3] = {};
+  double energy = 0.0, stiffer[3] = {};
+  for (size_t k = 0; k < 3; ++k)
+    place[k] = three(x[m.nodes[k]]);
+  formulas::membrane(rest, place, force, stiffer, energy);
+  for (size_t k = 0; k < 3; ++k)
+    gradient[m.nodes[k]] += vec3(force[k]);
+  return energy;
 }
 
 double hinge_angle(const std::array<uint32_t, 4>& nodes, const Vec3* x) {
@@ -149,66 +99,64 @@ Hinge make_hinge(std::array<uint32_t, 4> nodes, double rigidity, const Vec3* res
   for (size_t i = 0; i < 4; ++i)
     away += hinge.weights[i] * rest[nodes[i]];
   const Vec3 normal = hinge.scale_a * f.normal_a + hinge.scale_b * f.normal_b;
-  const double length = std::sqrt(normal.squaredNorm() + fold_softness);
-  hinge.bend = away.dot(normal) * length / std::max(normal.squaredNorm(), fold_softness);
+  const double length = std::sqrt(normal.squaredNorm() + formulas::fold_softness);
+  hinge.bend = away.dot(normal) * length / std::max(normal.squaredNorm(), formulas::fold_softness);
   if (std::abs(hinge.bend) < 1e-9) hinge.bend = 0.0;
   return hinge;
 }
 
 HingeNormal hinge_normal(const Hinge& h, const Vec3* x) {
   const auto& n = h.nodes;
-  const Vec3 edge = x[n[1]] - x[n[0]], arm_a = x[n[2]] - x[n[0]], arm_b = x[n[3]] - x[n[0]];
-  const Vec3 normal = h.scale_a * edge.cross(arm_a) + h.scale_b * arm_b.cross(edge);
-  const double length = std::sqrt(normal.squaredNorm() + fold_softness);
-  return {normal / length, length};
+  double inverse_length = 0.0;
+  const formulas::Three<double> unit =
+      formulas::hinge_normal(h.scale_a, h.scale_b, three(x[n[1]] - x[n[0]]), three(x[n[2]] - x[n[0]]),
+                             three(x[n[3]] - x[n[0]]), inverse_length);
+  return {vec3(unit), 1.0 / inverse_length};
 }
 
 double hinge_energy(const Hinge& h, const Vec3* x, Vec3* gradient) {
-  const auto& n = h.nodes;
-  Vec3 away = Vec3::Zero();
-  for (size_t i = 0; i < 4; ++i)
-    away += h.weights[i] * x[n[i]];
-  if (h.bend == 0.0) {
-    for (size_t i = 0; i < 4; ++i)
-      gradient[n[i]] += (h.stiffness * h.weights[i]) * away;
-    return 0.5 * h.stiffness * away.squaredNorm();
-  }
-  const Vec3 edge = x[n[1]] - x[n[0]], arm_a = x[n[2]] - x[n[0]], arm_b = x[n[3]] - x[n[0]];
-  const auto [normal, length] = hinge_normal(h, x);
-  const Vec3 miss = away - h.bend * normal;
-  for (size_t i = 0; i < 4; ++i)
-    gradient[n[i]] += (h.stiffness * h.weights[i]) * miss;
-  // The normal turns with the triangles: d(normal) = (I - normal normal^T) d(sum of normals) / length.
-  const Vec3 turn = (-h.stiffness * h.bend / length) * (miss - normal.dot(miss) * normal);
-  const Vec3 a = h.scale_a * turn, b = h.scale_b * turn;
-  const Vec3 by_edge = arm_a.cross(a) - arm_b.cross(b), by_a = a.cross(edge), by_b = edge.cross(b);
-  gradient[n[1]] += by_edge;
-  gradient[n[2]] += by_a;
-  gradient[n[3]] += by_b;
-  gradient[n[0]] -= by_edge + by_a + by_b;
-  return 0.5 * h.stiffness * miss.squaredNorm();
+  const formulas::HingeRest<double> rest{h.weights[1], h.weights[2], h.weights[3], h.stiffness,
+                                         h.bend,       h.scale_a,    h.scale_b};
+  formulas::Three<double> place[4], force[4];
+  double energy = 0.0;
+  for (size_t k = 0; k < 4; ++k)
+    place[k] = three(x[h.nodes[k]]);
+  formulas::hinge(rest, place, force, energy);
+  for (size_t k = 0; k < 4; ++k)
+    gradient[h.nodes[k]] += vec3(force[k]);
+  return energy;
 }
 
-double prism_volume(const std::array<uint32_t, 6>& n, const Vec3* x) {
-  double volume = 0.0;
-  const Vec3 origin = x[n[0]];
-  for (const Face& f : prism_faces)
-    volume += f.weight * (x[n[f.a]] - origin).dot((x[n[f.b]] - origin).cross(x[n[f.c]] - origin));
-  return volume / 6.0;
+namespace {
+
+/// Volume of a prism and six times its gradient by its nodes.
+double volume_with_gradient(const std::array<uint32_t, 6>& nodes, const Vec3* x,
+                            formulas::Three<double>* gradient) {
+  formulas::Three<double> place[6];
+  for (size_t k = 0; k < 6; ++k)
+    place[k] = three(x[nodes[k]]);
+  return formulas::prism_volume<true>(place, place + 3, gradient, gradient + 3);
 }
 
-std::array<Vec3, 6> prism_volume_gradient(const std::array<uint32_t, 6>& n, const Vec3* x) {
-  std::array<Vec3, 6> gradient;
-  gradient.fill(Vec3::Zero());
-  const Vec3 origin = x[n[0]];
-  for (const Face& f : prism_faces) {
-    const Vec3 a = x[n[f.a]] - origin, b = x[n[f.b]] - origin, c = x[n[f.c]] - origin;
-    const double weight = f.weight / 6.0;
-    gradient[static_cast<size_t>(f.a)] += weight * b.cross(c);
-    gradient[static_cast<size_t>(f.b)] += weight * c.cross(a);
-    gradient[static_cast<size_t>(f.c)] += weight * a.cross(b);
-  }
-  return gradient;
+formulas::PrismRest<double> at_rest(const Prism& p) {
+  return {p.volume, 1.0 / std::max(std::abs(p.volume), 1e-12), p.stiffness,
+          p.volume > 0.0 ? formulas::turn_modulus : 0.0};
+}
+
+}  // namespace
+
+double prism_volume(const std::array<uint32_t, 6>& nodes, const Vec3* x) {
+  formulas::Three<double> gradient[6];
+  return volume_with_gradient(nodes, x, gradient);
+}
+
+std::array<Vec3, 6> prism_volume_gradient(const std::array<uint32_t, 6>& nodes, const Vec3* x) {
+  formulas::Three<double> gradient[6];
+  volume_with_gradient(nodes, x, gradient);
+  std::array<Vec3, 6> out;
+  for (size_t k = 0; k < 6; ++k)
+    out[k] = vec3(gradient[k]) / 6.0;
+  return out;
 }
 
 Prism make_prism(std::array<uint32_t, 6> nodes, double stiffness, const Vec3* rest) {
@@ -216,31 +164,31 @@ Prism make_prism(std::array<uint32_t, 6> nodes, double stiffness, const Vec3* re
 }
 
 PrismPressure prism_pressure(const Prism& p, double volume) {
-  const double rest = std::max(std::abs(p.volume), 1e-12), excess = volume - p.volume;
-  PrismPressure out{0.5 * p.stiffness * excess * excess / rest, p.stiffness * excess / rest,
-                    p.stiffness / rest};
-  if (p.volume <= 0.0) return out;
-  const Wall w = wall(volume / rest, turn_begin, turn_end);
-  out.energy += turn_modulus * rest * w.value;
-  out.pressure += turn_modulus * w.slope;
-  out.slope += turn_modulus * w.curvature / rest;
+  PrismPressure out;
+  bool has_wall = false;
+  const formulas::PrismRest<double> rest = at_rest(p);
+  const double wall = formulas::prism_pressure(rest, volume, out.pressure, has_wall, out.energy);
+  out.slope = rest.stiffness * rest.inverse_volume + wall;
   return out;
 }
 
 double prism_energy(const Prism& p, const Vec3* x, Vec3* gradient) {
-  const PrismPressure at = prism_pressure(p, prism_volume(p.nodes, x));
-  if (at.pressure == 0.0) return at.energy;
-  const auto parts = prism_volume_gradient(p.nodes, x);
-  for (size_t i = 0; i < 6; ++i)
-    gradient[p.nodes[i]] += at.pressure * parts[i];
-  return at.energy;
+  formulas::Three<double> place[6], force[6] = {};
+  double energy = 0.0, stiffer[6] = {};
+  for (size_t k = 0; k < 6; ++k)
+    place[k] = three(x[p.nodes[k]]);
+  formulas::prism(at_rest(p), place, place + 3, force, force + 3, stiffer, stiffer + 3, energy);
+  for (size_t k = 0; k < 6; ++k)
+    gradient[p.nodes[k]] += vec3(force[k]);
+  return energy;
 }
 
 double tether_energy(const Tether& t, const Vec3& place, const Vec3& normal, const Vec3* x, Vec3* gradient) {
-  const Vec3 away = x[t.node] - place;
-  const double along = away.dot(normal), extra = t.normal_stiffness - t.tangential_stiffness;
-  gradient[t.node] += t.tangential_stiffness * away + (extra * along) * normal;
-  return 0.5 * (t.tangential_stiffness * away.squaredNorm() + extra * along * along);
+  double energy = 0.0;
+  gradient[t.node] +=
+      vec3(formulas::tether(t.tangential_stiffness, t.normal_stiffness - t.tangential_stiffness,
+                            three(normal), three(x[t.node] - place), energy));
+  return energy;
 }
 
 }  // namespace fascia::sim

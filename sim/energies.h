@@ -1,25 +1,15 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <cstdint>
 
+#include "sim/formulas/elements.h"
 #include "sim/vector.h"
 
-/// The energies of one element each. All return joules and add the gradient (newtons) of the nodes
-/// they touch to `gradient`, which is indexed as `x` is, by node.
+/// The energies of one element each, in double precision: the formulas of sim/formulas on nodes. All return
+/// joules and add the gradient (newtons) of the nodes they touch to `gradient`, which is indexed as `x` is,
+/// by node.
 namespace fascia::sim {
-
-/// Where elements resist ever more, for whoever evaluates the same energies in another way.
-inline constexpr double crush_begin = 0.5;  ///< share of its area below which a membrane does
-inline constexpr double crush_end = 0.1;    ///< share below which its resistance goes on as a parabola
-inline constexpr double turn_begin =
-    0.4;  ///< share of its volume below which a prism resists being turned inside out
-inline constexpr double turn_end = 0.1;        ///< share below which its resistance goes on as a parabola
-inline constexpr double turn_modulus = 800.0;  ///< pascal, with which it does
-inline constexpr double segment_rounding = 6.25e-8;  ///< square metres: rounds off short stretches of fibre
-inline constexpr double fold_softness =
-    0.01;  ///< where a hinge's mean normal fades out: folds closer than 6 degrees
 
 /// A spring that may stiffen: `stiffness` up to `limit` metres of stretch, `second_stiffness` beyond.
 /// A one-sided one is slack when shorter than `length`.
@@ -59,13 +49,6 @@ struct Prism {
   double volume, stiffness;       ///< cubic metres, pascal
 };
 
-/// Length of a stretch of fibre, metres, rounded off below a quarter of a millimetre: one that has collapsed
-/// has no direction left to pull in, and without the rounding its force would jump from one side to the
-/// other.
-inline double segment_length(const Vec3& along) {
-  return std::sqrt(along.squaredNorm() + segment_rounding);
-}
-
 /// A node held to a place: `normal_stiffness` along a normal, `tangential_stiffness` across it.
 struct Tether {
   uint32_t node;
@@ -73,11 +56,9 @@ struct Tether {
   double normal_stiffness, tangential_stiffness;
 };
 
-/// What resists a membrane's collapse below half its area, by its share `ratio` of the rest area.
-struct MembraneCrush {
-  double energy = 0.0, slope = 0.0, curvature = 0.0;  ///< per area, and its derivatives by the ratio
-};
-MembraneCrush membrane_crush(const Membrane& membrane, double ratio);
+/// What resists a membrane's collapse below half its area, by its share `ratio` of the rest area: energy per
+/// area, and its derivatives by the ratio.
+formulas::Wall<double> membrane_crush(const Membrane& membrane, double ratio);
 
 /// The mean normal of a hinge's two triangles, faded out where they fold onto each other.
 struct HingeNormal {

@@ -5,8 +5,10 @@
 
 namespace fascia::sim {
 
-Face::Face(const FaceModel& model, size_t channels)
+Face::Face(const FaceModel& model, size_t channels, const PoseOptions& pose, const StepOptions& step)
     : model_(&model),
+      pose_options_(pose),
+      step_options_(step),
       frame_(model.make_frame()),
       pose_frame_(frame_),
       position_(model.rest()),
@@ -17,11 +19,10 @@ Face::Face(const FaceModel& model, size_t channels)
       pose_offset_(position_.size(), Vec3::Zero()),
       start_(position_),
       work_(position_.size()),
-      excitations_(channels),
-      last_excitations_(channels),
-      activations_(channels),
+      time_(channels),
       workspace_(position_.size(), model.unknowns().size()) {
-  model.step_factor();  // made now, so that no step allocates
+  model.pose_factor();  // made now, so that no step allocates
+  model.step_factor();
 }
 
 MinimiseResult Face::find_pose(const PoseOptions& options) {
@@ -45,20 +46,21 @@ MinimiseResult Face::find_pose(const PoseOptions& options) {
   return result;
 }
 
-MinimiseResult Face::static_pose(const Drive& drive, const PoseOptions& options, std::span<Vec3f> positions) {
-  model_->place(drive, pose_frame_);
+MinimiseResult Face::static_pose(const Controls& controls, const PoseOptions& options,
+                                 std::span<Vec3f> positions) {
+  model_->place(controls, pose_frame_);
   for (size_t i = 0; i < pose_.size(); ++i) {
     pose_[i] = pose_frame_.carried[i];
     if (options.from_last_pose) pose_[i] += pose_offset_[i];
   }
   // What lips and lids face is found, held during a solve, and found again until it no longer matters.
   MinimiseResult result;
-  model_->face_up(pose_.data(), pose_frame_);
+  model_->find_facing(pose_.data(), pose_frame_);
   for (int round = 0; round < options.contact_rounds; ++round) {
     const int before = result.iterations;
     result = find_pose(options);
     result.iterations += before;
-    if (model_->face_up(pose_.data(), pose_frame_) < options.contact_tolerance) break;
+    if (model_->find_facing(pose_.data(), pose_frame_) < options.contact_tolerance) break;
   }
   for (size_t i = 0; i < pose_.size(); ++i) {
     pose_offset_[i] = pose_[i] - pose_frame_.carried[i];
@@ -68,48 +70,31 @@ MinimiseResult Face::static_pose(const Drive& drive, const PoseOptions& options,
   return result;
 }
 
-void Face::reset(const Drive& drive) {
-  model_->place({{}, drive.jaw, Vec3::Zero()}, frame_);
+void Face::reset(const Controls& controls) {
+  model_->place({{}, controls.jaw, Vec3::Zero()}, frame_);
   position_ = frame_.carried;
   previous_ = position_;
   carried_ = frame_.carried;
   std::fill(velocity_.begin(), velocity_.end(), Vec3::Zero());
-  std::fill(activations_.begin(), activations_.end(), 0.0F);
-  std::fill(last_excitations_.begin(), last_excitations_.end(), 0.0F);
-  last_jaw_ = clamped(drive.jaw);
-  last_acceleration_.setZero();
-  left_over_ = 0.0;
+  time_.reset(controls);
 }
 
-MinimiseResult Face::settle(const Drive& drive, const PoseOptions& options) {
-  const MinimiseResult result = static_pose(drive, options, {});
-  reset(drive);
-  for (size_t c = 0; c < activations_.size(); ++c)
-    activations_[c] = drive.activation(c);
-  last_excitations_ = activations_;
-  last_acceleration_ = drive.acceleration;
+MinimiseResult Face::settle(const Controls& controls, const PoseOptions& options) {
+  const MinimiseResult result = static_pose(controls, options, {});
+  reset(controls);
+  time_.settle(controls);
   position_ = pose_;
   previous_ = pose_;
-  model_->place({activations_, last_jaw_, last_acceleration_}, frame_);
+  model_->place({time_.activations(), time_.jaw(), time_.acceleration()}, frame_);
   return result;
 }
 
-MinimiseResult Face::substep(double share, const Drive& drive, const StepOptions& options) {
+MinimiseResult Face::substep(const Controls& now, const StepOptions& options) {
   const double h = model_->options().substep;
-  for (size_t c = 0; c < excitations_.size(); ++c) {
-    const float goal = c < drive.activations.size() ? drive.activations[c] : 0.0F;
-    excitations_[c] = last_excitations_[c] + static_cast<float>(share) * (goal - last_excitations_[c]);
-  }
-  follow(options.dynamics, h, excitations_, activations_);
-  const auto mix = [share](float from, float to) { return from + static_cast<float>(share) * (to - from); };
-  const JawPose goal = clamped(drive.jaw);
-  const JawPose jaw{mix(last_jaw_.open, goal.open), mix(last_jaw_.forward, goal.forward),
-                    mix(last_jaw_.lateral, goal.lateral)};
-  const Vec3 acceleration = last_acceleration_ + share * (drive.acceleration - last_acceleration_);
   carried_ = frame_.carried;
   const RigidTransform mandible = frame_.mandible;
-  model_->place({activations_, jaw, acceleration, drive.touches}, frame_);
-  model_->face_up(position_.data(), frame_);
+  model_->place(now, frame_);
+  model_->find_facing(position_.data(), frame_);
   RigidTransform mandible_step;
   mandible_step.rotation = frame_.mandible.rotation * mandible.rotation.transpose();
   mandible_step.translation = frame_.mandible.translation - mandible_step.rotation * mandible.translation;
@@ -161,41 +146,21 @@ bool Face::sound(const StepOptions& options) const {
   return true;
 }
 
-StepResult Face::step(double seconds, const Drive& drive, const StepOptions& options) {
-  StepResult result;
-  if (!std::isfinite(seconds) || !drive.is_finite(activations_.size())) {
-    reset({{}, drive.jaw, Vec3::Zero()});
-    result.status = StepStatus::reset;
-    return result;
-  }
-  if (seconds <= 0.0) return result;
-  const double h = model_->options().substep, due = left_over_ + seconds;
-  const int substeps = std::min(static_cast<int>(due / h + 1e-9), options.largest_number_of_substeps);
-  for (int k = 0; k < substeps; ++k) {
-    // The drive at this substep's own time: before it lie last frame's left-over and k whole substeps.
-    const double share = std::clamp(((k + 1) * h - left_over_) / seconds, 0.0, 1.0);
-    const MinimiseResult solved = substep(share, drive, options);
-    ++result.substeps;
-    result.iterations += solved.iterations;
-    result.move = solved.move;
-    if (!sound(options)) {
-      reset(drive);
-      result.status = StepStatus::reset;
-      return result;
-    }
-  }
-  left_over_ = std::clamp(due - substeps * h, 0.0, h);
-  for (size_t c = 0; c < last_excitations_.size(); ++c)
-    last_excitations_[c] = drive.activation(c);
-  last_jaw_ = clamped(drive.jaw);
-  last_acceleration_ = drive.acceleration;
+StepResult Face::step(double seconds, const Controls& controls, const StepOptions& options) {
+  const auto solve = [&](const Controls& now, MinimiseResult& solved) {
+    solved = substep(now, options);
+    return sound(options);
+  };
+  const StepResult result = time_.run(seconds, controls, model_->options().substep,
+                                      options.largest_number_of_substeps, options.dynamics, solve);
+  if (result.status == StepStatus::reset) reset(controls);
   return result;
 }
 
 void Face::displacements(std::span<Vec3f> out) const {
   // The state stands at the last whole substep; what is left of the frame it coasts.
   for (size_t i = 0; i < out.size() && i < position_.size(); ++i)
-    out[i] = (position_[i] - model_->rest()[i] + left_over_ * velocity_[i]).cast<float>();
+    out[i] = (position_[i] - model_->rest()[i] + time_.left_over() * velocity_[i]).cast<float>();
 }
 
 void Face::positions(std::span<Vec3f> out) const {

@@ -2,10 +2,10 @@
 
 #include <span>
 
-#include "sim/activation.h"
 #include "sim/face_model.h"
 #include "sim/minimise.h"
 #include "sim/newton.h"
+#include "sim/solver.h"
 
 namespace fascia::sim {
 
@@ -29,19 +29,6 @@ struct StepOptions {
   double largest_displacement = 0.15;   ///< metres: beyond it the watchdog calls the face diverged
 };
 
-enum class StepStatus : uint8_t {
-  done = 0,
-  reset =
-      1  ///< the face diverged, or was driven by numbers that are not finite: it stands at its bones again
-};
-
-struct StepResult {
-  StepStatus status = StepStatus::done;
-  int substeps = 0;
-  int iterations = 0;  ///< of all substeps
-  double move = 0.0;   ///< metres still wanted by the last substep's solver
-};
-
 /// How the derivative of a static pose is solved.
 struct AdjointOptions {
   int iterations = 400;
@@ -58,37 +45,45 @@ struct AdjointResult {
 ///
 /// Positions are #nodes in the head's frame, metres. Nothing here but the constructor, `static_gradient` and
 /// the first hard static pose allocates, and nothing throws.
-class Face {
+class Face final : public Solver {
  public:
-  /// `model` must be valid and outlive the face; `channels` is how many activations it listens to.
-  Face(const FaceModel& model, size_t channels);
+  /// `model` must be valid, have its factors and outlive the face; `channels` is how many activations it
+  /// listens to. The options are those of `settle` and `step` without options.
+  Face(const FaceModel& model, size_t channels, const PoseOptions& pose = {}, const StepOptions& step = {});
 
-  /// The pose in which all forces of `drive` balance. Does not touch the state that `step` moves.
-  MinimiseResult static_pose(const Drive& drive, const PoseOptions& options, std::span<Vec3f> positions);
+  /// The pose in which all forces of `controls` balance. Does not touch the state that `step` moves.
+  MinimiseResult static_pose(const Controls& controls, const PoseOptions& options,
+                             std::span<Vec3f> positions);
 
-  /// The derivative of a loss of the last static pose, which `drive` must have made: one linear solve,
+  /// The derivative of a loss of the last static pose, which `controls` must have made: one linear solve,
   /// whatever the number of channels. `slope` is d loss / d position (#nodes, per metre); out come d loss / d
   /// activation (#channels) and the same for the jaw's open, forward and lateral. Exact but for contact
   /// between lips, whose normals are held still. Allocates at its first call.
-  AdjointResult static_gradient(const Drive& drive, std::span<const Vec3> slope, std::span<double> by_channel,
-                                std::array<double, 3>& by_jaw, const AdjointOptions& options = {});
+  AdjointResult static_gradient(const Controls& controls, std::span<const Vec3> slope,
+                                std::span<double> by_channel, std::array<double, 3>& by_jaw,
+                                const AdjointOptions& options = {});
 
-  /// Lets `seconds` pass while the drive goes from the last step's to `drive` along a line; time is cut into
-  /// the model's substeps, so the frame rate hardly changes the motion. Implicit Euler on the same energies.
-  StepResult step(double seconds, const Drive& drive, const StepOptions& options = {});
+  /// Lets `seconds` pass while the controls go from the last step's to `controls` along a line; time is cut
+  /// into the model's substeps, so the frame rate hardly changes the motion. Implicit Euler on the same
+  /// energies.
+  StepResult step(double seconds, const Controls& controls, const StepOptions& options);
+  StepResult step(double seconds, const Controls& controls) override {
+    return step(seconds, controls, step_options_);
+  }
 
-  /// Puts the face at rest under `drive`'s bones, without velocity.
-  void reset(const Drive& drive = {});
+  /// Puts the face at rest under `controls`'s bones, without velocity.
+  void reset(const Controls& controls = {}) override;
   /// Takes a static pose as the state, without velocity.
-  MinimiseResult settle(const Drive& drive, const PoseOptions& options = {});
+  MinimiseResult settle(const Controls& controls, const PoseOptions& options);
+  MinimiseResult settle(const Controls& controls) override { return settle(controls, pose_options_); }
 
   /// Where `step` has brought the nodes, coasting through what is left of the frame. #nodes.
   void positions(std::span<Vec3f> out) const;
   /// The same, minus rest: exactly zero at rest.
-  void displacements(std::span<Vec3f> out) const;
+  void displacements(std::span<Vec3f> out) const override;
   /// Kinetic plus potential energy of the state, joules.
   double total_energy();
-  std::span<const float> activations() const { return activations_; }  ///< after their dynamics
+  std::span<const float> activations() const { return time_.activations(); }  ///< after their dynamics
   const FaceModel& model() const { return *model_; }
   const Positions& velocities() const { return velocity_; }
   Positions& velocities() { return velocity_; }
@@ -98,7 +93,7 @@ class Face {
 
  private:
   MinimiseResult find_pose(const PoseOptions& options);
-  MinimiseResult substep(double share, const Drive& drive, const StepOptions& options);
+  MinimiseResult substep(const Controls& now, const StepOptions& options);
   bool sound(const StepOptions& options) const;
 
   /// What `static_gradient` needs of memory.
@@ -114,13 +109,12 @@ class Face {
   };
 
   const FaceModel* model_;
+  PoseOptions pose_options_;
+  StepOptions step_options_;
   Adjoint adjoint_;
   Frame frame_, pose_frame_;
   Positions position_, previous_, velocity_, carried_, pose_, pose_offset_, start_, work_;
-  std::vector<float> excitations_, last_excitations_, activations_;
-  JawPose last_jaw_;
-  Vec3 last_acceleration_ = Vec3::Zero();
-  double left_over_ = 0.0;  ///< seconds of the last frame not yet simulated
+  Substeps time_;
   MinimiseWorkspace workspace_;
   NewtonWorkspace newton_;  ///< sized at its first use
 };

@@ -10,19 +10,18 @@ void FaceModel::add_fibre_curvature(const Frame& frame, uint32_t f, const Vec3* 
   const double pull = frame.fibre_pulls[f], rest_length = fibre_lengths_[f];
   if (pull == 0.0 || rest_length <= 0.0) return;
   const uint32_t first = lattice_.fibre_offsets[f], last = lattice_.fibre_offsets[f + 1];
-  double length = 0.0;
+  double length = 0.0, energy = 0.0;
   for (uint32_t p = first; p + 1 < last; ++p)
-    length +=
-        lattice_.fibre_taper[p] * segment_length(fibre_point(frame, p + 1, x) - fibre_point(frame, p, x));
-  const double range = 1.0 - lattice_.fibre_shortest[f],
-               left = length / rest_length - lattice_.fibre_shortest[f];
-  if (left <= 0.0) return;
-  const double tension = pull * left / range;
+    length += lattice_.fibre_taper[p] *
+              formulas::segment_length(three(fibre_point(frame, p + 1, x) - fibre_point(frame, p, x)));
+  const double shortest = lattice_.fibre_shortest[f],
+               tension = formulas::fibre_tension(pull, length, rest_length, shortest, energy);
+  if (tension == 0.0) return;
   const Curvature::Pull whole{out.pull_nodes.size(), 6 * static_cast<size_t>(last - first - 1),
-                              pull / (range * rest_length)};
+                              pull / ((1.0 - shortest) * rest_length)};
   for (uint32_t p = first; p + 1 < last; ++p) {
     const Vec3 along = fibre_point(frame, p + 1, x) - fibre_point(frame, p, x);
-    const double segment = segment_length(along), taper = lattice_.fibre_taper[p];
+    const double segment = formulas::segment_length(three(along)), taper = lattice_.fibre_taper[p];
     const Vec3 unit = along / segment;
     Curvature::Stencil<6> stencil{
         {}, {}, (tension * taper / segment) * (Mat3::Identity() - unit * unit.transpose())};

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "sim/face_model.h"
+#include "sim/formulas/motion.h"
 
 // What FaceModel does again and again: moving the bones and carriers, and summing the energies.
 namespace fascia::sim {
@@ -16,8 +17,8 @@ constexpr std::array<uint32_t, 6> kSweptCorners = {0, 1, 2, 3, 4, 5};
 
 }  // namespace
 
-void FaceModel::place(const Drive& drive, Frame& frame) const {
-  const JawPose pose = clamped(drive.jaw);
+void FaceModel::place(const Controls& controls, Frame& frame) const {
+  const JawPose pose = clamped(controls.jaw);
   const RigidTransform mandible = jaw_transform(jaw_, pose);
   frame.mandible = mandible;
   const auto carry = [&](float weight) {
@@ -35,7 +36,7 @@ void FaceModel::place(const Drive& drive, Frame& frame) const {
         pose.at_rest() ? tethers_[t].normal
                        : Vec3(carry(lattice_.jaw_weights[tethers_[t].node]).rotation * tethers_[t].normal);
   for (size_t c = 0; c < frame.carrier_pulls.size(); ++c)
-    frame.carrier_pulls[c] = carrier_pull(c, value_of(drive.activations, lattice_.carrier_channel[c]),
+    frame.carrier_pulls[c] = carrier_pull(c, value_of(controls.activations, lattice_.carrier_channel[c]),
                                           frame.carried[lattice_.carrier_node[c]]);
   for (size_t p = 0; p < frame.fibre_anchors.size(); ++p) {
     const Vec3 place = lattice_.fibre_rest[p].cast<double>();
@@ -44,11 +45,11 @@ void FaceModel::place(const Drive& drive, Frame& frame) const {
   }
   for (size_t f = 0; f < frame.fibre_pulls.size(); ++f)
     frame.fibre_pulls[f] =
-        std::max(0.0, value_of(drive.activations, lattice_.fibre_channel[f])) * lattice_.fibre_strength[f];
+        std::max(0.0, value_of(controls.activations, lattice_.fibre_channel[f])) * lattice_.fibre_strength[f];
   for (size_t p = 0; p < frame.pressures.size(); ++p)
-    frame.pressures[p] = value_of(drive.activations, lattice_.pressure_channel[p]) * lattice_.pressure[p];
-  frame.touches = drive.touches;
-  frame.acceleration = drive.acceleration.allFinite() ? drive.acceleration : Vec3(Vec3::Zero());
+    frame.pressures[p] = value_of(controls.activations, lattice_.pressure_channel[p]) * lattice_.pressure[p];
+  frame.touches = controls.touches;
+  frame.acceleration = controls.acceleration.allFinite() ? controls.acceleration : Vec3(Vec3::Zero());
 }
 
 Vec3 FaceModel::fibre_point(const Frame& frame, size_t point, const Vec3* x) const {
@@ -69,19 +70,16 @@ double FaceModel::pull_fibre(const Frame& frame, uint32_t f, double pull, const 
   const double rest_length = fibre_lengths_[f];
   if (pull == 0.0 || rest_length <= 0.0) return 0.0;
   const uint32_t first = lattice_.fibre_offsets[f], last = lattice_.fibre_offsets[f + 1];
-  double length = 0.0;
+  double length = 0.0, energy = 0.0;
   for (uint32_t p = first; p + 1 < last; ++p)
-    length +=
-        lattice_.fibre_taper[p] * segment_length(fibre_point(frame, p + 1, x) - fibre_point(frame, p, x));
-  // The pull falls with the fibre's length and ends at its shortest: the rising limb of the
-  // force-length curve, as a line. Its integral is convex in length, which keeps the solve stable.
-  const double range = 1.0 - lattice_.fibre_shortest[f];
-  const double left = length / rest_length - lattice_.fibre_shortest[f];
-  if (left <= 0.0) return -0.5 * pull * range * rest_length;
-  const double tension = pull * left / range;
+    length += lattice_.fibre_taper[p] *
+              formulas::segment_length(three(fibre_point(frame, p + 1, x) - fibre_point(frame, p, x)));
+  const double tension = formulas::fibre_tension(pull, length, rest_length,
+                                                 static_cast<double>(lattice_.fibre_shortest[f]), energy);
+  if (tension == 0.0) return energy;
   for (uint32_t p = first; p + 1 < last; ++p) {
     const Vec3 along = fibre_point(frame, p + 1, x) - fibre_point(frame, p, x);
-    const double segment = segment_length(along);
+    const double segment = formulas::segment_length(three(along));
     const Vec3 force = (tension * lattice_.fibre_taper[p] / segment) * along;
     for (const uint32_t end : {p, p + 1}) {
       const auto anchor = static_cast<FibreAnchor>(lattice_.fibre_anchor[end]);
@@ -93,7 +91,7 @@ double FaceModel::pull_fibre(const Frame& frame, uint32_t f, double pull, const 
             Vec3((sign * static_cast<double>(lattice_.fibre_weights[end][static_cast<int>(k)])) * force));
     }
   }
-  return 0.5 * tension * left * rest_length - 0.5 * pull * range * rest_length;
+  return energy;
 }
 
 double FaceModel::fibre_energy(const Frame& frame, const Vec3* x, Vec3* gradient) const {
@@ -105,16 +103,16 @@ double FaceModel::fibre_energy(const Frame& frame, const Vec3* x, Vec3* gradient
 }
 
 Vec3 FaceModel::carrier_pull(size_t c, double value, const Vec3& carried) const {
-  const double turn = value < 0.0 ? -value * lattice_.carrier_reverse[c] : value * lattice_.carrier_angle[c];
-  if (turn == 0.0) return Vec3::Zero();
-  const Vec3 arm = carried - lattice_.carrier_origin[c].cast<double>();
+  if (value == 0.0) return Vec3::Zero();
   Vec3 axis = lattice_.carrier_axis[c].cast<double>();
   axis = axis.norm() > 1e-9 ? Vec3(axis.normalized()) : Vec3(Vec3::UnitX());
-  return static_cast<double>(lattice_.carrier_drive[c]) * (Eigen::AngleAxisd(turn, axis) * arm - arm);
+  return vec3(formulas::rotary_pull<double>(lattice_.carrier_drive[c], value, lattice_.carrier_angle[c],
+                                            lattice_.carrier_reverse[c], three(axis),
+                                            three(carried - lattice_.carrier_origin[c].cast<double>())));
 }
 
-void FaceModel::channel_slopes(const Frame& frame, const Drive& drive, const Vec3* x, const Vec3* lambda,
-                               std::span<double> by_channel) const {
+void FaceModel::channel_slopes(const Frame& frame, const Controls& controls, const Vec3* x,
+                               const Vec3* lambda, std::span<double> by_channel) const {
   const auto add = [&](uint32_t channel, double slope) {
     if (channel < by_channel.size()) by_channel[channel] += slope;
   };
@@ -128,7 +126,7 @@ void FaceModel::channel_slopes(const Frame& frame, const Drive& drive, const Vec
   for (size_t c = 0; c < lattice_.carrier_node.size(); ++c) {
     const uint32_t node = lattice_.carrier_node[c];
     if (prescribed(node)) continue;
-    const double value = value_of(drive.activations, lattice_.carrier_channel[c]), step = 1e-4;
+    const double value = value_of(controls.activations, lattice_.carrier_channel[c]), step = 1e-4;
     const double low =
         value > 0.0 ? value - std::min(step, value) : value - step;  // not across the bend at 0
     const double high = value < 0.0 ? value + std::min(step, -value) : value + step;
@@ -161,9 +159,8 @@ double FaceModel::actuator_energy(const Frame& frame, const Vec3* x, Vec3* gradi
   for (size_t c = 0; c < frame.carrier_pulls.size(); ++c) {
     const uint32_t node = lattice_.carrier_node[c];
     const Vec3 away = x[node] - frame.carried[node];
-    const double hold = lattice_.carrier_stiffness[c];
-    gradient[node] += hold * away - frame.carrier_pulls[c];
-    energy += 0.5 * hold * away.squaredNorm() - frame.carrier_pulls[c].dot(away);
+    gradient[node] += vec3(formulas::held_and_pulled<double>(
+        lattice_.carrier_stiffness[c], three(frame.carrier_pulls[c]), three(away), energy));
   }
   for (size_t p = 0; p < frame.pressures.size(); ++p) {
     if (frame.pressures[p] == 0.0) continue;
@@ -176,13 +173,13 @@ double FaceModel::actuator_energy(const Frame& frame, const Vec3* x, Vec3* gradi
       gradient[swept.nodes[k]] -= frame.pressures[p] * push[k];
   }
   energy += contacts_.energy(frame.mandible, x, gradient);
-  energy += contacts_.facing_energy(frame.facing, x, gradient);
-  energy += contacts_.grip_energy(std::span(frame.grips).first(frame.grip_count), x, gradient);
-  for (const NodeForce& touch : frame.touches) {
-    if (touch.node >= rest_.size() || !touch.force.allFinite()) continue;
-    gradient[touch.node] -= touch.force;
-    energy -= touch.force.dot(x[touch.node] - rest_[touch.node]);
-  }
+  const auto place = [x](uint32_t node) -> const Vec3& { return x[node]; };
+  const auto add = [gradient](uint32_t node, const Vec3& force, double /*stiffness*/) {
+    gradient[node] += force;
+  };
+  energy += contacts_.facing_energy(frame.facing, place, add);
+  energy += Contacts::grip_energy(std::span(frame.grips).first(frame.grip_count), place, add);
+  energy += touch_energy(frame.touches, rest_, place, add);
   if (frame.acceleration != Vec3::Zero()) {
     for (const uint32_t node : unknowns_) {
       gradient[node] -= masses_[node] * frame.acceleration;

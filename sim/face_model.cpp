@@ -34,8 +34,7 @@ FaceModel::FaceModel(const Lattice& lattice, const Jaw& jaw, const FaceModelOpti
     fault_ = "an element pulls at rest with a force that is not finite";
     return;
   }
-  if (!make_factors())
-    fault_ = "the rest stiffness is not positive definite: some part of the lattice is held by nothing";
+  assemble_stiffness();
 }
 
 void FaceModel::make_elements() {
@@ -94,7 +93,8 @@ void FaceModel::make_elements() {
     double length = 0.0;
     for (uint32_t p = lattice_.fibre_offsets[f]; p + 1 < lattice_.fibre_offsets[f + 1]; ++p)
       length += lattice_.fibre_taper[p] *
-                segment_length(fibre_point(frame, p + 1, rest_.data()) - fibre_point(frame, p, rest_.data()));
+                formulas::segment_length(
+                    three(fibre_point(frame, p + 1, rest_.data()) - fibre_point(frame, p, rest_.data())));
     fibre_lengths_.push_back(length);
   }
 }
@@ -135,7 +135,7 @@ Frame FaceModel::make_frame() const {
   return frame;
 }
 
-bool FaceModel::make_factors() {
+void FaceModel::assemble_stiffness() {
   RestTerms terms{springs_, membranes_, hinges_,          prisms_,
                   tethers_, rest_,      unknown_of_node_, unknowns_.size()};
   Eigen::SparseMatrix<double> matrix = assemble_rest_stiffness(terms);
@@ -148,7 +148,11 @@ bool FaceModel::make_factors() {
     if (unknown >= 0) matrix.coeffRef(unknown, unknown) += 0.1 * options_.contact.globe_stiffness;
   }
   stiffness_ = matrix;
-  return pose_factor_.compute(matrix);
+}
+
+const RestFactor& FaceModel::pose_factor() const {
+  std::call_once(pose_once_, [this] { pose_factor_.compute(stiffness_); });
+  return pose_factor_;
 }
 
 const RestFactor& FaceModel::step_factor() const {

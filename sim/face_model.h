@@ -30,8 +30,21 @@ struct NodeForce {
   Vec3 force = Vec3::Zero();
 };
 
-/// What drives a face at one moment.
-struct Drive {
+/// Energy of forces from outside, joules above rest; `place` and `add` as in Contacts::facing_energy.
+template <class Place, class Add>
+double touch_energy(std::span<const NodeForce> touches, const Positions& rest, const Place& place,
+                    const Add& add) {
+  double energy = 0.0;
+  for (const NodeForce& touch : touches) {
+    if (touch.node >= rest.size() || !touch.force.allFinite()) continue;
+    add(touch.node, -touch.force, 0.0);
+    energy -= touch.force.dot(place(touch.node) - rest[touch.node]);
+  }
+  return energy;
+}
+
+/// What moves a face at one moment: channel values, the jaw, forces from outside.
+struct Controls {
   std::span<const float> activations;  ///< one a channel; channels beyond its end are 0
   JawPose jaw;
   Vec3 acceleration = Vec3::Zero();  ///< of free tissue in the head's frame, m/s^2 (gravity change, inertia)
@@ -49,7 +62,7 @@ struct Drive {
   }
 };
 
-/// Where bones and carriers stand for a drive; made once a solve.
+/// Where bones and carriers stand for the controls of a solve; made once a solve.
 struct Frame {
   Positions carried;                ///< #nodes: where each would go if only its bones moved
   Positions tether_normals;         ///< #tethers
@@ -59,7 +72,7 @@ struct Frame {
   std::vector<double> pressures;    ///< #pressures, pascal
   Vec3 acceleration = Vec3::Zero();
   RigidTransform mandible;
-  std::vector<FacingPair> facing;  ///< lip before lip, lid before lid: see FaceModel::face_up
+  std::vector<FacingPair> facing;  ///< lip before lip, lid before lid: see FaceModel::find_facing
   FacingSearch facing_search;
   std::vector<Grip> grips;  ///< capacity of them; friction, in steps of time
   size_t grip_count = 0;
@@ -78,12 +91,12 @@ class FaceModel {
 
   /// A frame of the right sizes, at rest.
   Frame make_frame() const;
-  /// Moves bones and carriers of `frame` to `drive`. Allocates nothing.
-  void place(const Drive& drive, Frame& frame) const;
+  /// Moves bones and carriers of `frame` to `controls`. Allocates nothing.
+  void place(const Controls& controls, Frame& frame) const;
 
   /// Finds what lips and lids face as the face stands in `x`; returns the largest change against before,
   /// metres.
-  double face_up(const Vec3* x, Frame& frame) const {
+  double find_facing(const Vec3* x, Frame& frame) const {
     return contacts_.find_facing(x, frame.facing, frame.facing_search);
   }
 
@@ -104,9 +117,9 @@ class FaceModel {
   void find_curvature(const Frame& frame, const Vec3* x, Curvature& out) const;
 
   /// Adds, for each channel, lambda . d gradient / d activation at `x`: fibres, carriers and pressures (the
-  /// jaw and eyes move bones and are not among them). `frame` must be placed for `drive`; `lambda` is #nodes,
-  /// zero where prescribed.
-  void channel_slopes(const Frame& frame, const Drive& drive, const Vec3* x, const Vec3* lambda,
+  /// jaw and eyes move bones and are not among them). `frame` must be placed for `controls`; `lambda` is
+  /// #nodes, zero where prescribed.
+  void channel_slopes(const Frame& frame, const Controls& controls, const Vec3* x, const Vec3* lambda,
                       std::span<double> by_channel) const;
 
   const Lattice& lattice() const { return lattice_; }
@@ -116,9 +129,12 @@ class FaceModel {
   const std::vector<uint32_t>& unknowns() const { return unknowns_; }        ///< nodes the solver moves
   bool prescribed(size_t node) const { return unknown_of_node_[node] < 0; }  ///< moves with its bone alone
   const std::vector<double>& masses() const { return masses_; }              ///< #nodes
-  const RestFactor& pose_factor() const { return pose_factor_; }             ///< rest stiffness
-  const RestFactor& step_factor()
-      const;  ///< mass, damping and stiffness of a substep; made on first use, any thread may ask
+  /// Factors in double precision, of the rest stiffness, and of mass, damping and stiffness of a substep.
+  /// Made on first use, any thread may ask; only the reference uses them.
+  const RestFactor& pose_factor() const;
+  const RestFactor& step_factor() const;
+  /// False when the rest stiffness is not positive definite: some part is held by nothing.
+  bool has_factors() const { return pose_factor().size() == unknowns_.size(); }
   const Eigen::SparseMatrix<double, Eigen::RowMajor>& stiffness() const {
     return stiffness_;
   }  ///< over unknowns
@@ -136,7 +152,7 @@ class FaceModel {
  private:
   void make_elements();
   void make_hinges();
-  bool make_factors();
+  void assemble_stiffness();
   double raw_energy(const Frame& frame, const Vec3* x, Vec3* gradient) const;
   double energy_beside_springs(const Frame& frame, const Vec3* x, Vec3* gradient) const;
   double balanced(double energy, const Vec3* x, Vec3* gradient) const;
@@ -172,9 +188,8 @@ class FaceModel {
   std::vector<double> column_areas_;
   Positions balance_;  // gradient at rest: what is subtracted so that rest is rest to the last bit
   Eigen::SparseMatrix<double, Eigen::RowMajor> stiffness_;
-  RestFactor pose_factor_;
-  mutable std::once_flag step_once_;
-  mutable RestFactor step_factor_;
+  mutable std::once_flag pose_once_, step_once_;
+  mutable RestFactor pose_factor_, step_factor_;
 };
 
 }  // namespace fascia::sim

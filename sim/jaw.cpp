@@ -1,8 +1,9 @@
 #include "sim/jaw.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+
+#include "sim/formulas/motion.h"
 
 namespace fascia::sim {
 
@@ -40,9 +41,12 @@ RigidTransform jaw_transform(const Jaw& jaw, const JawPose& pose, double share) 
   RigidTransform result;
   if (pose.at_rest() || share == 0.0) return result;
   const double open = share * pose.open, forward = share * pose.forward, lateral = share * pose.lateral;
-  result.rotation = (Eigen::AngleAxisd(lateral * jaw.lateral_angle, jaw.up) *
-                     Eigen::AngleAxisd(open * jaw.open_angle, jaw.lateral))
-                        .toRotationMatrix();
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3 unit = Vec3::Unit(axis);
+    result.rotation.col(axis) =
+        unit + vec3(formulas::jaw_turn(three(jaw.lateral), three(jaw.up), open * jaw.open_angle,
+                                       lateral * jaw.lateral_angle, three(unit)));
+  }
   const Vec3 glide = (open * jaw.open_glide.x() + lateral * jaw.lateral_glide) * jaw.lateral +
                      (open * jaw.open_glide.y() - forward * jaw.forward_drop) * jaw.up +
                      (open * jaw.open_glide.z() + forward * jaw.forward_glide) * jaw.forward;

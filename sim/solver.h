@@ -1,21 +1,26 @@
 #pragma once
 
-#include "sim/face.h"
+#include <span>
+
+#include "sim/substeps.h"
 
 namespace fascia::sim {
 
-/// A solver of a face behind one interface, so that a host may choose. `Face` needs none of this; other
-/// solvers, some in libraries loaded on demand, are reached through it.
+/// A solver of one face: its state, and what moves it. Fascia's own in real time, the reference in double
+/// precision, and Bullet's (in a library loaded on demand) are all reached through it. For one thread at a
+/// time.
 class Solver {
  public:
   virtual ~Solver() = default;
 
-  /// Lets `seconds` pass under `drive`.
-  virtual StepResult step(double seconds, const Drive& drive) = 0;
-  /// The pose the solver comes to rest in under `drive`, without keeping the motion. #nodes, metres.
-  virtual void static_pose(const Drive& drive, std::span<Vec3f> positions) = 0;
-  virtual void reset(const Drive& drive) = 0;
-  virtual void positions(std::span<Vec3f> out) const = 0;
+  /// Lets `seconds` pass while the controls go from the last step's to `controls`.
+  virtual StepResult step(double seconds, const Controls& controls) = 0;
+  /// Takes the pose in which the face comes to rest under `controls` as the state, without velocity.
+  virtual MinimiseResult settle(const Controls& controls) = 0;
+  /// Puts the face at rest under `controls`'s bones, muscles slack, without velocity.
+  virtual void reset(const Controls& controls) = 0;
+  /// How far the nodes are from rest, metres, #nodes; at rest exactly zero.
+  virtual void displacements(std::span<Vec3f> out) const = 0;
 };
 
 /// What a solver library exports under the name in `solver_entry`: makes a solver on `model`, which outlives

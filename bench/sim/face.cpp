@@ -27,7 +27,7 @@ struct Motion {
   const runtime::Asset& asset;
   std::vector<float> values;
   explicit Motion(const runtime::Asset& of) : asset(of), values(of.channel_names.size()) {}
-  sim::Drive at(double seconds, float amplitude) {
+  sim::Controls at(double seconds, float amplitude) {
     for (size_t c = 0; c < values.size(); ++c) {
       const auto wave =
           static_cast<float>(std::sin(2.0 * M_PI * (0.4 + 0.07 * static_cast<double>(c % 11)) * seconds +
@@ -39,7 +39,7 @@ struct Motion {
       return channel < 0 ? 0.0F : values[static_cast<size_t>(channel)];
     };
     const runtime::BoneChannels& bones = asset.bones();
-    sim::Drive drive;
+    sim::Controls drive;
     drive.activations = values;
     drive.jaw = {value(bones.jaw_open), value(bones.jaw_forward), value(bones.jaw_lateral)};
     return drive;
@@ -68,7 +68,7 @@ void measure_static_poses(const sim::FaceModel& reference, const sim::realtime::
   for (int second = 1; second <= 9; ++second) {
     sim::realtime::Face posed(model, channels), goal(model, channels);
     posed.static_pose(motion.at(second, 0.2F), tight, now);
-    const sim::Drive next = motion.at(second + 1.0 / 60.0, 0.2F);
+    const sim::Controls next = motion.at(second + 1.0 / 60.0, 0.2F);
     goal.static_pose(next, tight, truth);
     double size = 0.0, spent = 0.0;
     for (size_t i = 0; i < nodes; ++i)
@@ -120,7 +120,7 @@ void measure_level(const runtime::Asset& asset, size_t level, int frames) {
     double gap = 0.0, move = 0.0;
     const int compared = std::min(frames, 40);
     for (int frame = 0; frame < frames; ++frame) {
-      const sim::Drive drive = motion.at(frame / 60.0, 0.2F);
+      const sim::Controls drive = motion.at(frame / 60.0, 0.2F);
       begin = bench::thread_milliseconds();
       const sim::StepResult result = moving.step(1.0 / 60.0, drive, options);
       times.push_back(bench::thread_milliseconds() - begin);

@@ -39,14 +39,14 @@ constexpr double triangle_places = 9, edge_places = 10, place_bytes = 48;
 
 void print_level(const Model& model, const std::string& name, const Machine& machine) {
   std::unique_ptr<Workspace> work = model.borrow();
-  Driven driven = model.driven(*work);
+  Boundary boundary = model.boundary(*work);
   std::fill(work->values.begin(), work->values.end(), 0.2F);
-  model.set_jaw({0.2, 0.0, 0.0}, driven);
+  model.set_jaw({0.2, 0.0, 0.0}, boundary);
   const Loops& loops = model.loops();
-  loops.place(model.packed(), driven);
-  std::copy(driven.carried, driven.carried + model.places(), work->start.data());
+  loops.place(model.packed(), boundary);
+  std::copy(boundary.carried, boundary.carried + model.places(), work->start.data());
   const auto energy_of = [&](const Packed& packed) {
-    return microseconds([&] { loops.energy(packed, driven, work->start.data(), work->gradient.data()); });
+    return microseconds([&] { loops.energy(packed, boundary, work->start.data(), work->gradient.data()); });
   };
   Packed only_triangles = model.packed();
   only_triangles.edge_batches = only_triangles.spring_batches = only_triangles.tether_batches =

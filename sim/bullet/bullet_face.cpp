@@ -190,12 +190,12 @@ struct BulletFace::World {
 
   unsigned substeps = 0;
 
-  void substep(const Drive& drive) {
+  void substep(const Controls& controls) {
     const double s = options.length_scale;
-    model.place({activations, drive.jaw, drive.acceleration, drive.touches}, frame);
+    model.place({activations, controls.jaw, controls.acceleration, controls.touches}, frame);
     if (substeps++ % 20 == 0)
-      model.face_up(state.data(), frame);  // lips hardly move in a hundredth of a second
-    joint->setFrames(to_bullet(jaw_transform(model.jaw(), clamped(drive.jaw)), s) * condyles, condyles);
+      model.find_facing(state.data(), frame);  // lips hardly move in a hundredth of a second
+    joint->setFrames(to_bullet(jaw_transform(model.jaw(), clamped(controls.jaw)), s) * condyles, condyles);
     carry_nodes();
     model.energy_beside_links(frame, state.data(), forces.data());
     add_link_corrections();
@@ -225,8 +225,8 @@ struct BulletFace::World {
     return most;
   }
 
-  void put(const Positions& where, const Drive& drive) {
-    const RigidTransform t = jaw_transform(model.jaw(), clamped(drive.jaw));
+  void put(const Positions& where, const Controls& controls) {
+    const RigidTransform t = jaw_transform(model.jaw(), clamped(controls.jaw));
     jaw->setCenterOfMassTransform(to_bullet(t, options.length_scale));
     jaw->setLinearVelocity(btVector3(0, 0, 0));
     jaw->setAngularVelocity(btVector3(0, 0, 0));
@@ -249,57 +249,63 @@ RigidTransform BulletFace::mandible() const {
   return world_->mandible();
 }
 
-void BulletFace::reset(const Drive& drive) {
+void BulletFace::reset(const Controls& controls) {
   World& w = *world_;
   std::fill(w.activations.begin(), w.activations.end(), 0.0F);
-  w.model.place({{}, drive.jaw, Vec3::Zero()}, w.frame);
-  w.put(w.frame.carried, drive);
+  w.model.place({{}, controls.jaw, Vec3::Zero()}, w.frame);
+  w.put(w.frame.carried, controls);
   w.left_over = 0.0;
 }
 
-StepResult BulletFace::step(double seconds, const Drive& drive) {
+StepResult BulletFace::step(double seconds, const Controls& controls) {
   World& w = *world_;
   StepResult result;
-  bool finite = std::isfinite(seconds) && drive.acceleration.allFinite();
-  for (const float a : drive.activations)
+  bool finite = std::isfinite(seconds) && controls.acceleration.allFinite();
+  for (const float a : controls.activations)
     finite = finite && std::isfinite(a);
   if (!finite) {
-    reset({{}, drive.jaw, Vec3::Zero()});
+    reset({{}, controls.jaw, Vec3::Zero()});
     result.status = StepStatus::reset;
     return result;
   }
   const double due = w.left_over + std::clamp(seconds, 0.0, 0.2);
   const int substeps = static_cast<int>(due / w.options.substep + 1e-9);
   for (int k = 0; k < substeps; ++k) {
-    follow({}, w.options.substep, drive.activations, w.activations);
-    w.substep(drive);
+    follow({}, w.options.substep, controls.activations, w.activations);
+    w.substep(controls);
   }
   w.left_over = std::max(0.0, due - substeps * w.options.substep);
   result.substeps = substeps;
   if (!w.sound()) {
-    reset(drive);
+    reset(controls);
     result.status = StepStatus::reset;
   }
   return result;
 }
 
-void BulletFace::static_pose(const Drive& drive, std::span<Vec3f> out) {
+MinimiseResult BulletFace::settle(const Controls& controls) {
   World& w = *world_;
-  reset(drive);
+  MinimiseResult result;
+  reset(controls);
   for (size_t c = 0; c < w.activations.size(); ++c)
-    w.activations[c] = c < drive.activations.size() ? drive.activations[c] : 0.0F;
+    w.activations[c] = controls.activation(c);
   const int most = static_cast<int>(w.options.settle_seconds / w.options.substep);
-  for (int k = 0; k < most; ++k) {
-    w.substep(drive);
-    if (k > 60 && w.fastest() < w.options.settle_speed) break;
+  for (int k = 0; k < most && !result.converged; ++k) {
+    w.substep(controls);
+    result.iterations = k + 1;
+    result.converged = k > 60 && w.fastest() < w.options.settle_speed;
   }
-  positions(out);
-  reset(drive);
+  result.move = w.fastest() * w.options.substep;
+  if (!w.sound())
+    reset(controls);
+  else
+    w.put(Positions(w.state), controls);  // where it has come to, without velocity
+  return result;
 }
 
-void BulletFace::positions(std::span<Vec3f> out) const {
+void BulletFace::displacements(std::span<Vec3f> out) const {
   for (size_t i = 0; i < out.size() && i < world_->state.size(); ++i)
-    out[i] = world_->model.lattice().rest[i] + (world_->state[i] - world_->model.rest()[i]).cast<float>();
+    out[i] = (world_->state[i] - world_->model.rest()[i]).cast<float>();
 }
 
 }  // namespace fascia::sim

@@ -23,10 +23,11 @@ class BulletFace final : public Solver {
   BulletFace(const FaceModel& model, size_t channels, const BulletOptions& options = {});
   ~BulletFace() override;
 
-  StepResult step(double seconds, const Drive& drive) override;
-  void static_pose(const Drive& drive, std::span<Vec3f> positions) override;
-  void reset(const Drive& drive) override;
-  void positions(std::span<Vec3f> out) const override;
+  StepResult step(double seconds, const Controls& controls) override;
+  /// Waits until Bullet's tissue has come to rest.
+  MinimiseResult settle(const Controls& controls) override;
+  void reset(const Controls& controls) override;
+  void displacements(std::span<Vec3f> out) const override;
 
   /// Where Bullet's mandible stands: what its constraint made of the closed form.
   RigidTransform mandible() const;

@@ -14,6 +14,8 @@
 #include <immintrin.h>
 #endif
 
+#include "sim/formulas/numbers.h"
+
 namespace fascia::sim::lanes::FASCIA_LANES_NAMESPACE {
 namespace {
 
@@ -29,8 +31,6 @@ constexpr size_t part_count = lane_count / part_width;
 
 typedef float Part __attribute__((vector_size(part_width * sizeof(float))));
 typedef float UnalignedPart __attribute__((vector_size(part_width * sizeof(float)), aligned(4), may_alias));
-
-#define FASCIA_INLINE inline __attribute__((always_inline))
 
 struct Lanes {
   Part part[part_count];
@@ -66,6 +66,12 @@ FASCIA_INLINE Lanes splat(float value) {
   }                                                                 \
   FASCIA_INLINE Lanes operator op(float a, const Lanes& b) {        \
     return splat(a) op b;                                           \
+  }                                                                 \
+  FASCIA_INLINE Lanes operator op(const Lanes& a, double b) {       \
+    return a op splat(static_cast<float>(b));                       \
+  }                                                                 \
+  FASCIA_INLINE Lanes operator op(double a, const Lanes& b) {       \
+    return splat(static_cast<float>(a)) op b;                       \
   }
 FASCIA_LANES_OPERATOR(+)
 FASCIA_LANES_OPERATOR(-)
@@ -115,8 +121,26 @@ FASCIA_INLINE Lanes greater(const Lanes& a, const Lanes& b) {
   }
   return out;
 }
-FASCIA_INLINE Lanes greater(const Lanes& a, float b) {
-  return greater(a, splat(b));
+FASCIA_INLINE Lanes greater(const Lanes& a, double b) {
+  return greater(a, splat(static_cast<float>(b)));
+}
+/// `value` sixteen times; for formulas that know no lanes.
+FASCIA_INLINE Lanes like(const Lanes& /*like*/, double value) {
+  return splat(static_cast<float>(value));
+}
+/// Sine and 1 - cosine up to an angle of 3.2: of the half, by their series, then doubled.
+FASCIA_INLINE void sine_and_versine(const Lanes& angle, Lanes& sine, Lanes& versine) {
+  const Lanes h = 0.5F * angle, s = h * h;
+  const Lanes half_sine =
+      h *
+      (1.0F - s * ((1.0F / 6) -
+                   s * ((1.0F / 120) - s * ((1.0F / 5040) - s * ((1.0F / 362880) - s * (1.0F / 39916800))))));
+  const Lanes half_cosine =
+      1.0F - s * (0.5F - s * ((1.0F / 24) -
+                              s * ((1.0F / 720) -
+                                   s * ((1.0F / 40320) - s * ((1.0F / 3628800) - s * (1.0F / 479001600))))));
+  sine = 2.0F * half_sine * half_cosine;
+  versine = 2.0F * half_sine * half_sine;
 }
 
 FASCIA_INLINE Lanes lesser(const Lanes& a, const Lanes& b) {
@@ -127,30 +151,7 @@ FASCIA_INLINE Lanes lesser(const Lanes& a, const Lanes& b) {
 }
 
 /// Three coordinates of sixteen places.
-struct Lanes3 {
-  Lanes x, y, z;
-};
-FASCIA_INLINE Lanes3 operator+(const Lanes3& a, const Lanes3& b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-FASCIA_INLINE Lanes3 operator-(const Lanes3& a, const Lanes3& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-FASCIA_INLINE Lanes3 operator*(const Lanes& a, const Lanes3& b) {
-  return {a * b.x, a * b.y, a * b.z};
-}
-FASCIA_INLINE Lanes3& operator+=(Lanes3& a, const Lanes3& b) {
-  return a = a + b;
-}
-FASCIA_INLINE Lanes3& operator-=(Lanes3& a, const Lanes3& b) {
-  return a = a - b;
-}
-FASCIA_INLINE Lanes dot(const Lanes3& a, const Lanes3& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-FASCIA_INLINE Lanes3 cross(const Lanes3& a, const Lanes3& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
+using Lanes3 = formulas::Three<Lanes>;
 
 /// `yes` where a < b, else `no`.
 FASCIA_INLINE Lanes where_below(const Lanes& a, const Lanes& b, const Lanes& yes, const Lanes& no) {

@@ -24,53 +24,62 @@ struct StepOptions {
 /// Positions are single precision and work memory is borrowed from the model, so a face is small. Not for two
 /// threads at once; different faces are free. Nothing but the constructor and the first use of borrowed
 /// memory allocates; nothing throws.
-class Face {
+class Face final : public Solver {
  public:
-  /// `model` must be valid and outlive the face; `channels` is how many activations it listens to.
-  Face(const Model& model, size_t channels);
+  /// `model` must be valid and outlive the face; `channels` is how many activations it listens to. The
+  /// options are those of `settle` and `step` without options.
+  Face(const Model& model, size_t channels, const PoseOptions& pose = {}, const StepOptions& step = {});
 
   /// See sim::Face.
-  MinimiseResult static_pose(const Drive& drive, const PoseOptions& options, std::span<Vec3f> positions);
-  StepResult step(double seconds, const Drive& drive, const StepOptions& options = {});
-  void reset(const Drive& drive = {});
-  MinimiseResult settle(const Drive& drive, const PoseOptions& options = {});
+  MinimiseResult static_pose(const Controls& controls, const PoseOptions& options,
+                             std::span<Vec3f> positions);
+  StepResult step(double seconds, const Controls& controls, const StepOptions& options);
+  StepResult step(double seconds, const Controls& controls) override {
+    return step(seconds, controls, step_options_);
+  }
+  void reset(const Controls& controls = {}) override;
+  MinimiseResult settle(const Controls& controls, const PoseOptions& options);
+  MinimiseResult settle(const Controls& controls) override { return settle(controls, pose_options_); }
   void positions(std::span<Vec3f> out) const;
-  void displacements(std::span<Vec3f> out) const;
+  void displacements(std::span<Vec3f> out) const override;
 
   /// Bytes this face keeps for itself.
   size_t memory() const;
-  std::span<const float> activations() const { return activations_; }
+  std::span<const float> activations() const { return time_.activations(); }
 
  private:
   struct Solve;
+  struct Space;
 
-  void place(const JawPose& jaw, std::span<const float> activations, Workspace& work, Driven& driven) const;
+  void place(const JawPose& jaw, std::span<const float> activations, Workspace& work,
+             Boundary& boundary) const;
   void fill_nodes(const float* x, Positions& nodes) const;
   double contact_energy(Solve& solve, const float* x, float* gradient);
   double evaluate(Solve& solve, const float* x);
-  float left_to_go(const Workspace& work) const;
-  MinimiseResult minimise(Solve& solve, const MinimiseOptions& options, bool checks_last, float* x);
-  MinimiseResult substep(double share, const Drive& drive, const StepOptions& options, Workspace& work);
+  float momentum(const Workspace& work) const;
+  MinimiseResult minimise(Solve& solve, const MinimiseOptions& options, float* x);
+  /// Few iterations without line search, for a substep.
+  MinimiseResult iterate(Solve& solve, const MinimiseOptions& options, float* x);
+  MinimiseResult substep(const Controls& now, const StepOptions& options, Workspace& work);
   /// Takes the nodes of prisms that a substep of few iterations has turned inside out back towards where it
   /// began; false when some are left.
-  bool turn_back(Workspace& work, float* x) const;
+  bool untangle(Workspace& work, float* x) const;
   /// False when a prism was not upright; its nodes are then taken back if that helps, and marked.
   bool is_upright(Workspace& work, size_t layer, size_t triangle, float* x) const;
   bool sound(const float* carried, double largest) const;
 
   const Model* model_;
-  Floats position_, velocity_, carried_, last_direction_, trust_, pose_offset_;
+  PoseOptions pose_options_;
+  StepOptions step_options_;
+  Floats position_, velocity_, carried_, last_direction_, step_scale_, pose_offset_;
   std::vector<FacingPair> facing_;
   struct BoneReach {
     float place[3] = {0, 0, 0};  ///< in the bone's frame, where the distance was last looked up
     float free = -1.0F;          ///< metres from there within which it cannot touch; negative: not known
   };
   std::vector<BoneReach> reach_;  ///< of each contact with bone
-  std::vector<float> excitations_, last_excitations_, activations_;
-  JawPose last_jaw_;
+  Substeps time_;
   RigidTransform last_mandible_;
-  Vec3 last_acceleration_ = Vec3::Zero();
-  double left_over_ = 0.0;
   uint32_t turn_ = 0;  ///< substeps since the last reset
 };
 

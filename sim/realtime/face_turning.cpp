@@ -70,12 +70,12 @@ bool Face::is_upright(Workspace& work, size_t layer, size_t triangle, float* x) 
   return false;
 }
 
-bool Face::turn_back(Workspace& work, float* x) const {
+bool Face::untangle(Workspace& work, float* x) const {
   const auto& triangles = model_->face().lattice().triangles;
   bool all_upright = true;
   for (size_t b = 0; b < model_->packed().triangle_batches; ++b) {
     float shares[2 * batch_width];
-    model_->loops().shares_left(model_->packed(), b, x, shares);
+    model_->loops().volume_ratios(model_->packed(), b, x, shares);
     for (size_t i = 0; i < 2 * batch_width; ++i)
       if (const size_t t = model_->triangle_at(b, i % batch_width);
           !(shares[i] > 1.5F * f(least)) && t < triangles.size())

@@ -4,13 +4,13 @@
 #include "sim/realtime/energy_loops.h"
 #include "sim/realtime/place_loops.h"
 #include "sim/realtime/solve_loops.h"
-#include "sim/realtime/stride_loops.h"
+#include "sim/realtime/step_loops.h"
 
 namespace fascia::sim::realtime {
 
 const Loops& FASCIA_LOOPS() {
-  static constexpr Loops loops{place, total_energy, shares_left, multiply, subtract, collect, scale,
-                               solve, stride,       set_out,     dot_of,   add,      largest};
+  static constexpr Loops loops{place, total_energy, volume_ratios, multiply, subtract, collect, scale,
+                               solve, take_steps,   begin_step,    dot_of,   add,      largest};
   return loops;
 }
 

@@ -23,9 +23,7 @@ FASCIA_INLINE Lanes channel_values(const float* values, const SixteenAt& channel
   return load(list);
 }
 
-FASCIA_INLINE Lanes positive(const Lanes& a) {
-  return greater(a, splat(0.0F));
-}
+using formulas::positive;
 
 }  // namespace
 }  // namespace fascia::sim::realtime

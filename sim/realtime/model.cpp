@@ -46,12 +46,6 @@ Model::Model(const FaceModel& face, lanes::InstructionSet instructions)
   }
   packed_.rest = rest_.data();
   packed_.jaw_share = jaw_share_.data();
-  packed_.crush_begin = f(crush_begin);
-  packed_.crush_end = f(crush_end);
-  packed_.turn_begin = f(turn_begin);
-  packed_.turn_end = f(turn_end);
-  packed_.segment_rounding = f(segment_rounding);
-  packed_.fold_softness = f(fold_softness);
   for (const auto* list : {&lattice.fibre_channel, &lattice.carrier_channel, &lattice.pressure_channel})
     for (const uint32_t channel : *list)
       channels_ = std::max<size_t>(channels_, channel + 1);
@@ -146,7 +140,7 @@ bool Model::make_factors() {
 
 bool Model::find_balance() {
   std::unique_ptr<Workspace> work = borrow();
-  Driven at_rest = driven(*work);
+  Boundary at_rest = boundary(*work);
   set_jaw({}, at_rest);
   loops_->place(packed_, at_rest);
   loops_->energy(packed_, at_rest, rest_.data(), balance_.data());
@@ -158,8 +152,8 @@ bool Model::find_balance() {
                      [](float value) { return std::isfinite(value); });
 }
 
-Driven Model::driven(Workspace& work) const {
-  Driven d{};
+Boundary Model::boundary(Workspace& work) const {
+  Boundary d{};
   std::fill(work.values.begin(), work.values.end(), 0.0F);
   d.values = work.values.data();
   d.carried = work.carried.data();
@@ -169,7 +163,7 @@ Driven Model::driven(Workspace& work) const {
   return d;
 }
 
-void Model::set_jaw(const JawPose& pose, Driven& d) const {
+void Model::set_jaw(const JawPose& pose, Boundary& d) const {
   const Jaw& jaw = face_->jaw();
   d.jaw_at_rest = pose.at_rest();
   d.turn_open = f(pose.open * jaw.open_angle);
@@ -210,7 +204,7 @@ std::unique_ptr<Workspace> Model::borrow() const {
   work->fibre_scratch = Floats(3 * wide * longest_fibre_);
   work->solve_scratch = Floats(pose_factor_.scratch());
   for (Floats* list : {&work->packed, &work->direction, &work->moved, &work->damped, &work->last_gradient,
-                       &work->begun, &work->ballistic, &work->answer})
+                       &work->begun, &work->ballistic, &work->scaling})
     *list = Floats(unknown_floats_);
   for (auto* list : {&work->steps, &work->changes})
     for (size_t k = 0; k < Workspace::history; ++k)

@@ -19,10 +19,10 @@ struct Workspace {
   Floats carried, start, begun_places, gradient, tether_normals, carrier_pulls,
       fibre_scratch;  // places and batches
   Floats solve_scratch;
-  Floats packed, direction, moved, damped, last_gradient, begun, ballistic, answer;  // unknowns
-  std::vector<Floats> steps, changes;                                                // `history` of unknowns
-  Positions nodes, nodes_before;                                                     // #nodes, for contact
-  std::vector<float> values;                                                         // by channel
+  Floats packed, direction, moved, damped, last_gradient, begun, ballistic, scaling;  // unknowns
+  std::vector<Floats> steps, changes;                                                 // `history` of unknowns
+  Positions nodes, nodes_before;                                                      // #nodes, for contact
+  std::vector<float> values;                                                          // by channel
   std::vector<Grip> grips;
   FacingSearch facing_search;
   std::vector<uint32_t> near_bones;  // contacts that may touch
@@ -72,10 +72,10 @@ class Model {
   bool valid() const { return fault_.empty(); }
   const std::string& fault() const { return fault_; }
 
-  /// Lists and pointers for a drive; points into `work` and must be placed before use.
-  Driven driven(Workspace& work) const;
-  /// Numbers of a drive; see FaceModel::place. `values` one a channel, finite.
-  void set_jaw(const JawPose& jaw, Driven& driven) const;
+  /// Lists and pointers for the controls of a solve; points into `work` and must be placed before use.
+  Boundary boundary(Workspace& work) const;
+  /// Numbers of the controls; see FaceModel::place. `values` one a channel, finite.
+  void set_jaw(const JawPose& jaw, Boundary& boundary) const;
 
   std::unique_ptr<Workspace> borrow() const;
   void give_back(std::unique_ptr<Workspace> work) const;

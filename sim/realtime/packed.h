@@ -59,7 +59,7 @@ struct alignas(64) TetherBatch {
 };
 struct alignas(64) CarrierBatch {
   SixteenAt at;
-  Sixteen origin[3], axis[3], angle, reverse, stiffness, drive;
+  Sixteen origin[3], axis[3], angle, reverse, stiffness, pull_stiffness;
   SixteenAt channel;
 };
 struct alignas(64) GlobeBatch {
@@ -101,12 +101,10 @@ struct Packed {
   const float* rest;       ///< places
   const float* balance;    ///< places: gradient at rest; null while it is being found
   const float* jaw_share;  ///< #places, one float each: how far the mandible carries it
-  float crush_begin, crush_end, turn_begin, turn_end, segment_rounding,
-      fold_softness;  ///< see sim/energies.h
 };
 
-/// Where bones and drive stand for a solve.
-struct Driven {
+/// What a solve is held by: bones, actuators and channel values.
+struct Boundary {
   const float* values;  ///< by channel
   float jaw_origin[3], jaw_up[3], jaw_lateral[3];
   float turn_open, turn_lateral;              ///< radians at share 1: about lateral, then about up
@@ -162,23 +160,24 @@ struct Unknowns {
   float per_mass, drag, stiff;  ///< 1 / h^2 and dampings over h; all 0 in a static pose
 };
 
-/// One step along a direction whose outcome is not looked at.
-struct Stride {
+/// One iteration without line search: each node goes along the direction by a step size of its own.
+struct NodeSteps {
   size_t count;         ///< unknowns
   const int32_t* slot;  ///< of each, into places
-  float* direction;     ///< 4 an unknown; leaves as it was gone
-  const float* before;  ///< the stride before, gone on with `onward` times where a node can be trusted
-  float onward;
-  float* last;   ///< 4 an unknown: each node's last stride, of whatever solve
-  float* trust;  ///< of each unknown, 0.02 to 1: its share of a stride; less where it keeps turning back
-  float* x;      ///< places
+  float* direction;     ///< 4 an unknown; on return the steps taken
+  const float*
+      before;  ///< the steps of the iteration before, added `momentum` times where step sizes are near 1
+  float momentum;
+  float* last;        ///< 4 an unknown: each node's last step, of whatever solve
+  float* step_scale;  ///< of each unknown, 0.02 to 1: its step size; smaller where steps keep reversing
+  float* x;           ///< places
 };
 
 /// Where a step of time begins.
-struct Outset {
+struct StepStart {
   size_t count;
   const int32_t* slot;
-  const float *velocity, *carried, *carried_before, *trust;
+  const float *velocity, *carried, *carried_before, *step_scale;
   float seconds;
   float* x;                  ///< places that unknowns leave for the first guess
   float *ballistic, *begun;  ///< by unknown
@@ -187,33 +186,34 @@ struct Outset {
 
 struct Loops {
   /// Moves carried places, tether normals and carrier pulls.
-  void (*place)(const Packed&, const Driven&);
+  void (*place)(const Packed&, const Boundary&);
   /// Energy of everything but contact with bones and lips at `x` (places), joules; writes the gradient
   /// (places), and in each place's fourth float by how much it is stiffer than at rest, newton per metre:
   /// where walls stand and springs have stiffened.
-  double (*energy)(const Packed&, const Driven&, const float* x, float* gradient);
+  double (*energy)(const Packed&, const Boundary&, const float* x, float* gradient);
   /// What is left of the volume of a batch's prisms at `x`, as shares of that at rest: 16 outer ones, then 16
   /// inner ones.
-  void (*shares_left)(const Packed&, size_t batch, const float* x, float* shares);
+  void (*volume_ratios)(const Packed&, size_t batch, const float* x, float* shares);
   /// out = matrix * x over unknowns.
   void (*multiply)(const SparseRows&, const float* x, float* out);
   /// What unknowns have moved from where bones alone would bring them.
   void (*subtract)(const Unknowns&, float* moved);
-  /// Gradient over unknowns with inertia, damping and acceleration, whose energy is returned. `answer`: S of
-  /// a step S P^-1 S with S^2 = p / (p + more), by which a node answers less where it is stiffer than the
+  /// Gradient over unknowns with inertia, damping and acceleration, whose energy is returned. `scaling`: S of
+  /// a step S P^-1 S with S^2 = p / (p + more), by which a node is moved less where it is stiffer than the
   /// factor knows; one a float of `packed`.
-  double (*collect)(const Unknowns&, const float* moved, const float* damped, float* packed, float* answer);
+  double (*collect)(const Unknowns&, const float* moved, const float* damped, float* packed, float* scaling);
   /// list *= factors.
   void (*scale)(const float* factors, float* list, size_t count);
   /// Solves in place over unknowns (4 x (size + 1) floats, the last place of no meaning). `scratch` as
   /// PanelFactor::scratch says.
   void (*solve)(const Panels&, float* values, float* scratch);
-  /// Goes along a direction, safe to go unseen: no node farther than a substep's largest sensible motion, and
-  /// where a node keeps turning back it has been going too far (as in Riedmiller & Braun 1993, resilient
-  /// propagation).
-  void (*stride)(const Stride&);
-  /// Finds where inertia alone and where bones alone would bring unknowns, and puts x between.
-  void (*set_out)(const Outset&);
+  /// One iteration without line search, made safe by two bounds: no node moves farther than a substep's
+  /// largest sensible motion, and each has a step size of its own that shrinks where its steps reverse and
+  /// grows back where they do not (resilient propagation, Riedmiller & Braun 1993).
+  void (*take_steps)(const NodeSteps&);
+  /// Finds where inertia alone and where the bones alone would bring the unknowns, and starts x between the
+  /// two.
+  void (*begin_step)(const StepStart&);
   double (*dot)(const float* a, const float* b, size_t count);
   void (*add)(float factor, const float* a, float* to,
               size_t count);  ///< to += factor * a; counts are multiples of 16

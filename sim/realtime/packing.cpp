@@ -10,7 +10,7 @@ namespace fascia::sim::realtime {
 namespace {
 
 constexpr size_t wide = batch_width;
-constexpr float never = -1e3F;  // metres: no spring is that much shorter than at rest
+constexpr auto never = static_cast<float>(formulas::no_slack);
 
 float f(double value) {
   return static_cast<float>(value);
@@ -22,8 +22,9 @@ void put(Sixteen* list, size_t lane, const Vec3& value) {
 }
 
 /// Calls `set(batch, lane, element, counts)` for every lane. Each lane takes a strip of neighbouring
-/// elements, so that hardly a place is named twice by one batch: a sum that is read again before it is
-/// written waits. Lanes left over repeat the last element, and are to have no stiffness (`counts` false).
+/// elements, so that hardly a place occurs twice in one batch: adding to a place just written stalls on
+/// store-to-load forwarding. Lanes left over repeat the last element, and are to have no stiffness (`counts`
+/// false).
 template <class Batch, class Set>
 void lay_in_strips(std::vector<Batch>& list, size_t count, Set&& set) {
   const size_t rows = (count + wide - 1) / wide;
@@ -62,7 +63,7 @@ void Model::pack_triangles() {
       prism.volume[lane] = f(p.volume);
       prism.inverse_volume[lane] = f(1.0 / std::max(std::abs(p.volume), 1e-12));
       prism.stiffness[lane] = counts ? f(p.stiffness) : 0.0F;
-      prism.guard[lane] = counts && p.volume > 0.0 ? f(turn_modulus) : 0.0F;
+      prism.guard[lane] = counts && p.volume > 0.0 ? f(formulas::turn_modulus) : 0.0F;
     }
   });
   packed_.triangles = triangles_.data();
@@ -169,7 +170,7 @@ void Model::pack_held() {
                   batch.angle[lane] = lattice.carrier_angle[from];
                   batch.reverse[lane] = lattice.carrier_reverse[from];
                   batch.stiffness[lane] = counts ? lattice.carrier_stiffness[from] : 0.0F;
-                  batch.drive[lane] = counts ? lattice.carrier_drive[from] : 0.0F;
+                  batch.pull_stiffness[lane] = counts ? lattice.carrier_drive[from] : 0.0F;
                   batch.channel[lane] = static_cast<int32_t>(lattice.carrier_channel[from]);
                 });
   packed_.carriers = carriers_.data();

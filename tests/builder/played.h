@@ -29,7 +29,7 @@ inline std::vector<std::vector<sim::Vec3f>> played(const runtime::Asset& asset, 
     const auto value = [&](int32_t channel) {
       return channel < 0 ? 0.0F : values[static_cast<size_t>(channel)];
     };
-    sim::Drive drive;
+    sim::Controls drive;
     drive.activations = values;
     drive.jaw = {value(bones.jaw_open), value(bones.jaw_forward), value(bones.jaw_lateral)};
     face.step(1.0 / rate, drive, options);

@@ -109,8 +109,8 @@ void SweptFace::pass(double seconds) {
   jaw_ = sim::approached(jaw_, wanted_jaw(), seconds);
 }
 
-sim::Drive SweptFace::drive() const {
-  sim::Drive drive;
+sim::Controls SweptFace::drive() const {
+  sim::Controls drive;
   drive.activations = values_;
   drive.jaw = jaw_;
   drive.acceleration = acceleration_;

@@ -28,7 +28,7 @@ class SweptFace {
   std::vector<std::string> shapes() const;  ///< names of the ARKit set's members
   /// Nothing as what drives it.
   void relax();
-  sim::Drive drive() const;
+  sim::Controls drive() const;
   /// Lets the jaw go towards where the drive wants it; `step` does it itself.
   void pass(double seconds);
 

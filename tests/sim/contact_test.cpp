@@ -77,7 +77,7 @@ TEST(Contact, PressedTissueStopsAtTheBone) {
   ASSERT_TRUE(model.valid()) << model.fault();
   Face face(model, 0);
   std::vector<Vec3f> x(level.rest.size());
-  const Drive press{{}, {}, Vec3(0, 0, -100.0)};
+  const Controls press{{}, {}, Vec3(0, 0, -100.0)};
   EXPECT_TRUE(face.static_pose(press, {}, x).converged);
   // Without the ball its place would be entered by a millimetre and more.
   rig::TissueLevel alone = level;

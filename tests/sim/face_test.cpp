@@ -61,7 +61,7 @@ FaceModelOptions undamped(double substep) {
 
 /// Mean period of node `node` about the place `middle` along `axis`, from its upward crossings.
 double period_of(Face& face, uint32_t node, int axis, double middle, double step, int steps,
-                 const Drive& drive) {
+                 const Controls& drive) {
   double first = -1.0, last = -1.0, before = face.state()[node][axis] - middle;
   int crossings = 0;
   StepOptions options;
@@ -106,7 +106,7 @@ TEST(Face, PendulumSwingsAtTheSquareRootOfLengthOverGravity) {
   ASSERT_TRUE(model.valid());
   Face face(model, 0);
   face.velocities()[1] = Vec3(0.05, 0, 0);  // amplitude of 2 degrees
-  Drive gravity;
+  Controls gravity;
   gravity.acceleration = Vec3(0, -9.81, 0);
   const double period = period_of(face, 1, 0, 0.0, step, 12000, gravity);
   EXPECT_NEAR(period / (2 * M_PI * std::sqrt(0.25 / 9.81)), 1.0, 3e-3);
@@ -138,7 +138,7 @@ TEST(Face, PulledStripStretchesByForceOverWidthTimesModulus) {
   const FaceModel model(lattice_of(level), {});
   ASSERT_TRUE(model.valid()) << model.fault();
   Face face(model, 0);
-  Drive pull;
+  Controls pull;
   pull.acceleration = Vec3(1, 0, 0);
   std::vector<Vec3f> x(3 * columns);
   PoseOptions options;
@@ -162,7 +162,7 @@ TEST(Face, PressedBlockKeepsItsVolume) {
   const FaceModel model(lattice_of(level), {});
   ASSERT_TRUE(model.valid());
   Face face(model, 0);
-  Drive press;
+  Controls press;
   press.acceleration = Vec3(0, 0, -300.0);
   std::vector<Vec3f> x(level.rest.size());
   const MinimiseResult result = face.static_pose(press, {}, x);
@@ -253,7 +253,7 @@ TEST_F(Contracting, NoFibreShortensBeyondItsShortest) {
 TEST_F(Contracting, SteppingArrivesAtTheStaticPoseAtAnyFrameRate) {
   const FaceModel model(lattice_of(level), jaw);
   const float pull[] = {1.0F, 0.3F};
-  const Drive drive{pull, {1.0F, 0, 0}, Vec3::Zero()};
+  const Controls drive{pull, {1.0F, 0, 0}, Vec3::Zero()};
   Face face(model, 2);
   std::vector<Vec3f> pose(level.rest.size());
   ASSERT_TRUE(face.static_pose(drive, {}, pose).converged);

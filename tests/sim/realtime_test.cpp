@@ -54,7 +54,7 @@ struct Everything : ::testing::Test {
     }
   }
   const std::vector<float> pull = {0.8F, 0.4F, 0.7F, 0.5F};
-  Drive drive() const { return {pull, {0.8F, 0.2F, -0.5F}, Vec3(1, -3, 2)}; }
+  Controls drive() const { return {pull, {0.8F, 0.2F, -0.5F}, Vec3(1, -3, 2)}; }
 };
 
 double farthest(const std::vector<Vec3f>& a, std::span<const Vec3f> b) {
@@ -86,11 +86,11 @@ TEST_F(Everything, EnergyAndGradientAreTheReferences) {
       }
     const double energy = face.energy(frame, x.data(), expected.data());
     std::unique_ptr<Workspace> work = model.borrow();
-    Driven driven = model.driven(*work);
+    Boundary boundary = model.boundary(*work);
     std::copy(pull.begin(), pull.end(), work->values.begin());
-    model.set_jaw(pose, driven);
-    model.loops().place(model.packed(), driven);
-    const double own = model.loops().energy(model.packed(), driven, places.data(), gradient.data());
+    model.set_jaw(pose, boundary);
+    model.loops().place(model.packed(), boundary);
+    const double own = model.loops().energy(model.packed(), boundary, places.data(), gradient.data());
     EXPECT_NEAR(own, energy, 1e-4 * std::abs(energy) + 1e-7) << size;
     double largest = 0.0, off = 0.0;
     for (const uint32_t node : face.unknowns()) {
@@ -186,7 +186,7 @@ TEST_F(Everything, ConvergedStepsAreTheReferencesAndFewIterationsStayNear) {
     const float share = std::min(1.0F, static_cast<float>(frame) / 6.0F);
     for (float& value : now)
       value *= share;
-    const Drive moving{now, {0.8F * share, 0.2F * share, -0.5F * share}, Vec3::Zero()};
+    const Controls moving{now, {0.8F * share, 0.2F * share, -0.5F * share}, Vec3::Zero()};
     slow.step(1.0 / 60.0, moving, tight);
     ASSERT_EQ(converged.step(1.0 / 60.0, moving, own).status, StepStatus::done);
     ASSERT_EQ(fast.step(1.0 / 60.0, moving).status, StepStatus::done);

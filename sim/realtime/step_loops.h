@@ -17,7 +17,7 @@ void subtract(const Unknowns& u, float* moved) {
     store_quad(moved + 4 * k, load_quad(u.x + u.slot[k]) - load_quad(u.begun + 4 * k));
 }
 
-double collect(const Unknowns& u, const float* moved, const float* damped, float* packed, float* answer) {
+double collect(const Unknowns& u, const float* moved, const float* damped, float* packed, float* scaling) {
   const Quad acceleration = {u.acceleration[0], u.acceleration[1], u.acceleration[2], 0.0F};
   Quad twice{}, work{};
   for (size_t k = 0; k < u.count; ++k) {
@@ -36,7 +36,7 @@ double collect(const Unknowns& u, const float* moved, const float* damped, float
     }
     force[3] = 0.0F;
     store_quad(packed + 4 * k, force);
-    store_quad(answer + 4 * k, s - Quad{});
+    store_quad(scaling + 4 * k, s - Quad{});
   }
   const Quad sum = 0.5F * twice - work;
   return static_cast<double>(sum[0]) + static_cast<double>(sum[1]) + static_cast<double>(sum[2]);
@@ -47,34 +47,35 @@ void scale(const float* factors, float* list, size_t count) {
     store(list + i, load(factors + i) * load(list + i));
 }
 
-constexpr float farthest = 0.0015F;  // metres a node may go in one stride
+constexpr float farthest = 0.0015F;  // metres a node may go in one take_steps
 constexpr float noise = 1e-5F;       // metres below which turning back means nothing
-constexpr float least_trust = 0.02F;
-constexpr float inertia_trusted = 0.7F,
-                inertia_else = 0.5F;  // share of what inertia alone would do that the first guess takes
+constexpr float least_step_scale = 0.02F;
+constexpr float inertia_steady = 0.7F,
+                inertia_unsteady = 0.5F;  // share of what inertia alone would do that the first guess takes
 
-void stride(const Stride& s) {
+void take_steps(const NodeSteps& s) {
   SixteenAt at;
   for (size_t l = 0; l < batch_width; ++l)
     at[l] = static_cast<int32_t>(4 * l);
   const Lanes none = splat(0.0F), one = splat(1.0F);
   for (size_t k = 0; k < s.count; k += batch_width) {  // lists of unknowns are whole batches
-    Lanes trust = load(s.trust + k);
+    Lanes step_scale = load(s.step_scale + k);
     const Lanes3 last = gather(s.last + 4 * k, at);
     Lanes3 way = gather(s.direction + 4 * k, at);
-    if (s.onward > 0.0F) way += (s.onward * positive(4.0F * trust - 3.0F)) * gather(s.before + 4 * k, at);
+    if (s.momentum > 0.0F)
+      way += (s.momentum * positive(4.0F * step_scale - 3.0F)) * gather(s.before + 4 * k, at);
     const Lanes squared = dot(way, way), along = dot(way, last);
     const Lanes back = where_below(along, none, where_below(splat(noise * noise), squared, one, none), none);
-    const Lanes more = lesser(1.2F * trust, one), less = greater(0.5F * trust, least_trust);
-    trust = where_below(none, back, less, more);
+    const Lanes more = lesser(1.2F * step_scale, one), less = greater(0.5F * step_scale, least_step_scale);
+    step_scale = where_below(none, back, less, more);
     const Lanes most = farthest / square_root(greater(squared, 1e-20F));
-    trust = where_below(splat(farthest * farthest), squared * trust * trust, most, trust);
+    step_scale = where_below(splat(farthest * farthest), squared * step_scale * step_scale, most, step_scale);
     const Lanes is_sound = where_below(squared, splat(1e6F), one, none);  // false where it is not a number
     way = {where_below(none, is_sound, way.x, none), where_below(none, is_sound, way.y, none),
            where_below(none, is_sound, way.z, none)};
-    trust = where_below(none, is_sound, trust, load(s.trust + k));
-    store(s.trust + k, trust);
-    way = trust * way;
+    step_scale = where_below(none, is_sound, step_scale, load(s.step_scale + k));
+    store(s.step_scale + k, step_scale);
+    way = step_scale * way;
     interleave(way, s.last + 4 * k);
     interleave(way, s.direction + 4 * k);
     const size_t end = s.count - k < batch_width ? s.count : k + batch_width;
@@ -83,14 +84,14 @@ void stride(const Stride& s) {
   }
 }
 
-void set_out(const Outset& o) {
+void begin_step(const StepStart& o) {
   for (size_t k = 0; k < o.count; ++k) {
     const int32_t at = o.slot[k];
     const Quad x = load_quad(o.x + at), ballistic = x + o.seconds * load_quad(o.velocity + at);
     const Quad begun = x + (load_quad(o.carried + at) - load_quad(o.carried_before + at));
-    const float trust = o.trust[k], sure = 2.0F * trust - 1.0F,
-                share =
-                    trust * (inertia_else + (inertia_trusted - inertia_else) * (sure > 0.0F ? sure : 0.0F));
+    const float step_scale = o.step_scale[k], sure = 2.0F * step_scale - 1.0F,
+                share = step_scale * (inertia_unsteady +
+                                      (inertia_steady - inertia_unsteady) * (sure > 0.0F ? sure : 0.0F));
     store_quad(o.ballistic + 4 * k, ballistic);
     store_quad(o.begun + 4 * k, begun);
     store_quad(o.begun_places + at, begun);

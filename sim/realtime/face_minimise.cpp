@@ -1,0 +1,177 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "sim/realtime/solve.h"
+
+// How a face in real time comes to a minimum of its energies.
+
+namespace fascia::sim::realtime {
+
+using solving::add_at;
+using solving::f;
+using solving::place_at;
+
+namespace {
+
+/// Fields of distances rise by at most this much a metre: one, but for their grid.
+constexpr double steepest = 1.25;
+
+}  // namespace
+
+/// Bones, the other lip, friction and touches: few nodes, one after the other.
+double Face::contact_energy(Solve& solve, const float* x, float* gradient) {
+  const Contacts& contacts = model_->face().contacts();
+  double energy = 0.0;
+  const Mat3 to_mandible = solve.mandible.rotation.transpose();
+  for (size_t c = 0; c < reach_.size(); ++c) {
+    const int32_t at = model_->slot_of(contacts.bone_nodes()[c]);
+    const Vec3 place = place_at(x, at);
+    const bool moves = contacts.bone_moves(c);
+    const Vec3 local = moves ? Vec3(to_mandible * (place - solve.mandible.translation)) : place;
+    BoneReach& reach = reach_[c];
+    const Vec3 away = local - Vec3(reach.place[0], reach.place[1], reach.place[2]);
+    if (reach.free >= 0.0F && away.squaredNorm() < static_cast<double>(reach.free) * reach.free) continue;
+    const Contacts::Touch touch = contacts.bone_touch(c, local);
+    for (int axis = 0; axis < 3; ++axis)
+      reach.place[axis] = f(local[axis]);
+    // Outside its grid the field says nothing: one cell's width is safe to go before looking again.
+    reach.free = std::isfinite(touch.depth) ? f(std::max(0.0, -touch.depth) / steepest) : 0.0F;
+    if (!(touch.depth > 0.0)) continue;
+    const double push = contacts.options().bone_stiffness * touch.depth;
+    add_at(gradient, at, -push * (moves ? Vec3(solve.mandible.rotation * touch.normal) : touch.normal));
+    energy += 0.5 * push * touch.depth;
+    gradient[at + 3] += f(contacts.options().bone_stiffness);
+  }
+  const auto place_of = [&](uint32_t node) { return place_at(x, model_->slot_of(node)); };
+  const auto add = [&](uint32_t node, const Vec3& force, double stiffness) {
+    const int32_t at = model_->slot_of(node);
+    add_at(gradient, at, force);
+    gradient[at + 3] += f(stiffness);
+  };
+  energy += contacts.facing_energy(facing_, place_of, add);
+  energy += Contacts::grip_energy(solve.grips, place_of, add);
+  energy += touch_energy(solve.touches, model_->face().rest(), place_of, add);
+  return energy;
+}
+
+/// Energy at `x`, its gradient over unknowns in `work.packed`.
+double Face::evaluate(Solve& solve, const float* x) {
+  Workspace& w = solve.work;
+  const Loops& loops = model_->loops();
+  float* const gradient = w.gradient.data();
+  double energy = loops.energy(model_->packed(), solve.boundary, x, gradient);
+  energy += contact_energy(solve, x, gradient);
+  solve.unknowns.x = x;
+  solve.unknowns.gradient = gradient;
+  if (solve.unknowns.per_mass != 0.0F) {
+    loops.subtract(solve.unknowns, w.moved.data());
+    loops.multiply(model_->stiffness(), w.moved.data(), w.damped.data());
+  }
+  return energy +
+         loops.collect(solve.unknowns, w.moved.data(), w.damped.data(), w.packed.data(), w.scaling.data());
+}
+
+/// Hestenes-Stiefel momentum (Hestenes & Stiefel 1952): how much of the step before is added to the new
+/// direction. It finishes the line search along that step which was left out, by what the step did to the
+/// gradient, and keeps the new direction conjugate to it. Since the preconditioner takes x, y and z alike,
+/// steps are rather too short; without a line search no more than one step's length is added.
+float Face::momentum(const Workspace& w) const {
+  const size_t floats = model_->unknown_floats();
+  const auto dot = model_->loops().dot;
+  const float *step = w.steps[0].data(), *before = w.last_gradient.data(), *now = w.packed.data(),
+              *direction = w.direction.data();
+  const double slope = dot(step, now, floats), curvature = slope - dot(step, before, floats);
+  const double conjugacy = dot(direction, before, floats) - dot(direction, now, floats);
+  return curvature > 0.0 ? f(std::clamp((conjugacy - slope) / curvature, 0.0, 1.0)) : 0.0F;
+}
+
+/// Unknowns in single precision, for sim::minimise: those of the model's places `x`, preconditioned by the
+/// factor, scaled where a node is stiffer than it knows.
+struct Face::Space {
+  static constexpr size_t history = Workspace::history;
+  Face& face;
+  Solve& solve;
+  float* x;
+  Workspace& w = solve.work;
+  const Loops& loops = face.model_->loops();
+  size_t floats = face.model_->unknown_floats();
+
+  double evaluate() { return face.evaluate(solve, x); }
+  double residual() const { return std::sqrt(static_cast<double>(loops.largest(w.packed.data(), floats))); }
+  void start_direction() { std::copy(w.packed.data(), w.packed.data() + floats, w.direction.data()); }
+  void precondition() {
+    loops.scale(w.scaling.data(), w.direction.data(), floats);
+    loops.solve(solve.factor, w.direction.data(), w.solve_scratch.data());
+    loops.scale(w.scaling.data(), w.direction.data(), floats);
+  }
+  double step_dot(size_t slot) const { return loops.dot(w.steps[slot].data(), w.direction.data(), floats); }
+  double change_dot(size_t slot) const {
+    return loops.dot(w.changes[slot].data(), w.direction.data(), floats);
+  }
+  void add_step(double factor, size_t slot) {
+    loops.add(f(factor), w.steps[slot].data(), w.direction.data(), floats);
+  }
+  void add_change(double factor, size_t slot) {
+    loops.add(f(factor), w.changes[slot].data(), w.direction.data(), floats);
+  }
+  void negate() { loops.add(-2.0F, w.direction.data(), w.direction.data(), floats); }
+  double slope() const { return loops.dot(w.direction.data(), w.packed.data(), floats); }
+  double longest() const { return std::sqrt(static_cast<double>(loops.largest(w.direction.data(), floats))); }
+  void go(double length) {
+    const auto& slots = face.model_->slots();
+    const float* direction = w.direction.data();
+    const float factor = f(length);
+    for (size_t k = 0; k < slots.size(); ++k)
+      for (size_t axis = 0; axis < 3; ++axis)
+        x[static_cast<size_t>(slots[k]) + axis] += factor * direction[4 * k + axis];
+  }
+  void keep_gradient() { std::swap(w.last_gradient, w.packed); }
+  double remember(size_t slot, double length) {
+    float* const step = w.steps[slot].data();
+    float* const change = w.changes[slot].data();
+    const float *direction = w.direction.data(), *now = w.packed.data(), *before = w.last_gradient.data();
+    const float factor = f(length);
+    for (size_t i = 0; i < floats; ++i) {
+      step[i] = factor * direction[i];
+      change[i] = now[i] - before[i];
+    }
+    return loops.dot(step, change, floats);
+  }
+};
+
+MinimiseResult Face::minimise(Solve& solve, const MinimiseOptions& options, float* x) {
+  constexpr LineSearch single_precision{16, 1e-6, 0.2};
+  Space space{*this, solve, x};
+  return sim::minimise(space, options, single_precision);
+}
+
+MinimiseResult Face::iterate(Solve& solve, const MinimiseOptions& options, float* x) {
+  Workspace& w = solve.work;
+  Space space{*this, solve, x};
+  const auto& slots = model_->slots();
+  float *const direction = w.direction.data(), *const step_before = w.steps[0].data();
+  MinimiseResult result;
+  double value = space.evaluate();
+  for (int iteration = 0; iteration < options.iterations; ++iteration) {
+    result.residual = space.residual();
+    if (!std::isfinite(value) || !std::isfinite(result.residual)) return result;
+    space.start_direction();
+    space.precondition();
+    space.negate();
+    result.move = space.longest();
+    result.converged = result.move <= options.tolerance;
+    if (result.converged || !(space.slope() < 0.0)) return result;
+    model_->loops().take_steps({slots.size(), slots.data(), direction, step_before,
+                                iteration > 0 ? momentum(w) : 0.0F, last_direction_.data(),
+                                step_scale_.data(), x});
+    result.iterations = iteration + 1;
+    if (iteration + 1 == options.iterations) return result;
+    std::copy(direction, direction + space.floats, step_before);
+    space.keep_gradient();
+    value = space.evaluate();
+  }
+  return result;
+}
+
+}  // namespace fascia::sim::realtime

@@ -1,0 +1,34 @@
+#pragma once
+
+// What the files of realtime::Face share: its minimisation, and places in lists of floats.
+
+#include "sim/realtime/face.h"
+
+namespace fascia::sim::realtime {
+namespace solving {
+
+inline float f(double value) {
+  return static_cast<float>(value);
+}
+inline Vec3 place_at(const float* list, int32_t at) {
+  return {list[at], list[at + 1], list[at + 2]};
+}
+inline void add_at(float* list, int32_t at, const Vec3& value) {
+  for (int axis = 0; axis < 3; ++axis)
+    list[at + axis] += f(value[axis]);
+}
+
+}  // namespace solving
+
+/// One minimisation: what stands still while it runs.
+struct Face::Solve {
+  Workspace& work;
+  Boundary boundary;
+  Panels factor;
+  RigidTransform mandible;
+  std::span<const NodeForce> touches;
+  Unknowns unknowns{};
+  std::span<const Grip> grips;
+};
+
+}  // namespace fascia::sim::realtime
