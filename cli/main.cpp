@@ -8,13 +8,16 @@
 #include <new>
 
 #include "cli/common.h"
+#include "formats/partial.h"
 #include "geometry/error.h"
 
 namespace {
 
 constexpr int exit_input = 1, exit_usage = 2, exit_internal = 3, exit_interrupted = 130;
 
+/// Nothing half written stays.
 void on_interrupt(int) {
+  fascia::formats::remove_partial_files();
   _exit(exit_interrupted);
 }
 
@@ -30,6 +33,7 @@ int fail(const fascia::cli::Common& common, const std::string& message, int code
 
 int main(int argc, char** argv) {
   std::signal(SIGINT, on_interrupt);
+  std::signal(SIGTERM, on_interrupt);
   fascia::cli::Common common;
   CLI::App app{"Fascia: anatomical face rigs for any head, simulated in real time", "fascia"};
   app.set_version_flag("--version", "fascia " FASCIA_VERSION_TEXT);

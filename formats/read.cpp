@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "formats/detail.h"
+#include "formats/partial.h"
 #include "geometry/error.h"
 
 namespace fascia::formats {
@@ -89,12 +90,29 @@ Scene read(const std::filesystem::path& path, std::vector<uint8_t> bytes) {
   return scene;
 }
 
+namespace {
+
+/// A file known as partial while this lives.
+class Partial {
+ public:
+  explicit Partial(std::filesystem::path path) : path_(std::move(path)) { remember_partial(path_); }
+  ~Partial() { forget_partial(path_); }
+  Partial(const Partial&) = delete;
+  Partial& operator=(const Partial&) = delete;
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace
+
 void write_bytes(const std::filesystem::path& path, const void* bytes, size_t size) {
   const std::filesystem::path folder = path.parent_path();
   std::error_code status;
   if (!folder.empty()) std::filesystem::create_directories(folder, status);
   std::filesystem::path beside = path;
   beside += ".part";
+  const Partial partial(beside);
   {
     std::ofstream file(beside, std::ios::binary | std::ios::trunc);
     file.write(static_cast<const char*>(bytes), static_cast<std::streamsize>(size));
