@@ -99,6 +99,11 @@ std::vector<double> timecode_column(const Table& table, std::size_t column, doub
                   "\" is not hours:minutes:seconds:frame");
     codes.push_back(*code);
   }
+  for (std::size_t row = 0; given > 0.0 && row < codes.size(); ++row)
+    if (std::floor(codes[row].frame) >= std::round(given))
+      throw Error(where(table.lines[row], table.header[column]) + "frame " +
+                  std::to_string(static_cast<int>(codes[row].frame)) + " cannot be in a second of " +
+                  std::to_string(static_cast<int>(std::round(given))) + ": give another rate (--fps-in)");
   TimecodeTimes times = timecode_times(codes, given);
   char rate[32];
   std::snprintf(rate, sizeof rate, "%.6g", times.rate);
