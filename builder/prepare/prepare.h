@@ -41,8 +41,9 @@ struct PreparedMesh {
   std::string name;
   std::vector<Vec3> positions;  ///< metres, rig frame
   std::vector<Triangle> triangles;
-  std::vector<Part> parts;         ///< one a vertex
-  std::vector<int> skin_vertices;  ///< vertex of PreparedHead::skin, -1 for other parts
+  std::vector<Part> parts;  ///< one a vertex
+  std::vector<int>
+      skin_vertices;  ///< vertex of PreparedHead::skin, -1 for other parts and vertices of slivers alone
 };
 
 /// An eyeball found in the input.
@@ -55,7 +56,7 @@ struct Eyeball {
 
 struct PreparedHead {
   std::vector<PreparedMesh> meshes;              ///< one for each mesh of the scene, same order
-  TriangleMesh skin;                             ///< welded, metres, rig frame
+  TriangleMesh skin;                             ///< welded, without slivers, metres, rig frame
   std::optional<spatial::SurfaceQuery> surface;  ///< of `skin`; there once prepared, shared by its copies
   std::map<std::string, Vec3> landmarks;         ///< the given ones, on the skin, metres, rig frame
   std::optional<Eyeball> eye_left, eye_right;
