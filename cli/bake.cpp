@@ -48,14 +48,17 @@ void run(const Common& common, const Request& request) {
 std::vector<std::string> bake_file(const Common& common, const std::filesystem::path& rig,
                                    const std::string& shapes, const std::filesystem::path& output,
                                    const std::string& solver, const std::string& level) {
-  check_output(output);
+  check_output(output, {rig});
   if (output.extension() != ".glb")
     throw Error("'" + output.string() + "': baked shapes are written as .glb");
   Face face(rig, {FASCIA_SPACE_MESH, solver, level});
   const BakedShapes baked = bake_shapes(common, face, targets(face, shapes));
   const std::vector<uint8_t> bytes = formats::read_bytes(rig);
   GltfEdit edit(rig::original(rig::glb_source(bytes, rig.string())));
-  add_morph_targets(edit, baked.names, baked.shapes);
+  std::vector<std::string> warnings;
+  gltf::add_morph_targets(edit, baked.names, baked.shapes, {}, &warnings);
+  for (const std::string& warning : warnings)
+    common.warn(warning);
   const std::vector<uint8_t> out = edit.bytes();
   formats::write_bytes(output, out.data(), out.size());
   return baked.names;

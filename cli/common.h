@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 namespace CLI {
 class App;
@@ -42,7 +43,8 @@ void add_demo(CLI::App& app, Common& common);
 /// Commands that are yet to come: they say so and exit with 1.
 void add_to_come(CLI::App& app);
 
-/// Throws fascia::Error when the folder of `path` does not exist and cannot be made.
-void check_output(const std::filesystem::path& path);
+/// Throws fascia::Error when the folder of `path` is not there, or when `path` is one of `inputs`, which it
+/// would destroy.
+void check_output(const std::filesystem::path& path, const std::vector<std::filesystem::path>& inputs = {});
 
 }  // namespace fascia::cli

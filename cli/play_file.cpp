@@ -105,31 +105,6 @@ std::vector<PrimitiveMotion> scattered(const std::vector<float>& shape, const Fa
   return motions;
 }
 
-/// Weight channels for every mesh that moves: targets a mesh had before keep their weight of 0.
-void add_weight_channels(GltfEdit& edit, const Components& components, size_t time, size_t frames,
-                         const std::vector<std::vector<PrimitiveMotion>>& shapes, Json& animation) {
-  std::vector<uint32_t> meshes;
-  for (const auto& shape : shapes)
-    for (const PrimitiveMotion& motion : shape)
-      if (std::find(meshes.begin(), meshes.end(), motion.mesh) == meshes.end()) meshes.push_back(motion.mesh);
-  for (uint32_t mesh : meshes) {
-    const size_t targets = edit.json["meshes"][mesh]["weights"].size();
-    std::vector<float> values;
-    for (size_t f = 0; f < frames; ++f) {
-      values.insert(values.end(), targets - components.shapes.size(), 0.0F);
-      for (const auto& weights : components.weights)
-        values.push_back(weights[f]);
-    }
-    const size_t output = edit.add_floats(values, 1, false);
-    for (size_t n = 0; n < edit.json["nodes"].size(); ++n) {
-      if (edit.json["nodes"][n].value("mesh", -1) != static_cast<int>(mesh)) continue;
-      animation["samplers"].push_back({{"input", time}, {"output", output}, {"interpolation", "LINEAR"}});
-      animation["channels"].push_back(
-          {{"sampler", animation["samplers"].size() - 1}, {"target", {{"node", n}, {"path", "weights"}}}});
-    }
-  }
-}
-
 void add_pointer_channels(GltfEdit& edit, const Recording& recording, size_t time, Json& animation) {
   bool any = false;
   for (size_t c = 0; c < recording.values[0].size(); ++c) {
@@ -188,7 +163,7 @@ void Curves::apply(double seconds, const Face& face) const {
 }
 
 PlayFigures play_file(const Common& common, const PlayRequest& request) {
-  check_output(request.output);
+  check_output(request.output, {request.rig, request.curves});
   if (request.output.extension() != ".glb")
     throw Error("'" + request.output.string() + "': an animation is written as .glb");
   const Curves curves(request.curves);
@@ -236,11 +211,17 @@ PlayFigures play_file(const Common& common, const PlayRequest& request) {
     names.push_back("motion_" + std::to_string(k));
     shapes.push_back(scattered(components.shapes[k], face, parts));
   }
-  add_morph_targets(edit, names, shapes);
+  gltf::MorphOptions morphs;
+  morphs.is_linear = true;
+  std::vector<std::string> warnings;
+  const std::vector<gltf::MeshTargets> targets =
+      gltf::add_morph_targets(edit, names, shapes, morphs, &warnings);
+  for (const std::string& warning : warnings)
+    common.warn(warning);
   Json animation = {
       {"name", request.curves.stem().string()}, {"samplers", Json::array()}, {"channels", Json::array()}};
   const size_t time = edit.add_floats(recording.times, 1, true);
-  add_weight_channels(edit, components, time, recording.times.size(), shapes, animation);
+  gltf::add_weight_channels(edit, targets, components.weights, time, animation);
   add_pointer_channels(edit, recording, time, animation);
   if (!animation["channels"].empty()) edit.json["animations"].push_back(animation);
   const std::vector<uint8_t> out = edit.bytes();

@@ -14,7 +14,7 @@ esac
 
 packages=(
   g++ cmake ninja-build ccache pkg-config ca-certificates
-  libeigen3-dev libbullet-dev libglfw3-dev libtinygltf-dev libtinyobjloader-dev
+  libeigen3-dev libbullet-dev libglfw3-dev libtinygltf-dev libtinyobjloader-dev libdraco-dev
   libcli11-dev libspdlog-dev libfmt-dev nlohmann-json3-dev
   libembree-dev libtbb-dev libmeshoptimizer-dev libnanoflann-dev
   libepoxy-dev libegl-dev libgl-dev libegl1 libgl1-mesa-dri libimgui-dev libstb-dev

@@ -176,7 +176,7 @@ formats::LandmarkFile in_file_units(const formats::Scene& scene, const formats::
   for (double candidate : {1.0, 1e-3, 1e3, 1e-2, 1e2, 1e-1, 1e1}) {
     double sum = 0.0;
     for (const auto& [name, p] : given.points)
-      sum += surface.nearest_place(candidate * p).distance;
+      sum += surface.nearest_place(candidate * p - scene.offset).distance;
     if (sum < 0.5 * best) {
       best = sum;
       ratio = candidate;
@@ -184,7 +184,7 @@ formats::LandmarkFile in_file_units(const formats::Scene& scene, const formats::
   }
   formats::LandmarkFile file = given;
   for (auto& [name, p] : file.points)
-    p *= ratio;
+    p = ratio * p - scene.offset;
   return file;
 }
 

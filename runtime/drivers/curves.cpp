@@ -4,7 +4,7 @@
 #include <cctype>
 
 #include "geometry/error.h"
-#include "rig/read/container.h"
+#include "gltf/read/container.h"
 
 namespace fascia::runtime {
 namespace {
@@ -48,7 +48,7 @@ double Curves::duration() const {
 }
 
 Curves read_curves(std::span<const uint8_t> bytes) {
-  if (rig::is_glb(bytes)) return read_gltf_curves(bytes);
+  if (gltf::is_glb(bytes)) return read_gltf_curves(bytes);
   std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   if (text.substr(0, 3) == "\xEF\xBB\xBF") text.remove_prefix(3);
   std::size_t first = 0;

@@ -1,0 +1,54 @@
+#include "formats/partial.h"
+
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <cstring>
+#include <mutex>
+
+namespace fascia::formats {
+
+namespace {
+
+/// A place in a table that a signal handler may read at any moment: it is filled before it is marked used.
+struct Place {
+  std::array<char, 4096> path = {};
+  std::atomic<bool> is_used = false;
+};
+
+constinit std::array<Place, 64> table;
+
+std::mutex& writers() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+}  // namespace
+
+void remember_partial(const std::filesystem::path& path) {
+  std::error_code status;
+  const std::string whole = std::filesystem::absolute(path, status).string();
+  const std::lock_guard lock(writers());
+  for (Place& place : table) {
+    if (place.is_used || whole.size() >= place.path.size()) continue;
+    std::memcpy(place.path.data(), whole.c_str(), whole.size() + 1);
+    place.is_used = true;
+    return;
+  }
+}
+
+void forget_partial(const std::filesystem::path& path) {
+  std::error_code status;
+  const std::string whole = std::filesystem::absolute(path, status).string();
+  const std::lock_guard lock(writers());
+  for (Place& place : table)
+    if (place.is_used && whole == place.path.data()) place.is_used = false;
+}
+
+void remove_partial_files() {
+  for (Place& place : table)
+    if (place.is_used) unlink(place.path.data());
+}
+
+}  // namespace fascia::formats
