@@ -22,7 +22,7 @@ packages=(
 )
 [ "$tier" = demo ] || packages+=(libgtest-dev libgmock-dev libvalijson-dev librapidcheck-dev binutils valgrind xvfb xauth)
 [ "$tier" != full ] || packages+=(
-  clang clang-tidy clang-format libbenchmark-dev libvtk9-dev libcgal-dev python3-numpy python3-pil python3-scipy
+  clang clang-tidy clang-format libbenchmark-dev zlib1g-dev libvtk9-dev libcgal-dev python3-numpy python3-pil python3-scipy
   nodejs npm
 )
 

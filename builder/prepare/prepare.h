@@ -82,6 +82,12 @@ formats::LandmarkFile in_file_units(const formats::Scene& scene, const formats::
 /// not empty. Throws fascia::Error, naming the meshes there are, when `only` names none.
 TriangleMesh joined_meshes(const formats::Scene& scene, const std::string& only = "");
 
+/// Ways to look at `scene` for a head, likely ones first, in the file's axes and units: all of it without the
+/// meshes whose names say hair, clothes, glasses, lashes or brows; all of it; then its largest meshes one by
+/// one, for hair and hats that no name tells. The mesh named `only` alone when that is not empty. Throws as
+/// `joined_meshes` does.
+std::vector<TriangleMesh> search_surfaces(const formats::Scene& scene, const std::string& only = "");
+
 /// Finds units, axes and parts of `scene`, and welds its skin.
 ///
 /// `given` are the landmarks by hand, `reference` the generic head's skin landmarks by the same names
