@@ -39,6 +39,7 @@ void add_play(CLI::App& app, Common& common);
 void add_bake(CLI::App& app, Common& common);
 void add_render(CLI::App& app, Common& common);
 void add_demo(CLI::App& app, Common& common);
+void add_manual(CLI::App& app);
 
 /// Commands that are yet to come: they say so and exit with 1.
 void add_to_come(CLI::App& app);

@@ -63,6 +63,7 @@ int main(int argc, char** argv) {
   add_render(app, common);
   add_demo(app, common);
   add_to_come(app);
+  add_manual(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
