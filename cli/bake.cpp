@@ -58,6 +58,8 @@ void add_bake(CLI::App& app, Common& common) {
   command->add_flag(
       "--correctives", request->correctives,
       "Also what pairs of ARKit shapes lack together, as A_B, for a weight of A times B (default: no)");
+  command->add_flag("--replace", request->replaces,
+                    "A shape takes the place of a morph target of its name (default: it gets another name)");
   command->add_flag("--keep-rig", request->keeps_rig, "Keep the FASCIA extensions in the file (default: no)");
   command->add_option("--solver", request->solver, "Solver")
       ->check(CLI::IsMember({"own", "reference", "bullet"}))

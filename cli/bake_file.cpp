@@ -89,7 +89,12 @@ void write_glb(const Common& common, const BakeRequest& request, const Face& fac
   auto source = rig::glb_source(bytes, request.rig.string());
   GltfEdit edit(request.keeps_rig ? std::move(source) : rig::original(source));
   const size_t before = edit.bytes().size();
-  add_morph_targets(edit, baked.names, baked.shapes);
+  gltf::MorphOptions options;
+  if (request.replaces) options.existing = gltf::MorphOptions::Existing::replace;
+  std::vector<std::string> warnings;
+  gltf::add_morph_targets(edit, baked.names, baked.shapes, options, &warnings);
+  for (const std::string& warning : warnings)
+    common.warn(warning);
   const std::vector<uint8_t> out = edit.bytes();
   formats::write_bytes(request.output, out.data(), out.size());
   figures.files = {request.output};
@@ -143,7 +148,7 @@ void write_cache(const Common& common, const BakeRequest& request, Face& face,
 
 BakeFigures bake_file(const Common& common, const BakeRequest& request) {
   const std::string format = format_of(request);
-  check_output(request.output);
+  check_output(request.output, {request.rig});
   Face face(request.rig,
             {format == "glb" ? FASCIA_SPACE_MESH : FASCIA_SPACE_INPUT, request.solver, request.level});
   const std::vector<ShapeToBake> shapes = shapes_of(face, request);

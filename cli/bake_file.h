@@ -15,6 +15,7 @@ struct BakeRequest {
   std::vector<std::string> sets = {"arkit"};
   std::string format;        ///< glb, obj-sequence or pc2; empty: by the output's extension
   bool correctives = false;  ///< whether pairs of ARKit shapes get a target of what their sum lacks
+  bool replaces = false;     ///< whether a shape takes the place of a morph target of its name
   bool keeps_rig = false;    ///< whether the FASCIA extensions stay in the file
   std::string solver = "own", level;
 };

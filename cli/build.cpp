@@ -164,12 +164,11 @@ void add_anatomy_option(CLI::App& command, std::filesystem::path& directory) {
 }
 
 rigging::BuildReport build_file(const Common& common, const BuildRequest& request) {
-  check_output(request.output);
-  if (!request.report.empty()) check_output(request.report / report_name);
+  check_output(request.output, {request.head, request.landmarks, request.edits});
   if (request.output.extension() != ".glb")
     throw Error("'" + request.output.string() + "': a rig is a .glb file; give -o NAME.glb");
   const anatomy::GenericAnatomy anatomy = anatomy_for(request.anatomy);
-  const formats::Scene scene = formats::read(request.head);
+  const formats::Scene scene = formats::read(request.head, formats::ReadOptions{request.allow_outside});
   formats::LandmarkFile landmarks;
   if (!request.landmarks.empty()) landmarks = formats::read_landmarks(request.landmarks);
   rigging::BuildOptions options = request.options;
@@ -185,8 +184,13 @@ rigging::BuildReport build_file(const Common& common, const BuildRequest& reques
   const std::vector<uint8_t> bytes =
       rig::write(rigging::gltf_source(scene, result.report.input_to_metres), result.rig);
   formats::write_bytes(request.output, bytes.data(), bytes.size());
+  Mat4 to_origin = Mat4::Identity();
+  to_origin.topRightCorner<3, 1>() = -scene.offset;
+  result.report.input_to_metres = result.report.input_to_metres * to_origin;
+  result.report.warnings.insert(result.report.warnings.begin(), scene.warnings.begin(), scene.warnings.end());
   if (!request.report.empty()) {
     common.progress("report");
+    std::filesystem::create_directories(request.report);
     write_report(request.report, request.head, request.output, result.report);
   }
   return result.report;
@@ -232,6 +236,8 @@ void add_build(CLI::App& app, Common& common) {
       ->add_option("--least-prevalence", request->least_prevalence,
                    "Leave out muscles that fewer people have, 0..1")
       ->check(CLI::Range(0.0, 1.0));
+  command->add_flag("--allow-outside", request->allow_outside,
+                    "Open files that a glTF names outside its own folder (default: refused)");
   command->add_option("--report", request->report,
                       "Folder for report.html: one page with pictures of every stage and figures");
   command->callback([request, &common] {

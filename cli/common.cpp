@@ -25,16 +25,20 @@ void Common::warn(const std::string& line) const {
 }
 
 void Common::report(const nlohmann::ordered_json& object) const {
-  if (json) std::cout << object.dump(2) << std::endl;
+  if (!json) return;
+  // Names and paths need not be UTF-8; JSON has to be.
+  std::cout << object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << std::endl;
+  if (!std::cout) throw Error("standard output cannot be written: it is closed or its disk is full");
 }
 
-void check_output(const std::filesystem::path& path) {
-  const std::filesystem::path folder = path.parent_path();
-  if (folder.empty()) return;
+void check_output(const std::filesystem::path& path, const std::vector<std::filesystem::path>& inputs) {
   std::error_code status;
-  std::filesystem::create_directories(folder, status);
-  if (!std::filesystem::is_directory(folder))
-    throw Error("the folder '" + folder.string() + "' cannot be made");
+  const std::filesystem::path folder = path.parent_path();
+  if (!folder.empty() && !std::filesystem::is_directory(folder, status))
+    throw Error("the folder '" + folder.string() + "' is not there; make it, or write elsewhere");
+  for (const std::filesystem::path& input : inputs)
+    if (std::filesystem::is_regular_file(path, status) && std::filesystem::equivalent(path, input, status))
+      throw Error("'" + path.string() + "' is the input as well as the output: give another name with -o");
 }
 
 void add_to_come(CLI::App& app) {

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 namespace CLI {
 class App;
@@ -38,11 +39,13 @@ void add_play(CLI::App& app, Common& common);
 void add_bake(CLI::App& app, Common& common);
 void add_render(CLI::App& app, Common& common);
 void add_demo(CLI::App& app, Common& common);
+void add_manual(CLI::App& app);
 
 /// Commands that are yet to come: they say so and exit with 1.
 void add_to_come(CLI::App& app);
 
-/// Throws fascia::Error when the folder of `path` does not exist and cannot be made.
-void check_output(const std::filesystem::path& path);
+/// Throws fascia::Error when the folder of `path` is not there, or when `path` is one of `inputs`, which it
+/// would destroy.
+void check_output(const std::filesystem::path& path, const std::vector<std::filesystem::path>& inputs = {});
 
 }  // namespace fascia::cli

@@ -2,6 +2,7 @@
 #include <Eigen/LU>
 #include <memory>
 
+#include "builder/rigging/gltf_source.h"
 #include "cli/common.h"
 #include "cli/picture.h"
 #include "cli/posing.h"
@@ -24,12 +25,17 @@ struct Request {
 /// Brings the rig's metres back to the input's axes and units.
 class ToInput {
  public:
-  explicit ToInput(const rig::Rig& rig) : map_(rig.input_to_metres.cast<double>().inverse()) {}
+  explicit ToInput(const rig::RigFile& file)
+      : map_(file.rig.input_to_metres.cast<double>().inverse()), offset_(rigging::input_offset(file.source)) {
+    map_.topRightCorner<3, 1>() += offset_;
+  }
   Vec3 operator()(const rig::Vec3f& p) const { return transform_point(map_, p.cast<double>()); }
   double scale() const { return map_.topLeftCorner<3, 1>().norm(); }
+  const Vec3& offset() const { return offset_; }
 
  private:
   Mat4 map_;
+  Vec3 offset_;
 };
 
 formats::NamedSurface surface_of(const std::string& name, const rig::Surface& surface,
@@ -42,7 +48,7 @@ formats::NamedSurface surface_of(const std::string& name, const rig::Surface& su
   return out;
 }
 
-void add_face_parts(formats::Drawing& drawing, const Request& request,
+void add_face_parts(formats::Drawing& drawing, const Request& request, const Vec3& offset,
                     const std::function<bool(const std::string&)>& wanted) {
   const Face face(request.rig, {FASCIA_SPACE_INPUT, "own", ""});
   for (size_t m = 0; m < face.meshes().size(); ++m) {
@@ -51,7 +57,7 @@ void add_face_parts(formats::Drawing& drawing, const Request& request,
         face.meshes()[m].name, {{}, face.meshes()[m].triangles}, Vec3(0.86, 0.69, 0.59)};
     const auto flat = face.positions(m);
     for (size_t i = 0; i + 2 < flat.size(); i += 3)
-      surface.mesh.vertices.emplace_back(flat[i], flat[i + 1], flat[i + 2]);
+      surface.mesh.vertices.push_back(Vec3(flat[i], flat[i + 1], flat[i + 2]) + offset);
     drawing.surfaces.push_back(std::move(surface));
   }
 }
@@ -90,19 +96,21 @@ void write_landmarks(const std::filesystem::path& output, const rig::Rig& rig, c
 }
 
 void run(const Common& common, const Request& request) {
-  check_output(request.output);
+  check_output(request.output, {request.rig});
   const rig::RigFile file = rig::read(formats::read_bytes(request.rig), request.rig.string());
   const rig::Rig& rig = file.rig;
-  const ToInput to_input(rig);
+  const ToInput to_input(file);
   const bool all = request.part == "all";
   if (request.part == "landmarks") {
     write_landmarks(request.output, rig, to_input);
   } else {
     formats::Drawing drawing;
     const auto is = [&](const char* part) { return all || request.part == part; };
-    if (is("skin")) add_face_parts(drawing, request, [](const std::string& part) { return part == "skin"; });
+    if (is("skin"))
+      add_face_parts(drawing, request, to_input.offset(),
+                     [](const std::string& part) { return part == "skin"; });
     if (is("eyes"))
-      add_face_parts(drawing, request,
+      add_face_parts(drawing, request, to_input.offset(),
                      [](const std::string& part) { return part == "eye_left" || part == "eye_right"; });
     if (is("cranium")) drawing.surfaces.push_back(surface_of("cranium", rig.skull.cranium, to_input));
     if (is("mandible")) drawing.surfaces.push_back(surface_of("mandible", rig.skull.mandible, to_input));

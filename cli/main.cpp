@@ -15,7 +15,7 @@ namespace {
 
 constexpr int exit_input = 1, exit_usage = 2, exit_internal = 3, exit_interrupted = 130;
 
-/// Nothing half written stays.
+/// Leaves at once, and no half-written file behind.
 void on_interrupt(int) {
   fascia::formats::remove_partial_files();
   _exit(exit_interrupted);
@@ -24,7 +24,9 @@ void on_interrupt(int) {
 /// With --json the failure is the one object on stdout as well.
 int fail(const fascia::cli::Common& common, const std::string& message, int code) {
   if (common.json)
-    std::cout << nlohmann::ordered_json{{"error", message}, {"exit", code}}.dump(2) << std::endl;
+    std::cout << nlohmann::ordered_json{{"error", message}, {"exit", code}}.dump(
+                     2, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
+              << std::endl;
   std::fprintf(stderr, "fascia: %s\n", message.c_str());
   return code;
 }
@@ -32,8 +34,11 @@ int fail(const fascia::cli::Common& common, const std::string& message, int code
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::signal(SIGINT, on_interrupt);
-  std::signal(SIGTERM, on_interrupt);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+    std::signal(signal, on_interrupt);
+  // A file that grows too large or a reader that has gone is an error of writing, not an end without a word.
+  for (const int signal : {SIGXFSZ, SIGPIPE})
+    std::signal(signal, SIG_IGN);
   fascia::cli::Common common;
   CLI::App app{"Fascia: anatomical face rigs for any head, simulated in real time", "fascia"};
   app.set_version_flag("--version", "fascia " FASCIA_VERSION_TEXT);
@@ -58,6 +63,7 @@ int main(int argc, char** argv) {
   add_render(app, common);
   add_demo(app, common);
   add_to_come(app);
+  add_manual(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -100,9 +100,12 @@ void write_animation(const Common& common, const PlayRequest& request, const Tak
 
   const std::vector<uint8_t> bytes = formats::read_bytes(request.rig);
   GltfEdit edit(rig::glb_source(bytes, request.rig.string()));
+  std::vector<std::string> warnings;
   std::vector<NodeMotion> nodes;
   if (request.keeps_head) nodes = turned_nodes(request, take, face, edit);
-  add_take(edit, request.curves.stem().string(), take, face, recording, nodes);
+  add_take(edit, request.curves.stem().string(), take, face, recording, nodes, warnings);
+  for (const std::string& warning : warnings)
+    common.warn(warning);
   const std::vector<uint8_t> out = edit.bytes();
   formats::write_bytes(request.output, out.data(), out.size());
   figures.files = {request.output};
@@ -126,7 +129,7 @@ void say_how_far_off(const Common& common, const PlayRequest& request, const Pla
 }  // namespace
 
 PlayFigures play_file(const Common& common, const PlayRequest& request) {
-  check_output(request.output);
+  check_output(request.output, {request.rig, request.curves});
   CacheKind kind{};
   const bool wants_cache = is_cache(request.output, kind);
   if (!wants_cache && request.output.extension() != ".glb")

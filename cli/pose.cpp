@@ -2,7 +2,6 @@
 #include <memory>
 
 #include "cli/common.h"
-#include "cli/gltf_edit.h"
 #include "cli/posed_output.h"
 #include "cli/posing.h"
 #include "geometry/error.h"
@@ -18,7 +17,7 @@ struct Request {
 };
 
 void run(const Common& common, const Request& request) {
-  check_output(request.output);
+  check_output(request.output, {request.rig, request.file});
   const std::string extension = request.output.extension().string();
   if (extension != ".glb" && extension != ".obj" && extension != ".ply")
     throw Error("'" + request.output.string() + "': a pose is written as .glb, .obj or .ply");

@@ -1,8 +1,11 @@
 #include "cli/posed_output.h"
 
-#include <sstream>
+#include <algorithm>
+#include <cmath>
 
+#include "builder/rigging/gltf_source.h"
 #include "cli/gltf_edit.h"
+#include "formats/obj_lines.h"
 #include "formats/scene.h"
 #include "formats/write.h"
 #include "geometry/error.h"
@@ -13,41 +16,40 @@ namespace fascia::cli {
 
 namespace {
 
-std::vector<Vec3> points_of(std::span<const float> flat) {
+std::vector<Vec3> points_of(std::span<const float> flat, const Vec3& offset) {
   std::vector<Vec3> points;
   for (size_t i = 0; i + 2 < flat.size(); i += 3)
-    points.emplace_back(flat[i], flat[i + 1], flat[i + 2]);
+    points.push_back(Vec3(flat[i], flat[i + 1], flat[i + 2]) + offset);
   return points;
 }
 
-/// The OBJ text with the `v` lines in `moved` (by number, from 0) put in new places.
-std::string patched_obj(const std::vector<uint8_t>& bytes, const std::map<int, Vec3>& moved) {
-  std::istringstream lines(std::string(bytes.begin(), bytes.end()));
-  std::string text, line;
-  int vertex = 0;
-  while (std::getline(lines, line)) {
-    const size_t start = line.find_first_not_of(" \t");
-    const bool is_vertex = start != std::string::npos && line[start] == 'v' && start + 1 < line.size() &&
-                           (line[start + 1] == ' ' || line[start + 1] == '\t');
-    if (is_vertex) {
-      if (const auto at = moved.find(vertex); at != moved.end()) {
-        // Whatever follows the coordinates (weights, colours, a carriage return) stays.
-        size_t rest = start + 1;
-        for (int k = 0; k < 3; ++k) {
-          rest = line.find_first_not_of(" \t", rest);
-          rest = rest == std::string::npos ? line.size() : line.find_first_of(" \t\r", rest);
-          if (rest == std::string::npos) rest = line.size();
-        }
-        char place[96];
-        std::snprintf(place, sizeof place, "v %.7g %.7g %.7g", at->second[0], at->second[1], at->second[2]);
-        line = place + line.substr(rest);
-      }
-      ++vertex;
+/// Decimals that keep a ten-millionth of the size of what is written.
+int decimals_for(const formats::Scene& scene) {
+  Bounds box;
+  for (const formats::SceneMesh& mesh : scene.meshes)
+    for (const Vec3& p : mesh.positions) {
+      box.lower = box.lower.cwiseMin(p);
+      box.upper = box.upper.cwiseMax(p);
     }
-    text += line;
-    if (!lines.eof()) text += '\n';
-  }
-  return text;
+  return std::clamp(static_cast<int>(std::ceil(7.0 - std::log10(box.size().maxCoeff()))), 0, 15);
+}
+
+/// The OBJ text with the `v` lines in `moved` (by number, from 0) put in new places, and all else as it was.
+std::string patched_obj(const std::vector<uint8_t>& bytes, const std::map<int, Vec3>& moved, int decimals) {
+  const std::string_view before(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const std::vector<formats::ObjVertex> vertices = formats::obj_vertices(before);
+  std::string text;
+  size_t copied = 0;
+  for (const auto& [vertex, place] : moved)
+    for (int k = 0; k < 3; ++k) {
+      const auto [begin, end] = vertices.at(static_cast<size_t>(vertex)).coordinates[static_cast<size_t>(k)];
+      char digits[64];
+      std::snprintf(digits, sizeof digits, "%.*f", decimals, place[k]);
+      text += before.substr(copied, begin - copied);
+      text += digits;
+      copied = end;
+    }
+  return text.append(before.substr(copied));
 }
 
 std::string obj_like_source(const rig::SourceRecord& source, const Face& face) {
@@ -58,15 +60,13 @@ std::string obj_like_source(const rig::SourceRecord& source, const Face& face) {
     if (mesh.mesh >= scene.meshes.size())
       throw Error("the rig's record of its OBJ does not fit its meshes: build it again");
     const formats::SceneMesh& original = scene.meshes[mesh.mesh];
-    const std::vector<Vec3> posed = points_of(face.positions(m));
-    for (size_t v = 0; v < posed.size() && v < original.positions.size(); ++v) {
-      const bool stays =
-          posed[v] == original.positions[v].cast<float>().cast<double>() ||
-          (posed[v] - original.positions[v]).norm() < 1e-6 * (1.0 + original.positions[v].norm());
-      if (!stays) moved[original.source_vertices[v]] = posed[v];
-    }
+    const std::vector<Vec3> posed = points_of(face.positions(m), Vec3::Zero()),
+                            rest = points_of(face.rest(m), Vec3::Zero());
+    for (size_t v = 0; v < std::min(posed.size(), original.positions.size()); ++v)
+      if (posed[v] != rest[v])
+        moved[original.source_vertices[v]] = original.positions[v] + scene.offset + posed[v] - rest[v];
   }
-  return patched_obj(source.bytes, moved);
+  return patched_obj(source.bytes, moved, decimals_for(scene));
 }
 
 }  // namespace
@@ -75,8 +75,10 @@ void write_posed_glb(const std::filesystem::path& rig, const Face& face,
                      const std::filesystem::path& output) {
   const std::vector<uint8_t> bytes = formats::read_bytes(rig);
   GltfEdit edit(rig::original(rig::glb_source(bytes, rig.string())));
+  std::vector<gltf::PosedPrimitive> meshes;
   for (size_t m = 0; m < face.meshes().size(); ++m)
-    set_pose(edit, {face.meshes()[m].mesh, face.meshes()[m].primitive, face.positions(m), face.normals(m)});
+    meshes.push_back({face.meshes()[m].mesh, face.meshes()[m].primitive, face.positions(m)});
+  gltf::set_pose(edit, meshes);
   const std::vector<uint8_t> posed = edit.bytes();
   formats::write_bytes(output, posed.data(), posed.size());
 }
@@ -88,10 +90,11 @@ void write_posed_mesh(const std::filesystem::path& rig, const Face& face,
     formats::write_text(output, obj_like_source(file.source, face));
     return;
   }
+  const Vec3 offset = rigging::input_offset(file.source);
   formats::Drawing drawing;
   for (size_t m = 0; m < face.meshes().size(); ++m)
     drawing.surfaces.push_back(
-        {face.meshes()[m].name, {points_of(face.positions(m)), face.meshes()[m].triangles}});
+        {face.meshes()[m].name, {points_of(face.positions(m), offset), face.meshes()[m].triangles}});
   formats::write(output, drawing);
 }
 

@@ -19,6 +19,7 @@ struct BuildRequest {
   double least_prevalence = -1.0;              ///< below 0: as the edits say
   std::filesystem::path anatomy;               ///< folder of corrected anatomy data; empty: all as built in
   std::filesystem::path report;                ///< folder of the page that shows the build; empty: none
+  bool allow_outside = false;                  ///< files a glTF names may lie outside its folder
   rigging::BuildOptions options;
 };
 

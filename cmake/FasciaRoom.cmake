@@ -16,15 +16,18 @@ find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(nlohmann_json 3.11 REQUIRED)
 
 add_library(fascia_options INTERFACE)
-target_include_directories(fascia_options INTERFACE ${PROJECT_SOURCE_DIR})
+target_include_directories(fascia_options INTERFACE
+  $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:include/fascia-builder>)
 # Contraction into fused multiply-add changes values between machines; snapshots would differ.
-target_compile_options(fascia_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -ffp-contract=off)
+target_compile_options(fascia_options INTERFACE
+  $<BUILD_INTERFACE:-Wall;-Wextra;-Wpedantic;-Wshadow;-ffp-contract=off>)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # False alarms of g++ 12 in std::string's operator+.
-  target_compile_options(fascia_options INTERFACE -Wno-restrict -Wno-stringop-overflow -Wno-array-bounds)
+  target_compile_options(fascia_options INTERFACE
+    $<BUILD_INTERFACE:-Wno-restrict;-Wno-stringop-overflow;-Wno-array-bounds>)
 endif()
 if(FASCIA_WARNINGS_AS_ERRORS)
-  target_compile_options(fascia_options INTERFACE -Werror)
+  target_compile_options(fascia_options INTERFACE $<BUILD_INTERFACE:-Werror>)
 endif()
 if(FASCIA_SANITIZE)
   target_compile_options(fascia_options INTERFACE -fsanitize=${FASCIA_SANITIZE} -fno-omit-frame-pointer)

@@ -8,12 +8,12 @@
 /// One reader a format; `formats::read` chooses among them.
 namespace fascia::formats::detail {
 
-void read_gltf(Scene& scene, const std::vector<uint8_t>& bytes);
+void read_gltf(Scene& scene, const std::vector<uint8_t>& bytes, const ReadOptions& options);
 void read_obj(Scene& scene);
 void read_ply(Scene& scene);
 void read_stl(Scene& scene);
 
-/// Fan triangulation of a polygon, quads along their shorter diagonal.
+/// Triangles of a polygon, convex or not: quads along their shorter diagonal, others by their ears.
 void triangulate(const std::vector<Vec3>& positions, const std::vector<int>& polygon,
                  std::vector<Triangle>& triangles);
 

@@ -25,7 +25,7 @@ FileKind kind_of(const std::filesystem::path& path, const std::vector<uint8_t>& 
     return bytes.size() >= length && std::memcmp(bytes.data(), text, length) == 0;
   };
   if (starts_with("glTF")) return FileKind::glb;
-  if (starts_with("ply\n") || starts_with("ply\r")) return FileKind::ply;
+  if (starts_with("ply\n") || starts_with("ply\r") || starts_with("ply ")) return FileKind::ply;
   const std::string extension = lower_extension(path);
   if (extension == ".glb") return FileKind::glb;
   if (extension == ".gltf" || extension == ".vrm") return FileKind::gltf;
@@ -53,33 +53,52 @@ void check(const Scene& scene) {
   if (triangles == 0) detail::fail(scene, "it holds no triangles; a head must be a surface mesh");
 }
 
+/// Sizes beyond which single precision, or the square of a length in it, no longer holds.
+void check_size(const Scene& scene, const Bounds& box) {
+  const double size = box.size().maxCoeff(),
+               far = box.lower.cwiseAbs().cwiseMax(box.upper.cwiseAbs()).maxCoeff();
+  if (!(size > 1e-9) || !(far < 1e12)) {
+    char text[96];
+    std::snprintf(text, sizeof text, "it is %.3g units large, as far as %.3g from the origin", size, far);
+    detail::fail(scene, std::string(text) +
+                            "; scale it so that a head is between a millionth and a million units large");
+  }
+}
+
+/// Brings what lies far from the origin there: single precision, which rigs have, would lose its shape.
+void take_offset_out(Scene& scene) {
+  Bounds box;
+  for (const SceneMesh& mesh : scene.meshes)
+    for (const Vec3& p : mesh.positions) {
+      box.lower = box.lower.cwiseMin(p);
+      box.upper = box.upper.cwiseMax(p);
+    }
+  check_size(scene, box);
+  const double size = box.size().norm();
+  if (box.centre().norm() < 16.0 * size) return;
+  // Whole powers of two are taken off: what is left keeps its digits.
+  const double step = std::exp2(std::ceil(std::log2(size)));
+  scene.offset = step * (box.centre() / step).array().round().matrix();
+  for (SceneMesh& mesh : scene.meshes) {
+    for (Vec3& p : mesh.positions)
+      p -= scene.offset;
+    mesh.to_file.topRightCorner<3, 1>() -= scene.offset;
+  }
+}
+
 }  // namespace
 
-std::vector<uint8_t> read_bytes(const std::filesystem::path& path) {
-  std::error_code status;
-  if (!std::filesystem::exists(path, status)) throw Error("'" + path.string() + "' does not exist");
-  if (std::filesystem::is_directory(path, status))
-    throw Error("'" + path.string() + "' is a folder, not a file");
-  std::ifstream file(path, std::ios::binary | std::ios::ate);
-  if (!file) throw Error("'" + path.string() + "' cannot be opened: check its permissions");
-  std::vector<uint8_t> bytes(static_cast<size_t>(std::max<std::streamoff>(0, file.tellg())));
-  file.seekg(0);
-  file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  if (!file && !bytes.empty()) throw Error("'" + path.string() + "' cannot be read to its end");
-  return bytes;
+Scene read(const std::filesystem::path& path, const ReadOptions& options) {
+  return read(path, read_bytes(path), options);
 }
 
-Scene read(const std::filesystem::path& path) {
-  return read(path, read_bytes(path));
-}
-
-Scene read(const std::filesystem::path& path, std::vector<uint8_t> bytes) {
+Scene read(const std::filesystem::path& path, std::vector<uint8_t> bytes, const ReadOptions& options) {
   if (bytes.empty()) throw Error("'" + path.string() + "' is empty");
   Scene scene;
   scene.path = path;
   scene.kind = kind_of(path, bytes);
   if (scene.kind == FileKind::glb || scene.kind == FileKind::gltf) {
-    detail::read_gltf(scene, bytes);
+    detail::read_gltf(scene, bytes, options);
   } else {
     scene.bytes = std::move(bytes);
     if (scene.kind == FileKind::obj) detail::read_obj(scene);
@@ -87,76 +106,17 @@ Scene read(const std::filesystem::path& path, std::vector<uint8_t> bytes) {
     if (scene.kind == FileKind::stl) detail::read_stl(scene);
   }
   check(scene);
+  // In formats without nodes nothing counts the meshes but their order here.
+  if (!scene.bytes.empty())
+    std::erase_if(scene.meshes, [](const SceneMesh& mesh) { return mesh.triangles.empty(); });
+  take_offset_out(scene);
   return scene;
-}
-
-namespace {
-
-/// A file known as partial while this lives.
-class Partial {
- public:
-  explicit Partial(std::filesystem::path path) : path_(std::move(path)) { remember_partial(path_); }
-  ~Partial() { forget_partial(path_); }
-  Partial(const Partial&) = delete;
-  Partial& operator=(const Partial&) = delete;
-
- private:
-  std::filesystem::path path_;
-};
-
-}  // namespace
-
-void write_bytes(const std::filesystem::path& path, const void* bytes, size_t size) {
-  const std::filesystem::path folder = path.parent_path();
-  std::error_code status;
-  if (!folder.empty()) std::filesystem::create_directories(folder, status);
-  std::filesystem::path beside = path;
-  beside += ".part";
-  const Partial partial(beside);
-  {
-    std::ofstream file(beside, std::ios::binary | std::ios::trunc);
-    file.write(static_cast<const char*>(bytes), static_cast<std::streamsize>(size));
-    file.flush();
-    if (!file) {
-      file.close();
-      std::filesystem::remove(beside, status);
-      throw Error("'" + path.string() +
-                  "' cannot be written: check the folder, its permissions and free space");
-    }
-  }
-  std::filesystem::rename(beside, path, status);
-  if (status) {
-    const std::string why = status.message();
-    std::filesystem::remove(beside, status);
-    throw Error("'" + path.string() + "' cannot be written: " + why);
-  }
-}
-
-void write_text(const std::filesystem::path& path, const std::string& text) {
-  write_bytes(path, text.data(), text.size());
 }
 
 namespace detail {
 
 void fail(const Scene& scene, const std::string& what) {
   throw Error("'" + scene.path.string() + "': " + what);
-}
-
-void triangulate(const std::vector<Vec3>& positions, const std::vector<int>& polygon,
-                 std::vector<Triangle>& triangles) {
-  if (polygon.size() == 4) {
-    const auto gap = [&](int a, int b) {
-      const auto inside = [&](int i) { return i >= 0 && i < static_cast<int>(positions.size()); };
-      return inside(a) && inside(b) ? (positions[a] - positions[b]).squaredNorm() : 0.0;
-    };
-    if (gap(polygon[1], polygon[3]) < gap(polygon[0], polygon[2])) {
-      triangles.push_back({polygon[0], polygon[1], polygon[3]});
-      triangles.push_back({polygon[1], polygon[2], polygon[3]});
-      return;
-    }
-  }
-  for (size_t i = 2; i < polygon.size(); ++i)
-    triangles.push_back({polygon[0], polygon[i - 1], polygon[i]});
 }
 
 }  // namespace detail

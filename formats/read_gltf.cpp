@@ -1,109 +1,18 @@
 #include <Eigen/Geometry>
-#include <functional>
+#include <algorithm>
+#include <array>
 
-#include "cmake/tinygltf/tinygltf.h"
 #include "formats/detail.h"
-#include "formats/gltf_document.h"
 #include "geometry/error.h"
+#include "gltf/edit/document.h"
+#include "gltf/edit/instances.h"
+#include "gltf/read/accessors.h"
+#include "gltf/read/container.h"
+#include "gltf/read/model.h"
 
 namespace fascia::formats::detail {
 
 namespace {
-
-/// Reads element `i` of accessors as doubles, with every bound checked.
-class AccessorReader {
- public:
-  AccessorReader(const Scene& scene, const tinygltf::Model& model) : scene_(scene), model_(model) {}
-
-  /// All elements of accessor `index`, `width` numbers each.
-  std::vector<double> read(int index, int width) const {
-    if (index < 0 || index >= static_cast<int>(model_.accessors.size()))
-      fail(scene_, "it names accessor " + std::to_string(index) + ", which is not there");
-    const tinygltf::Accessor& accessor = model_.accessors[static_cast<size_t>(index)];
-    if (tinygltf::GetNumComponentsInType(static_cast<uint32_t>(accessor.type)) != width)
-      fail(scene_, "accessor " + std::to_string(index) + " has the wrong type");
-    const size_t limit = 1U << 28;
-    if (accessor.count > limit) fail(scene_, "accessor " + std::to_string(index) + " is impossibly large");
-    std::vector<double> values(accessor.count * static_cast<size_t>(width), 0.0);
-    if (accessor.bufferView >= 0)
-      read_view(accessor.bufferView, accessor.byteOffset, accessor.componentType, accessor.normalized,
-                accessor.count, width, values);
-    if (accessor.sparse.isSparse) apply_sparse(accessor, width, values);
-    return values;
-  }
-
- private:
-  void read_view(int view_index, size_t offset, int type, bool normalized, size_t count, int width,
-                 std::vector<double>& values) const {
-    if (view_index < 0 || view_index >= static_cast<int>(model_.bufferViews.size()))
-      fail(scene_, "it names bufferView " + std::to_string(view_index) + ", which is not there");
-    const tinygltf::BufferView& view = model_.bufferViews[static_cast<size_t>(view_index)];
-    if (view.buffer < 0 || view.buffer >= static_cast<int>(model_.buffers.size()))
-      fail(scene_, "bufferView " + std::to_string(view_index) + " names a buffer that is not there");
-    const std::vector<unsigned char>& data = model_.buffers[static_cast<size_t>(view.buffer)].data;
-    const int component = tinygltf::GetComponentSizeInBytes(static_cast<uint32_t>(type));
-    if (component <= 0) fail(scene_, "an accessor has the unknown component type " + std::to_string(type));
-    const size_t element = static_cast<size_t>(component) * static_cast<size_t>(width);
-    const size_t stride = view.byteStride ? view.byteStride : element;
-    if (count > 0) {
-      const size_t last = offset + stride * (count - 1) + element;
-      if (last > view.byteLength || view.byteOffset + last > data.size() || stride > 65536)
-        fail(scene_, "an accessor reaches past the end of bufferView " + std::to_string(view_index) +
-                         ": the file is damaged or truncated");
-    }
-    for (size_t i = 0; i < count; ++i)
-      for (int k = 0; k < width; ++k)
-        values[i * static_cast<size_t>(width) + static_cast<size_t>(k)] =
-            component_at(&data[view.byteOffset + offset + stride * i + static_cast<size_t>(component * k)],
-                         type, normalized);
-  }
-
-  void apply_sparse(const tinygltf::Accessor& accessor, int width, std::vector<double>& values) const {
-    const size_t count = static_cast<size_t>(std::max(0, accessor.sparse.count));
-    std::vector<double> indices(count), replaced(count * static_cast<size_t>(width));
-    read_view(accessor.sparse.indices.bufferView, static_cast<size_t>(accessor.sparse.indices.byteOffset),
-              accessor.sparse.indices.componentType, false, count, 1, indices);
-    read_view(accessor.sparse.values.bufferView, static_cast<size_t>(accessor.sparse.values.byteOffset),
-              accessor.componentType, accessor.normalized, count, width, replaced);
-    for (size_t i = 0; i < count; ++i) {
-      const size_t at = static_cast<size_t>(indices[i]);
-      if (at >= accessor.count) fail(scene_, "a sparse accessor names an element that is not there");
-      for (int k = 0; k < width; ++k)
-        values[at * static_cast<size_t>(width) + static_cast<size_t>(k)] =
-            replaced[i * static_cast<size_t>(width) + static_cast<size_t>(k)];
-    }
-  }
-
-  template <class T>
-  static double as(const unsigned char* raw, double scale) {
-    T value;
-    std::memcpy(&value, raw, sizeof value);
-    const double scaled = static_cast<double>(value) * scale;
-    return scale == 1.0 ? scaled : std::max(scaled, -1.0);
-  }
-
-  double component_at(const unsigned char* raw, int type, bool normalized) const {
-    switch (type) {
-      case TINYGLTF_COMPONENT_TYPE_BYTE:
-        return as<int8_t>(raw, normalized ? 1.0 / 127 : 1.0);
-      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-        return as<uint8_t>(raw, normalized ? 1.0 / 255 : 1.0);
-      case TINYGLTF_COMPONENT_TYPE_SHORT:
-        return as<int16_t>(raw, normalized ? 1.0 / 32767 : 1.0);
-      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-        return as<uint16_t>(raw, normalized ? 1.0 / 65535 : 1.0);
-      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-        return as<uint32_t>(raw, 1.0);
-      case TINYGLTF_COMPONENT_TYPE_FLOAT:
-        return as<float>(raw, 1.0);
-      default:
-        fail(scene_, "an accessor has the unknown component type " + std::to_string(type));
-    }
-  }
-
-  const Scene& scene_;
-  const tinygltf::Model& model_;
-};
 
 Mat4 local_matrix(const tinygltf::Node& node) {
   Mat4 matrix = Mat4::Identity();
@@ -123,40 +32,49 @@ Mat4 local_matrix(const tinygltf::Node& node) {
   return affine.matrix();
 }
 
-/// World matrix of every node.
-std::vector<Mat4> world_matrices(const Scene& scene, const tinygltf::Model& model) {
-  std::vector<Mat4> world(model.nodes.size(), Mat4::Identity());
-  std::vector<int> parent(model.nodes.size(), -1);
+/// The nodes, each behind its parent. Fails when they form a cycle.
+std::vector<size_t> parents_first(const Scene& scene, const tinygltf::Model& model,
+                                  std::vector<int>& parent) {
+  parent.assign(model.nodes.size(), -1);
   for (size_t n = 0; n < model.nodes.size(); ++n)
     for (int child : model.nodes[n].children) {
       if (child < 0 || child >= static_cast<int>(model.nodes.size()))
         fail(scene, "a node names a child that is not there");
       parent[static_cast<size_t>(child)] = static_cast<int>(n);
     }
-  for (size_t n = 0; n < model.nodes.size(); ++n) {
-    Mat4 matrix = local_matrix(model.nodes[n]);
-    size_t steps = 0;
-    for (int up = parent[n]; up >= 0; up = parent[static_cast<size_t>(up)]) {
-      matrix = local_matrix(model.nodes[static_cast<size_t>(up)]) * matrix;
-      if (++steps > model.nodes.size()) fail(scene, "its nodes form a cycle");
-    }
-    world[n] = matrix;
+  std::vector<size_t> order;
+  for (size_t n = 0; n < model.nodes.size(); ++n)
+    if (parent[n] < 0) order.push_back(n);
+  for (size_t i = 0; i < order.size(); ++i)
+    for (int child : model.nodes[order[i]].children)
+      if (parent[static_cast<size_t>(child)] == static_cast<int>(order[i]))
+        order.push_back(static_cast<size_t>(child));
+  if (order.size() != model.nodes.size()) fail(scene, "its nodes form a cycle, or one is a child twice");
+  return order;
+}
+
+/// World matrix of every node.
+std::vector<Mat4> world_matrices(const Scene& scene, const tinygltf::Model& model) {
+  std::vector<int> parent;
+  std::vector<Mat4> world(model.nodes.size(), Mat4::Identity());
+  for (size_t n : parents_first(scene, model, parent)) {
+    world[n] = local_matrix(model.nodes[n]);
+    if (parent[n] >= 0) world[n] = world[static_cast<size_t>(parent[n])] * world[n];
   }
   return world;
 }
 
 /// A skinned mesh ignores its node: in the bind pose every joint carries it alike, so the first one tells.
-Mat4 skin_matrix(const AccessorReader& accessors, const tinygltf::Model& model, int skin,
-                 const std::vector<Mat4>& world) {
+Mat4 skin_matrix(const tinygltf::Model& model, int skin, const std::vector<Mat4>& world,
+                 const std::string& path) {
   if (skin >= static_cast<int>(model.skins.size()) || model.skins[static_cast<size_t>(skin)].joints.empty())
     return Mat4::Identity();
   const tinygltf::Skin& bones = model.skins[static_cast<size_t>(skin)];
   Mat4 inverse_bind = Mat4::Identity();
   if (bones.inverseBindMatrices >= 0) {
-    const std::vector<double> values = accessors.read(bones.inverseBindMatrices, 16);
-    if (values.size() >= 16)
-      for (int i = 0; i < 16; ++i)
-        inverse_bind(i % 4, i / 4) = values[static_cast<size_t>(i)];
+    const std::vector<float> values = gltf::decode_floats(model, bones.inverseBindMatrices, path + ": skin");
+    for (size_t i = 0; i < 16 && values.size() >= 16; ++i)
+      inverse_bind(static_cast<int>(i % 4), static_cast<int>(i / 4)) = static_cast<double>(values[i]);
   }
   const int joint = bones.joints[0];
   return joint >= 0 && joint < static_cast<int>(world.size())
@@ -164,99 +82,133 @@ Mat4 skin_matrix(const AccessorReader& accessors, const tinygltf::Model& model, 
              : Mat4(Mat4::Identity());
 }
 
-void triangles_of(const AccessorReader& accessors, const tinygltf::Primitive& primitive, SceneMesh& mesh) {
-  std::vector<int> order;
-  if (primitive.indices >= 0) {
-    for (double index : accessors.read(primitive.indices, 1))
-      order.push_back(static_cast<int>(index));
-  } else {
-    for (size_t i = 0; i < mesh.positions.size(); ++i)
-      order.push_back(static_cast<int>(i));
-  }
-  const int mode = primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
-  if (mode == TINYGLTF_MODE_TRIANGLES) {
-    for (size_t i = 0; i + 2 < order.size(); i += 3)
-      mesh.triangles.push_back({order[i], order[i + 1], order[i + 2]});
-  } else if (mode == TINYGLTF_MODE_TRIANGLE_STRIP) {
-    for (size_t i = 0; i + 2 < order.size(); ++i)
-      mesh.triangles.push_back(i % 2 ? Triangle{order[i + 1], order[i], order[i + 2]}
-                                     : Triangle{order[i], order[i + 1], order[i + 2]});
-  } else if (mode == TINYGLTF_MODE_TRIANGLE_FAN) {
-    for (size_t i = 1; i + 1 < order.size(); ++i)
-      mesh.triangles.push_back({order[0], order[i], order[i + 1]});
-  }
-  // Degenerate triangles of strips are stitching, not surface.
-  std::erase_if(mesh.triangles,
-                [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
+/// Numbers of a vertex attribute, as many as `width` an element.
+std::vector<float> attribute(const tinygltf::Model& model, int accessor, size_t width,
+                             const std::string& path) {
+  const size_t has = gltf::accessor_view(model, accessor, path).components;
+  if (has != width)
+    throw Error(path + ": it has " + std::to_string(has) + " numbers an element where " +
+                std::to_string(width) + " are due");
+  return gltf::decode_floats(model, accessor, path);
 }
 
-void read_primitive(const Scene& scene, const AccessorReader& accessors, const tinygltf::Model& model,
-                    const tinygltf::Primitive& primitive, SceneMesh& mesh) {
-  for (const char* packed : {"KHR_draco_mesh_compression", "EXT_meshopt_compression"})
-    if (primitive.extensions.count(packed))
-      fail(scene, "mesh '" + mesh.name + "' is compressed with " + packed +
-                      "; save it without compression (for instance gltf-transform copy) and try again");
+/// Adds what the default weights of morph targets say: the shape that every viewer shows.
+void apply_default_morphs(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
+                          const std::vector<double>& weights, std::vector<float>& positions,
+                          const std::string& path) {
+  for (size_t t = 0; t < std::min(weights.size(), primitive.targets.size()); ++t) {
+    const auto delta = primitive.targets[t].find("POSITION");
+    if (weights[t] == 0.0 || delta == primitive.targets[t].end()) continue;
+    const std::vector<float> values =
+        attribute(model, delta->second, 3, path + " target " + std::to_string(t));
+    if (values.size() != positions.size())
+      throw Error(path + " target " + std::to_string(t) +
+                  ": it has another number of vertices than the mesh");
+    for (size_t i = 0; i < positions.size(); ++i)
+      positions[i] += static_cast<float>(weights[t]) * values[i];
+  }
+}
+
+void read_primitive(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
+                    const std::vector<double>& weights, SceneMesh& mesh, const std::string& path) {
   const auto at = primitive.attributes.find("POSITION");
-  if (at == primitive.attributes.end()) fail(scene, "mesh '" + mesh.name + "' has no POSITION");
-  const std::vector<double> raw = accessors.read(at->second, 3);
+  if (at == primitive.attributes.end()) throw Error(path + ": it has no POSITION");
+  std::vector<float> raw = attribute(model, at->second, 3, path + "/POSITION");
+  apply_default_morphs(model, primitive, weights, raw, path);
   for (size_t i = 0; i + 2 < raw.size(); i += 3) {
     const Eigen::Vector4d p = mesh.to_file * Eigen::Vector4d(raw[i], raw[i + 1], raw[i + 2], 1.0);
     mesh.positions.push_back(p.head<3>());
   }
   if (const auto uv = primitive.attributes.find("TEXCOORD_0"); uv != primitive.attributes.end()) {
-    const std::vector<double> values = accessors.read(uv->second, 2);
+    const std::vector<float> values = attribute(model, uv->second, 2, path + "/TEXCOORD_0");
     for (size_t i = 0; i + 1 < values.size(); i += 2)
       mesh.uvs.emplace_back(values[i], values[i + 1]);
     if (mesh.uvs.size() != mesh.positions.size()) mesh.uvs.clear();
   }
   if (primitive.material >= 0 && primitive.material < static_cast<int>(model.materials.size()))
     mesh.material = model.materials[static_cast<size_t>(primitive.material)].name;
-  triangles_of(accessors, primitive, mesh);
+  for (const gltf::Triangle& t : gltf::decode_triangles(model, primitive, mesh.positions.size(), path)) {
+    // Degenerate triangles of strips are stitching, not surface.
+    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
+    mesh.triangles.push_back({static_cast<int>(t[0]), static_cast<int>(t[1]), static_cast<int>(t[2])});
+  }
 }
 
-bool ignore_image(tinygltf::Image*, int, std::string*, std::string*, int, int, const unsigned char*, int,
-                  void*) {
-  return true;
+/// Extensions that change no geometry this reader takes, or that it has undone.
+bool is_harmless(const std::string& extension) {
+  static const std::array<std::string, 6> known = {"KHR_mesh_quantization", "KHR_texture_basisu",
+                                                   "KHR_texture_transform", "KHR_lights_punctual",
+                                                   "KHR_animation_pointer", "KHR_xmp_json_ld"};
+  for (const char* family :
+       {"KHR_materials_", "EXT_texture_", "MSFT_texture_", "VRM", "FASCIA_", "ADOBE_materials_"})
+    if (extension.rfind(family, 0) == 0) return true;
+  return std::find(known.begin(), known.end(), extension) != known.end();
 }
 
-tinygltf::Model load_model(const Scene& scene) {
-  const std::vector<uint8_t> glb = glb_bytes(scene.document);
-  tinygltf::TinyGLTF loader;
-  loader.SetImageLoader(&ignore_image, nullptr);
-  tinygltf::Model model;
-  std::string error, warning;
-  if (!loader.LoadBinaryFromMemory(&model, &error, &warning, glb.data(), static_cast<unsigned>(glb.size())) &&
-      model.meshes.empty())
-    fail(scene, "it is not readable glTF: " + error);
-  return model;
+void warn_of_extensions(Scene& scene, const gltf::Json& root) {
+  for (const gltf::Json& extension : root.value("extensionsRequired", gltf::Json::array()))
+    if (extension.is_string() && !is_harmless(extension.get<std::string>()))
+      scene.warnings.push_back("the file requires the extension " + extension.get<std::string>() +
+                               ", which is not known here: the head may look other than it is read");
+}
+
+void read_document(Scene& scene, const std::vector<uint8_t>& bytes, const ReadOptions& options) {
+  const std::string name = "'" + scene.path.string() + "'";
+  gltf::Document document = gltf::is_glb(bytes) ? gltf::glb_document(bytes, name)
+                                                : gltf::Document{{bytes.begin(), bytes.end()}, {}};
+  const auto resolve = [&](const std::string& relative) -> gltf::OutsideFile {
+    FileBeside file = read_beside(scene.path, relative, options.allow_outside);
+    return {std::move(file.bytes), std::move(file.why)};
+  };
+  scene.document = gltf::self_contained(std::move(document), resolve, name, &scene.warnings);
+  gltf::Json root = gltf::parsed(scene.document.json, name);
+  if (!root.contains("asset")) fail(scene, "it is JSON, but not glTF: 'asset' is missing");
+  warn_of_extensions(scene, root);
+  if (const size_t added = gltf::separate_instances(root)) {
+    scene.document.json = gltf::text_of(root);
+    scene.warnings.push_back(
+        std::to_string(added) +
+        " nodes share a mesh with another node; each was given a copy of its own to move");
+  }
+}
+
+SceneMesh mesh_of(const tinygltf::Model& model, size_t n, size_t p, const std::vector<Mat4>& world,
+                  const std::string& file) {
+  const tinygltf::Node& node = model.nodes[n];
+  const tinygltf::Mesh& source = model.meshes[static_cast<size_t>(node.mesh)];
+  SceneMesh mesh;
+  mesh.name = !source.name.empty() ? source.name
+              : !node.name.empty() ? node.name
+                                   : "mesh_" + std::to_string(node.mesh);
+  mesh.mesh = node.mesh;
+  mesh.primitive = static_cast<int>(p);
+  mesh.node = static_cast<int>(n);
+  const std::string path = file + ": mesh '" + mesh.name + "' primitive " + std::to_string(p);
+  mesh.to_file = node.skin >= 0 ? skin_matrix(model, node.skin, world, file) : world[n];
+  read_primitive(model, source.primitives[p], node.weights.empty() ? source.weights : node.weights, mesh,
+                 path);
+  return mesh;
 }
 
 }  // namespace
 
-void read_gltf(Scene& scene, const std::vector<uint8_t>& bytes) {
-  scene.document = gltf_document(scene.path, bytes);
-  const tinygltf::Model model = load_model(scene);
-  const AccessorReader accessors(scene, model);
+void read_gltf(Scene& scene, const std::vector<uint8_t>& bytes, const ReadOptions& options) {
+  read_document(scene, bytes, options);
+  const std::string file = "'" + scene.path.string() + "'";
+  const tinygltf::Model model =
+      gltf::load_model(gltf::glb_bytes(scene.document.json, scene.document.bin), file);
   const std::vector<Mat4> world = world_matrices(scene, model);
   for (size_t n = 0; n < model.nodes.size(); ++n) {
     const tinygltf::Node& node = model.nodes[n];
     if (node.mesh < 0) continue;
     if (node.mesh >= static_cast<int>(model.meshes.size()))
       fail(scene, "a node names a mesh that is not there");
-    const tinygltf::Mesh& source = model.meshes[static_cast<size_t>(node.mesh)];
-    for (size_t p = 0; p < source.primitives.size(); ++p) {
-      const int mode = source.primitives[p].mode;
+    const std::vector<tinygltf::Primitive>& primitives =
+        model.meshes[static_cast<size_t>(node.mesh)].primitives;
+    for (size_t p = 0; p < primitives.size(); ++p) {
+      const int mode = primitives[p].mode;
       if (mode >= 0 && mode < TINYGLTF_MODE_TRIANGLES) continue;  // points and lines are not surface
-      SceneMesh mesh;
-      mesh.name = !source.name.empty() ? source.name
-                  : !node.name.empty() ? node.name
-                                       : "mesh_" + std::to_string(node.mesh);
-      mesh.mesh = node.mesh;
-      mesh.primitive = static_cast<int>(p);
-      mesh.node = static_cast<int>(n);
-      mesh.to_file = node.skin >= 0 ? skin_matrix(accessors, model, node.skin, world) : world[n];
-      read_primitive(scene, accessors, model, source.primitives[p], mesh);
-      scene.meshes.push_back(std::move(mesh));
+      scene.meshes.push_back(mesh_of(model, n, p, world, file));
     }
   }
 }

@@ -1,13 +1,35 @@
 #include <tiny_obj_loader.h>
 
+#include <charconv>
+#include <cmath>
 #include <map>
-#include <sstream>
 
 #include "formats/detail.h"
+#include "formats/obj_lines.h"
+#include "gltf/read/text.h"
 
 namespace fascia::formats::detail {
 
 namespace {
+
+/// The numbers of the `v` lines, three each. tinyobjloader reads what is no number as 0, so they are read
+/// here.
+std::vector<double> coordinates(const Scene& scene, std::string_view text) {
+  std::vector<double> all;
+  for (const ObjVertex& vertex : obj_vertices(text))
+    for (const auto& [begin, end] : vertex.coordinates) {
+      double value = 0.0;
+      const size_t sign = begin < end && text[begin] == '+' ? 1 : 0;
+      const auto parsed = std::from_chars(text.data() + begin + sign, text.data() + end, value);
+      if (begin == end || parsed.ec != std::errc() || parsed.ptr != text.data() + end ||
+          !std::isfinite(value))
+        fail(scene, "line " + std::to_string(vertex.line) + ": '" +
+                        gltf::as_utf8(text.substr(begin, std::min<size_t>(end - begin, 40))) +
+                        "' stands where a coordinate should, a finite number");
+      all.push_back(value);
+    }
+  return all;
+}
 
 /// Vertices of one object, taken in the order in which its faces first name them.
 struct ObjectVertices {
@@ -43,7 +65,7 @@ void read_object(const Scene& scene, const tinyobj::attrib_t& attributes, const 
     for (unsigned k = 0; k < face_size; ++k, ++corner) {
       const tinyobj::index_t& at = shape.mesh.indices[corner];
       if (at.vertex_index < 0 || at.vertex_index >= count)
-        fail(scene, "object '" + shape.name + "' has a face that names vertex " +
+        fail(scene, "object '" + gltf::as_utf8(shape.name) + "' has a face that names vertex " +
                         std::to_string(at.vertex_index + 1) + " of " + std::to_string(count));
       polygon.push_back(vertex_of(attributes, at, mesh, vertices));
     }
@@ -52,7 +74,7 @@ void read_object(const Scene& scene, const tinyobj::attrib_t& attributes, const 
   }
   if (!shape.mesh.material_ids.empty() && shape.mesh.material_ids[0] >= 0 &&
       shape.mesh.material_ids[0] < static_cast<int>(materials.size()))
-    mesh.material = materials[shape.mesh.material_ids[0]].name;
+    mesh.material = gltf::as_utf8(materials[shape.mesh.material_ids[0]].name);
 }
 
 }  // namespace
@@ -62,15 +84,20 @@ void read_obj(Scene& scene) {
   config.triangulate = false;
   config.vertex_color = false;
   tinyobj::ObjReader reader;
+  const std::string_view text(reinterpret_cast<const char*>(scene.bytes.data()), scene.bytes.size());
+  const std::vector<double> places = coordinates(scene, text);
   // Materials are the file's own business; only the geometry is read.
-  if (!reader.ParseFromString(std::string(scene.bytes.begin(), scene.bytes.end()), "", config))
-    fail(scene, "it is not a readable OBJ file: " + reader.Error());
-  const tinyobj::attrib_t& attributes = reader.GetAttrib();
+  if (!reader.ParseFromString(plain_obj(text), "", config))
+    fail(scene, "it is not a readable OBJ file: " + gltf::as_utf8(reader.Error()));
+  tinyobj::attrib_t attributes = reader.GetAttrib();
+  if (attributes.vertices.size() != places.size()) fail(scene, "its 'v' lines are damaged");
+  attributes.vertices = places;
   if (attributes.vertices.empty()) fail(scene, "it holds no vertices (no 'v' lines)");
   for (const tinyobj::shape_t& shape : reader.GetShapes()) {
     if (shape.mesh.indices.empty()) continue;
     SceneMesh mesh;
-    mesh.name = shape.name.empty() ? "object_" + std::to_string(scene.meshes.size()) : shape.name;
+    mesh.name =
+        shape.name.empty() ? "object_" + std::to_string(scene.meshes.size()) : gltf::as_utf8(shape.name);
     read_object(scene, attributes, shape, reader.GetMaterials(), mesh);
     scene.meshes.push_back(std::move(mesh));
   }

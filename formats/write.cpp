@@ -1,33 +1,70 @@
 #include "formats/write.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
-#include "formats/gltf_document.h"
+#include "formats/files.h"
 #include "geometry/error.h"
+#include "gltf/edit/edit.h"
+#include "gltf/read/container.h"
 
 namespace fascia::formats {
 
 namespace {
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.9g", value);
-  return text;
+Bounds bounds_of(const Drawing& drawing) {
+  Bounds box;
+  const auto add = [&](const std::vector<Vec3>& points) {
+    for (const Vec3& p : points) {
+      box.lower = box.lower.cwiseMin(p);
+      box.upper = box.upper.cwiseMax(p);
+    }
+  };
+  for (const NamedSurface& surface : drawing.surfaces)
+    add(surface.mesh.vertices);
+  for (const NamedLines& bundle : drawing.lines)
+    for (const auto& line : bundle.lines)
+      add(line);
+  return box;
 }
 
-std::string point_text(const Vec3& p) {
-  return number(p[0]) + " " + number(p[1]) + " " + number(p[2]);
+/// True when single precision would lose the shape of what lies in `box`.
+bool is_far_off(const Bounds& box) {
+  return box.upper[0] >= box.lower[0] && box.centre().norm() > 16.0 * box.size().norm();
 }
+
+/// Coordinates as text: nine digits, the most that single precision has, and more of what lies far off.
+class Digits {
+ public:
+  explicit Digits(const Drawing& drawing) {
+    const Bounds box = bounds_of(drawing);
+    if (is_far_off(box))
+      digits_ = std::min(17, 10 + static_cast<int>(std::log10(box.centre().norm() / box.size().norm())));
+  }
+
+  bool are_single() const { return digits_ == 9; }
+
+  std::string point(const Vec3& p) const {
+    char text[96];
+    std::snprintf(text, sizeof text, "%.*g %.*g %.*g", digits_, p[0], digits_, p[1], digits_, p[2]);
+    return text;
+  }
+
+ private:
+  int digits_ = 9;
+};
 
 std::string obj_text(const Drawing& drawing) {
+  const Digits digits(drawing);
   std::string text;
   size_t base = 1;
   for (const NamedSurface& surface : drawing.surfaces) {
     text += "o " + surface.name + "\n";
     for (const Vec3& p : surface.mesh.vertices)
-      text += "v " + point_text(p) + "\n";
+      text += "v " + digits.point(p) + "\n";
     for (const Triangle& t : surface.mesh.triangles)
       text += "f " + std::to_string(base + static_cast<size_t>(t[0])) + " " +
               std::to_string(base + static_cast<size_t>(t[1])) + " " +
@@ -38,7 +75,7 @@ std::string obj_text(const Drawing& drawing) {
     text += "g " + bundle.name + "\n";
     for (const auto& line : bundle.lines) {
       for (const Vec3& p : line)
-        text += "v " + point_text(p) + "\n";
+        text += "v " + digits.point(p) + "\n";
       text += "l";
       for (size_t i = 0; i < line.size(); ++i)
         text += " " + std::to_string(base + i);
@@ -50,11 +87,12 @@ std::string obj_text(const Drawing& drawing) {
 }
 
 std::string ply_text(const Drawing& drawing) {
+  const Digits digits(drawing);
   std::string points, faces, edges;
   size_t vertices = 0, face_count = 0, edge_count = 0;
   for (const NamedSurface& surface : drawing.surfaces) {
     for (const Vec3& p : surface.mesh.vertices)
-      points += point_text(p) + "\n";
+      points += digits.point(p) + "\n";
     for (const Triangle& t : surface.mesh.triangles)
       faces += "3 " + std::to_string(vertices + static_cast<size_t>(t[0])) + " " +
                std::to_string(vertices + static_cast<size_t>(t[1])) + " " +
@@ -67,16 +105,17 @@ std::string ply_text(const Drawing& drawing) {
     comments += "comment muscle " + std::to_string(b) + " " + drawing.lines[b].name + "\n";
     for (const auto& line : drawing.lines[b].lines) {
       for (const Vec3& p : line)
-        points += point_text(p) + "\n";
+        points += digits.point(p) + "\n";
       for (size_t i = 0; i + 1 < line.size(); ++i, ++edge_count)
         edges += std::to_string(vertices + i) + " " + std::to_string(vertices + i + 1) + " " +
                  std::to_string(b) + "\n";
       vertices += line.size();
     }
   }
-  std::string header = "ply\nformat ascii 1.0\n" + comments + "element vertex " + std::to_string(vertices) +
-                       "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
-                       std::to_string(face_count) + "\nproperty list uchar int vertex_indices\n";
+  std::string header = "ply\nformat ascii 1.0\n" + comments + "element vertex " + std::to_string(vertices);
+  for (const char* axis : {"x", "y", "z"})
+    header += std::string("\nproperty ") + (digits.are_single() ? "float " : "double ") + axis;
+  header += "\nelement face " + std::to_string(face_count) + "\nproperty list uchar int vertex_indices\n";
   if (edge_count)
     header += "element edge " + std::to_string(edge_count) +
               "\nproperty int vertex1\nproperty int vertex2\nproperty int muscle\n";
@@ -106,91 +145,81 @@ std::vector<uint8_t> stl_bytes(const Drawing& drawing) {
   return bytes;
 }
 
-/// Builds a glTF document of position-only meshes.
+/// Builds a glTF document of meshes of one colour each.
 class GltfWriter {
  public:
+  explicit GltfWriter(const Vec3& offset) : offset_(offset) {}
+
   void add_surface(const NamedSurface& surface) {
-    const size_t positions = add_points(surface.mesh.vertices);
-    std::vector<uint32_t> indices;
+    Json attributes = {{"POSITION", add_points(surface.mesh.vertices)}};
+    std::vector<gltf::Vec3f> normals;
+    for (const Vec3& n : vertex_normals(surface.mesh))
+      normals.push_back((n.squaredNorm() > 0 ? n : Vec3(Vec3::UnitZ())).cast<float>());
+    attributes["NORMAL"] = data_.add_floats(flat(normals), 3, false, gltf::vertex_target);
+    std::vector<uint32_t> corners;
     for (const Triangle& t : surface.mesh.triangles)
-      for (int corner : t)
-        indices.push_back(static_cast<uint32_t>(corner));
-    const size_t order =
-        add_accessor(indices.data(), indices.size() * 4, 34963, 5125, "SCALAR", indices.size());
-    add_mesh(
-        surface.name, surface.colour,
-        {{{"attributes", {{"POSITION", positions}}}, {"indices", order}, {"material", materials_.size()}}});
+      corners.insert(corners.end(), t.begin(), t.end());
+    Json primitive = {
+        {"attributes", attributes}, {"indices", data_.add_indices(corners)}, {"material", materials()}};
+    add_mesh(surface.name, surface.colour, Json::array({primitive}));
   }
 
   void add_lines(const NamedLines& bundle) {
-    nlohmann::ordered_json primitives = nlohmann::ordered_json::array();
+    Json primitives = Json::array();
     for (const auto& line : bundle.lines)
       if (line.size() > 1)
         primitives.push_back(
-            {{"attributes", {{"POSITION", add_points(line)}}}, {"mode", 3}, {"material", materials_.size()}});
+            {{"attributes", {{"POSITION", add_points(line)}}}, {"mode", 3}, {"material", materials()}});
     if (!primitives.empty()) add_mesh(bundle.name, bundle.colour, primitives);
   }
 
   std::vector<uint8_t> bytes() {
-    nlohmann::ordered_json json = {{"asset", {{"version", "2.0"}, {"generator", "fascia"}}}, {"scene", 0}};
-    nlohmann::ordered_json roots = nlohmann::ordered_json::array();
-    for (size_t n = 0; n < nodes_.size(); ++n)
-      roots.push_back(n);
-    json["scenes"] = nlohmann::ordered_json::array({{{"nodes", roots}}});
-    json["nodes"] = nodes_;
-    json["meshes"] = meshes_;
-    json["materials"] = materials_;
-    json["accessors"] = accessors_;
-    json["bufferViews"] = views_;
-    json["buffers"] = nlohmann::ordered_json::array({{{"byteLength", binary_.size()}}});
-    return glb_bytes({json.dump(), binary_});
+    for (size_t n = 0; n < json_["nodes"].size(); ++n)
+      json_["scenes"][0]["nodes"].push_back(n);
+    json_["buffers"] = Json::array({{{"byteLength", bin_.size()}}});
+    return gltf::glb_bytes(gltf::text_of(json_), bin_);
   }
 
  private:
-  size_t add_accessor(const void* data, size_t size, int target, int component, const char* type,
-                      size_t count) {
-    binary_.resize((binary_.size() + 3) / 4 * 4);
-    views_.push_back(
-        {{"buffer", 0}, {"byteOffset", binary_.size()}, {"byteLength", size}, {"target", target}});
-    const auto* raw = static_cast<const uint8_t*>(data);
-    binary_.insert(binary_.end(), raw, raw + size);
-    accessors_.push_back(
-        {{"bufferView", views_.size() - 1}, {"componentType", component}, {"count", count}, {"type", type}});
-    return accessors_.size() - 1;
+  using Json = gltf::Json;
+
+  static std::span<const float> flat(const std::vector<gltf::Vec3f>& points) {
+    return {reinterpret_cast<const float*>(points.data()), 3 * points.size()};
   }
+
+  size_t materials() const { return json_.contains("materials") ? json_["materials"].size() : 0; }
 
   size_t add_points(const std::vector<Vec3>& points) {
-    std::vector<float> values;
-    Eigen::Vector3f low = Eigen::Vector3f::Constant(3e38F), high = -low;
-    for (const Vec3& p : points) {
-      const Eigen::Vector3f q = p.cast<float>();
-      values.insert(values.end(), q.data(), q.data() + 3);
-      low = low.cwiseMin(q);
-      high = high.cwiseMax(q);
-    }
-    const size_t index = add_accessor(values.data(), values.size() * 4, 34962, 5126, "VEC3", points.size());
-    accessors_[index]["min"] = {low[0], low[1], low[2]};
-    accessors_[index]["max"] = {high[0], high[1], high[2]};
-    return index;
+    std::vector<gltf::Vec3f> values;
+    for (const Vec3& p : points)
+      values.push_back((p - offset_).cast<float>());
+    return data_.add_floats(flat(values), 3, true, gltf::vertex_target);
   }
 
-  void add_mesh(const std::string& name, const Vec3& colour, const nlohmann::ordered_json& primitives) {
-    materials_.push_back({{"name", name},
-                          {"pbrMetallicRoughness",
-                           {{"baseColorFactor", {colour[0], colour[1], colour[2], 1.0}},
-                            {"metallicFactor", 0.0},
-                            {"roughnessFactor", 0.7}}}});
-    meshes_.push_back({{"name", name}, {"primitives", primitives}});
-    nodes_.push_back({{"name", name}, {"mesh", meshes_.size() - 1}});
+  void add_mesh(const std::string& name, const Vec3& colour, const Json& primitives) {
+    json_["materials"].push_back({{"name", name},
+                                  {"pbrMetallicRoughness",
+                                   {{"baseColorFactor", {colour[0], colour[1], colour[2], 1.0}},
+                                    {"metallicFactor", 0.0},
+                                    {"roughnessFactor", 0.7}}}});
+    json_["meshes"].push_back({{"name", name}, {"primitives", primitives}});
+    Json node = {{"name", name}, {"mesh", json_["meshes"].size() - 1}};
+    if (!offset_.isZero(0)) node["translation"] = {offset_[0], offset_[1], offset_[2]};
+    json_["nodes"].push_back(std::move(node));
   }
 
-  std::vector<uint8_t> binary_;
-  nlohmann::ordered_json views_ = nlohmann::ordered_json::array(), accessors_ = views_, meshes_ = views_,
-                         nodes_ = views_, materials_ = views_;
+  Json json_ = {{"asset", {{"version", "2.0"}, {"generator", "fascia"}}},
+                {"scene", 0},
+                {"scenes", Json::array({{{"nodes", Json::array()}}})},
+                {"nodes", Json::array()}};
+  Vec3 offset_;  ///< where the meshes' coordinates begin
+  std::vector<uint8_t> bin_;
+  gltf::Appendix data_{json_, bin_};
 };
 
 std::vector<uint8_t> glb_of(const Drawing& drawing) {
-  GltfWriter writer;
+  const Bounds box = bounds_of(drawing);
+  GltfWriter writer(is_far_off(box) ? box.centre() : Vec3(Vec3::Zero()));
   for (const NamedSurface& surface : drawing.surfaces)
     if (!surface.mesh.empty()) writer.add_surface(surface);
   for (const NamedLines& bundle : drawing.lines)
@@ -209,6 +238,10 @@ void write(const std::filesystem::path& path, const Drawing& drawing) {
   } else if (extension == ".stl") {
     if (!drawing.lines.empty())
       throw Error("'" + path.string() + "': STL cannot hold fibres; write OBJ, PLY or GLB");
+    if (is_far_off(bounds_of(drawing)))
+      throw Error("'" + path.string() +
+                  "': STL holds single precision, too coarse so far from the origin; write PLY, OBJ "
+                  "or GLB");
     const std::vector<uint8_t> bytes = stl_bytes(drawing);
     write_bytes(path, bytes.data(), bytes.size());
   } else if (extension == ".glb") {

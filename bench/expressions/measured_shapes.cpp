@@ -3,7 +3,6 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
-#include "formats/gltf_document.h"
 #include "formats/scene.h"
 #include "geometry/error.h"
 
@@ -46,7 +45,7 @@ std::vector<Vec3> vectors(const json& gltf, const std::vector<uint8_t>& binary, 
 }  // namespace
 
 std::vector<MeasuredShape> measured_shapes(const std::filesystem::path& path, const std::string& mesh) {
-  const formats::GltfDocument document = formats::gltf_document(path, formats::read_bytes(path));
+  const gltf::Document document = formats::read(path).document;
   const json gltf = json::parse(document.json);
   for (const json& entry : gltf["meshes"]) {
     if (entry.value("name", "") != mesh) continue;
@@ -54,7 +53,7 @@ std::vector<MeasuredShape> measured_shapes(const std::filesystem::path& path, co
     const json& targets = entry["primitives"][0]["targets"];
     for (size_t t = 0; t < targets.size(); ++t)
       shapes.push_back(
-          {entry["extras"]["targetNames"][t], vectors(gltf, document.binary, targets[t]["POSITION"])});
+          {entry["extras"]["targetNames"][t], vectors(gltf, document.bin, targets[t]["POSITION"])});
     return shapes;
   }
   throw Error("'" + path.string() + "' has no mesh '" + mesh + "'");

@@ -1,7 +1,10 @@
 // Landmarks found on heads whose landmarks are known: error in millimetres and time, person by person and
 // variant by variant (--quick: two of the people; --variant N: one kind alone). Given files, it prints where
 // the landmarks of those were found instead;
-// --sheet FILE.png draws every kind of head with its landmarks.
+// --sheet FILE.png draws every kind of head with its landmarks, --sheet FILE.png HEAD... the heads of those
+// files;
+// --poses HEAD... says how far landmarks of turned copies differ;
+// --people COUNT [FIRST] measures random people of the face model, from seed FIRST (1) on.
 #include <Eigen/Geometry>
 #include <chrono>
 #include <cstdio>
@@ -10,7 +13,9 @@
 #include <functional>
 
 #include "bench/landmarks/sheet.h"
+#include "bench/people/model_person.h"
 #include "builder/rigging/find_landmarks.h"
+#include "tests/landmarks/made_heads.h"
 #include "tests/landmarks/measured_heads.h"
 
 using namespace fascia;
@@ -87,22 +92,37 @@ testing::MeasuredHead stretched(testing::MeasuredHead head, const std::string& n
   return head;
 }
 
-/// A small child's proportions: the face small under a large vault, the whole smaller.
-Vec3 child(const Vec3& p) {
-  const double low = std::clamp((0.06 - p[1]) / 0.14, 0.0, 1.0);
-  return 0.86 * Vec3(p[0] * (1 - 0.16 * low),
-                     p[1] < 0.04 ? 0.04 + 0.84 * (p[1] - 0.04) : 0.04 + 1.02 * (p[1] - 0.04),
-                     p[2] * (1 - 0.1 * low));
-}
-
-/// Mild stylisation: eyes drawn large.
-Vec3 large_eyes(const Vec3& p) {
-  Vec3 moved = p;
-  for (double side : {-1.0, 1.0}) {
-    const Vec3 from = p - Vec3(side * 0.0315, 0.035, 0.075);
-    moved += 0.45 * std::exp(-from.squaredNorm() / (0.032 * 0.032)) * from;
+/// Largest and mean distance in millimetres (of a head as large as a person's) between the landmarks of a
+/// file and those of turned copies.
+void measure_poses(const std::string& file, const anatomy::GenericAnatomy& anatomy) {
+  const formats::Scene scene = formats::read(file);
+  const rigging::FoundLandmarks first = rigging::find_landmarks(scene, {}, anatomy);
+  const Mat4 back = first.head.input_to_metres.inverse();
+  double most = 0, sum = 0, count = 0;
+  for (int pose = 1; pose <= 4; ++pose) {
+    const Mat3 turn = Eigen::AngleAxisd(pose < 4 ? 0.12 * pose : 2.5, Vec3(pose, 2 - pose, 1).normalized())
+                          .toRotationMatrix();
+    formats::Scene turned = scene;
+    for (formats::SceneMesh& mesh : turned.meshes)
+      for (Vec3& p : mesh.positions)
+        p = turn * p;
+    try {
+      const rigging::FoundLandmarks found = rigging::find_landmarks(turned, {}, anatomy);
+      const Mat4 there = found.head.input_to_metres.inverse();
+      for (const auto& [name, landmark] : found.landmarks) {
+        const Vec3 a = turn * transform_point(back, first.landmarks.at(name).position);
+        const double off = 1e3 * first.head.input_to_metres.topLeftCorner<3, 1>().norm() *
+                           (transform_point(there, landmark.position) - a).norm();
+        most = std::max(most, off);
+        sum += off;
+        count += 1;
+      }
+    } catch (const std::exception& error) {
+      std::printf("  pose %d: %s\n", pose, error.what());
+    }
   }
-  return moved;
+  std::printf("%-24s turned: mean %.2f max %.2f mm\n", std::filesystem::path(file).filename().c_str(),
+              sum / count, most);
 }
 
 /// The contact sheet of docs/heads.md.
@@ -135,8 +155,8 @@ void draw_sheet(const std::string& path, const anatomy::GenericAnatomy& anatomy)
   heads.push_back(named(in_units(moved(face_alone(ict_head("person_2"), 95), away), 1000), "a face alone"));
   heads.push_back(named(cut_above_brows(ict_head("person_4")), "cut above the brows"));
   heads.push_back(named(with_holes(without_lining(ict_head("person_0")), 9, 14, 3), "holes"));
-  heads.push_back(stretched(ict_head("person_0"), "as a child", child));
-  heads.push_back(stretched(ict_head("person_0"), "large eyes", large_eyes));
+  heads.push_back(stretched(ict_head("person_0"), "as a child", testing::as_child));
+  heads.push_back(stretched(ict_head("person_0"), "large eyes", testing::with_large_eyes));
   heads.push_back(named(makehuman(), "head of a body"));
   for (const auto& [file, caption] : {std::pair("ct/headsq_skin.ply", "CT, no forehead"),
                                       std::pair("bodyparts3d/skin.obj", "BodyParts3D")}) {
@@ -158,12 +178,69 @@ void draw_sheet(const std::string& path, const anatomy::GenericAnatomy& anatomy)
   view::write_png(path, view::contact_sheet(tiles, 5));
 }
 
+/// The heads of files, each from the front and from the side, with what was found in it.
+void draw_files(const std::string& path, const std::vector<std::string>& files,
+                const anatomy::GenericAnatomy& anatomy) {
+  std::vector<view::Tile> tiles;
+  for (const std::string& file : files) {
+    const std::string name = std::filesystem::path(file).filename();
+    try {
+      const double start = seconds();
+      const rigging::FoundLandmarks found = rigging::find_landmarks(formats::read(file), {}, anatomy);
+      std::printf("%-24s likeness %.3f units %s %.2f s\n", name.c_str(), found.likeness,
+                  found.head.units.c_str(), seconds() - start);
+      for (double yaw : {0.0, 50.0})
+        tiles.push_back(bench::landmark_tile(found, name, yaw));
+    } catch (const std::exception& error) {
+      std::printf("%-24s FAILED: %s\n", name.c_str(), error.what());
+    }
+    std::fflush(stdout);
+  }
+  view::write_png(path, view::contact_sheet(tiles, 6));
+}
+
+/// Mean and worst person of `count` random ones, by the mean error of their landmarks.
+void measure_people(uint32_t first, uint32_t count, const anatomy::GenericAnatomy& anatomy) {
+  const bench::FaceModel model;
+  const auto vertices = testing::ict_model_vertices();
+  Sums all;
+  double worst = 0;
+  for (uint32_t seed = first; seed < first + count; ++seed) {
+    testing::MeasuredHead head;
+    head.name = "seed " + std::to_string(seed);
+    head.scene = model.scene(seed);
+    for (const auto& [name, vertex] : vertices)
+      head.truth[name] = head.scene.meshes[0].positions[static_cast<size_t>(vertex)];
+    std::map<std::string, Sums> by_landmark;
+    Sums one;
+    measure(head, anatomy, by_landmark, one);
+    if (one.count) worst = std::max(worst, one.sum / one.count);
+    all.sum += one.sum;
+    all.count += one.count;
+  }
+  if (all.count)
+    std::printf("%u people: mean %.2f mm, worst person %.2f mm\n", count, all.sum / all.count, worst);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   const anatomy::GenericAnatomy anatomy = anatomy::load_generic();
   if (argc > 2 && std::strcmp(argv[1], "--sheet") == 0) {
-    draw_sheet(argv[2], anatomy);
+    if (argc > 3)
+      draw_files(argv[2], std::vector<std::string>(argv + 3, argv + argc), anatomy);
+    else
+      draw_sheet(argv[2], anatomy);
+    return 0;
+  }
+  if (argc > 2 && std::strcmp(argv[1], "--poses") == 0) {
+    for (int a = 2; a < argc; ++a)
+      measure_poses(argv[a], anatomy);
+    return 0;
+  }
+  if (argc > 2 && std::strcmp(argv[1], "--people") == 0) {
+    measure_people(argc > 3 ? static_cast<uint32_t>(std::atoi(argv[3])) : 1,
+                   static_cast<uint32_t>(std::atoi(argv[2])), anatomy);
     return 0;
   }
   const bool is_one_variant = argc > 2 && std::strcmp(argv[1], "--variant") == 0;

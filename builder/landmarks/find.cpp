@@ -44,6 +44,36 @@ double confidence_at(const GenericFace& face, const Registration& fit, const Vec
 }
 
 constexpr double confidence_of_openings = 0.9;
+/// Metres of the generic head from the surface at which a coarse fit tells nothing of a place.
+constexpr double far_off = 0.012;
+
+/// Where the generic head comes to stand whatever placement near it the search ended with: a head that is
+/// turned, moved or made of other triangles gives the same landmarks.
+Placement settled(const GenericFace& face, const Samples& samples, Placement placement,
+                  const std::vector<Anchor>& anchors) {
+  RegistrationOptions stiff;
+  stiff.stages = {{10, 4, 3}, {3, 4, 2}};
+  stiff.last_reach = 0.015;
+  for (int round = 0; round < 4; ++round)
+    placement = similarity_of(face, register_face(face, samples, placement, anchors, stiff));
+  return placement;
+}
+
+/// Eyeballs that lie beside where the fit has the eyes, as in large-eyed faces, draw these over: across and
+/// up, for how deep a ball lies in its socket is a matter of modelling.
+std::vector<Anchor> eye_anchors(const GenericFace& face, const Registration& fit, const KnownEyes& eyes) {
+  const double least = 0.004;
+  std::vector<Anchor> anchors;
+  for (const auto& [known, generic] :
+       {std::pair(eyes.left, face.eye_left), std::pair(eyes.right, face.eye_right)}) {
+    if (!known) continue;
+    const Vec3 carried = fit(generic.centre), deep = fit.placement.rotation.col(2);
+    const Vec3 off = known->centre - carried, beside = off - off.dot(deep) * deep;
+    if (beside.norm() > least * fit.placement.scale)
+      anchors.push_back({generic.centre, carried + beside, 5.0});
+  }
+  return anchors;
+}
 
 /// An eye of a head by its corners' places; `up` and `forward` are the head's.
 EyeRegion eye_region(const Vec3& outer, const Vec3& inner, const Ball& ball, const Placement& placement) {
@@ -102,13 +132,14 @@ std::map<std::string, Vec3> rough_landmarks(const GenericFace& face, const anato
                                             const FoundHead& found) {
   std::map<std::string, Vec3> rough;
   for (const anatomy::Landmark& landmark : anatomy.landmarks)
-    if (landmark.skin && landmark.required && overhang_at(face, found.fit, *landmark.skin) < beyond_edge)
+    if (landmark.skin && landmark.required && overhang_at(face, found.fit, *landmark.skin) < beyond_edge &&
+        residual_at(face, found.fit, *landmark.skin) < far_off)
       rough[landmark.name] = found.fit(*landmark.skin);
   return rough;
 }
 
 FoundFace find(const GenericFace& face, const anatomy::GenericAnatomy& anatomy,
-               const spatial::SurfaceQuery& skin, const Placement& placement,
+               const spatial::SurfaceQuery& skin, const Placement& start,
                const std::map<std::string, Vec3>& given, const KnownEyes& eyes) {
   FoundFace found;
   std::map<std::string, Vec3> known;
@@ -120,11 +151,16 @@ FoundFace find(const GenericFace& face, const anatomy::GenericAnatomy& anatomy,
       found.unknown.push_back(name);
   }
   std::vector<Anchor> anchors = anchors_of(known, anatomy, 100.0);
-  const Samples samples = head_samples(face, skin, placement, 12000, 5000);
+  const Samples samples = head_samples(face, skin, start, 12000, 5000);
+  const Placement placement = settled(face, samples, start, anchors);
   RegistrationOptions first;
   first.stages = {{10, 4, 1}, {3, 4, 1}, {1, 3, 2}, {0.3, 3, 2}, {0.1, 2, 2}};
   first.last_reach = 0.012;
   found.fit = register_face(face, samples, placement, anchors, first);
+  if (const std::vector<Anchor> of_eyes = eye_anchors(face, found.fit, eyes); !of_eyes.empty()) {
+    anchors.insert(anchors.end(), of_eyes.begin(), of_eyes.end());
+    found.fit = register_face(face, samples, placement, anchors, first);
+  }
   std::map<std::string, Vec3> seen;
   for (const auto& [side, ball] : {std::pair("left", eyes.left), std::pair("right", eyes.right)})
     for (const auto& [name, p] : lid_landmarks(face, anatomy, skin, found.fit, side, ball))

@@ -34,13 +34,13 @@ struct FoundFace {
 
 /// All skin landmarks of `anatomy` on `skin`, the welded skin in metres, rig frame.
 ///
-/// The generic head is bent onto the skin from `placement` (same frame); the corners and margins of open lids
-/// are looked for where the fit says the eyes are and steer it on; `given` landmarks (same frame) are kept as
-/// they are and steer it too. A found one's confidence falls with the distance that the fit leaves about it;
-/// one that falls more than 8 mm beyond the edge of the mesh stays beside it, where the bent generic head has
-/// it, with little confidence.
+/// The generic head settles on the skin near `start` (same frame) and is bent onto it; the corners and
+/// margins of open lids are looked for where the fit says the eyes are and steer it on; `given` landmarks
+/// (same frame) are kept as they are and steer it too. A found one's confidence falls with the distance that
+/// the fit leaves about it; one that falls more than 8 mm beyond the edge of the mesh stays beside it, where
+/// the bent generic head has it, with little confidence.
 FoundFace find(const GenericFace& face, const anatomy::GenericAnatomy& anatomy,
-               const spatial::SurfaceQuery& skin, const Placement& placement,
+               const spatial::SurfaceQuery& skin, const Placement& start,
                const std::map<std::string, Vec3>& given = {}, const KnownEyes& eyes = {});
 
 }  // namespace fascia::landmarks

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <optional>
+#include <memory>
 
+#include "builder/landmarks/searched_surface.h"
 #include "builder/landmarks/spheres.h"
 #include "geometry/error.h"
 
@@ -12,29 +12,18 @@ namespace fascia::landmarks {
 
 namespace {
 
-/// Measured: whole faces fit by 0.52 and more (0.7 as a rule); spheres, cubes, limbs, lumps and the backs of
-/// heads by 0.49 and less.
-constexpr double least_likeness = 0.51;
-constexpr double sure_likeness = 0.62;
-
-/// Of a face that is cut off somewhere less fits in all, but what there is fits better than anything else
-/// does.
-constexpr double least_on_mesh = 0.6;
-constexpr double least_coverage = 0.85;
-
-bool is_face(const Likeness& likeness) {
-  return likeness.coverage >= least_coverage &&
-         std::max(likeness.share - least_likeness, likeness.on_mesh - least_on_mesh) >= 0.0;
-}
-
-bool is_better(const Likeness& a, const Likeness& b) {
-  return a.on_mesh * std::min(a.coverage, least_coverage) > b.on_mesh * std::min(b.coverage, least_coverage);
-}
+/// Measured: people's faces score 0.35 and more (0.5 as a rule), stylised ones 0.15 and more; spheres, cubes,
+/// lumps, limbs, the backs of heads and heads put on wrongly 0.14 and less.
+constexpr double least_score = 0.15;  // below: nothing like a face
+constexpr double plain_score = 0.25;  // above: a face, and no other surface needs to be searched
+constexpr double sure_score = 0.40;   // above: no other place needs to be tried
+/// Noses are looked for, which takes long, on so many surfaces.
+constexpr size_t surfaces_for_noses = 10;
 
 struct Candidate {
   Placement placement;
-  size_t lump = 0;
-  double residual = 1.0;  ///< metres of the generic head
+  Ball about;             ///< samples are taken about it until the head's own place is known
+  double distance = 1.0;  ///< of the face from the mesh, metres of the generic head
   Likeness likeness;
   Registration fit;
 };
@@ -45,135 +34,169 @@ bool are_alike(const GenericFace& face, const Placement& a, const Placement& b) 
          (a.rotation.transpose() * b.rotation).trace() > 1.0 + 2.0 * std::cos(12.0 * EIGEN_PI / 180.0);
 }
 
-/// A small face on a patch of a face alone: nothing of a true one's size is half as large again as a bust and
-/// yet no body.
-bool may_be_patch(const Candidate& best, double extent) {
-  const double metres = extent / best.placement.scale;
-  return best.likeness.on_mesh < 0.74 && metres > 0.5 && metres < 1.4;
-}
-
 void sort_and_keep(std::vector<Candidate>& all, const GenericFace& face, size_t count) {
   std::stable_sort(all.begin(), all.end(),
-                   [](const Candidate& a, const Candidate& b) { return a.residual < b.residual; });
+                   [](const Candidate& a, const Candidate& b) { return a.distance < b.distance; });
   std::vector<Candidate> kept;
-  for (const Candidate& candidate : all) {
+  for (Candidate& candidate : all) {
     if (kept.size() == count) break;
     const bool is_known = std::any_of(kept.begin(), kept.end(), [&](const Candidate& other) {
       return are_alike(face, candidate.placement, other.placement);
     });
-    if (!is_known) kept.push_back(candidate);
+    if (!is_known) kept.push_back(std::move(candidate));
   }
   all = std::move(kept);
 }
 
-/// The samples about each lump, made when first asked for.
-class LumpSamples {
+Ball vault_of(const GenericFace& face, const Placement& placement) {
+  return {placement(face.vault.centre), face.vault.radius * placement.scale};
+}
+
+/// Looks for one head in one surface.
+class Search {
  public:
-  LumpSamples(const TriangleMesh& mesh, const spatial::SurfaceQuery& surface, const std::vector<Ball>& lumps)
-      : mesh_(mesh), surface_(surface), lumps_(lumps) {}
-  const Neighbours& operator()(size_t lump) {
-    std::optional<Neighbours>& samples = samples_[lump];
-    if (!samples) {
-      const Ball about{lumps_[lump].centre, 1.9 * lumps_[lump].radius};
-      samples.emplace(open_samples(sample_evenly(mesh_, 5000, about), surface_));
-    }
-    return *samples;
+  Search(const GenericFace& face, SearchedSurface& surface, const HeadHints& hints)
+      : face_(face), surface_(surface), hints_(hints), few_(some_face_points(face, 4)) {}
+
+  const Candidate& best() const { return best_; }
+  bool has_face(double score) const { return best_.likeness.score() >= score; }
+
+  void by_anchors() {
+    const Ball all = surface_.all();
+    try_all(guess_by_anchors(face_, hints_.given, surface_.about(all), 6), all, 6);
+  }
+  void by_lumps() {
+    std::vector<Candidate> candidates;
+    for (const Ball& lump : round_lumps(surface_.open(), 7))
+      add(candidates, guess_placements(face_, surface_.query(), lump, 16), lump);
+    try_all(candidates, 8);
+  }
+  void by_eyes() {
+    const Ball all = surface_.all();
+    try_all(guess_by_eyes(face_, surface_.mesh(), surface_.about(all), 24), all, 8);
+  }
+  void by_nose() {
+    const Ball all = surface_.all();
+    try_all(guess_by_nose(face_, surface_.about(all), 48), all, 8);
   }
 
  private:
-  const TriangleMesh& mesh_;
-  const spatial::SurfaceQuery& surface_;
-  const std::vector<Ball>& lumps_;
-  std::map<size_t, std::optional<Neighbours>> samples_;
+  const GenericFace& face_;
+  SearchedSurface& surface_;
+  const HeadHints& hints_;
+  std::vector<size_t> few_;
+  Candidate best_;
+
+  void add(std::vector<Candidate>& candidates, const std::vector<Guess>& guesses, const Ball& about) const {
+    for (const Guess& guess : guesses) {
+      if (hints_.up && guess.placement.rotation.col(1).dot(*hints_.up) < 0.5) continue;
+      candidates.emplace_back();
+      candidates.back().placement = guess.placement;
+      candidates.back().about = about;
+    }
+  }
+
+  void try_all(const std::vector<Guess>& guesses, const Ball& about, size_t kept) {
+    std::vector<Candidate> candidates;
+    add(candidates, guesses, about);
+    try_all(candidates, kept);
+  }
+
+  /// Draws all of `candidates` near, bends the generic head onto the `kept` best of them.
+  void try_all(std::vector<Candidate>& candidates, size_t kept) {
+    for (Candidate& candidate : candidates) {
+      const Neighbours& samples = surface_.about(candidate.about);
+      if (samples.samples().size() < 50) continue;
+      const double guessed = candidate.placement.scale;
+      candidate.placement =
+          refine_placement(face_, samples, candidate.placement, 8, 6, nullptr, hints_.given);
+      // A head shrunk to nothing fits anywhere.
+      if (std::abs(std::log(candidate.placement.scale / guessed)) > std::log(1.8)) continue;
+      candidate.distance = distance_from(face_, few_, samples, candidate.placement);
+    }
+    sort_and_keep(candidates, face_, kept);
+    for (Candidate& candidate : candidates) {
+      if (candidate.distance >= 1.0) continue;
+      const Neighbours& samples = surface_.about(vault_of(face_, candidate.placement));
+      if (samples.samples().size() < 50) continue;
+      candidate.placement =
+          refine_placement(face_, samples, candidate.placement, 12, 2, nullptr, hints_.given);
+      bend(candidate);
+      if (has_face(sure_score)) return;
+    }
+  }
+
+  /// Bends the generic head onto the surface, from where it stands and once more from where that brought it.
+  void bend(Candidate& candidate) {
+    for (int round = 0; round < 2; ++round) {
+      const Neighbours& samples = surface_.about(vault_of(face_, candidate.placement));
+      if (samples.samples().size() < 50) return;
+      candidate.fit = register_face(face_, samples.samples(), candidate.placement, hints_.given);
+      candidate.likeness = likeness(face_, candidate.fit, samples);
+      if (candidate.likeness.score() > best_.likeness.score() || best_.fit.used.empty()) best_ = candidate;
+      if (candidate.likeness.score() >= sure_score) return;
+      candidate.placement = similarity_of(face_, candidate.fit);
+    }
+  }
 };
 
-/// Draws all of `candidates` near, bends the generic head onto the best of them; the one most like a face, or
-/// null.
-const Candidate* fit_best(const GenericFace& face, LumpSamples& near, std::vector<Candidate>& candidates) {
-  for (Candidate& candidate : candidates) {
-    if (near(candidate.lump).samples().size() < 50) continue;
-    const double guessed = candidate.placement.scale;
-    candidate.placement =
-        refine_placement(face, near(candidate.lump), candidate.placement, 8, 6, &candidate.residual);
-    // A head shrunk to nothing fits anywhere.
-    if (std::abs(std::log(candidate.placement.scale / guessed)) > std::log(1.8)) candidate.residual = 1.0;
-  }
-  sort_and_keep(candidates, face, 8);
-  const Candidate* best = nullptr;
-  for (Candidate& candidate : candidates) {
-    if (candidate.residual >= 1.0) continue;
-    candidate.placement =
-        refine_placement(face, near(candidate.lump), candidate.placement, 12, 2, &candidate.residual);
-    candidate.fit =
-        register_face(face, near(candidate.lump).samples(), candidate.placement, {}, coarse_fit());
-    candidate.likeness = likeness(face, candidate.fit);
-    if (!best || is_better(candidate.likeness, best->likeness)) best = &candidate;
-    if (best->likeness.share > sure_likeness && is_face(best->likeness)) break;
-  }
-  return best;
-}
-
-void add_candidates(std::vector<Candidate>& candidates, const std::vector<Guess>& guesses, size_t lump,
-                    const std::optional<Vec3>& up) {
-  for (const Guess& guess : guesses) {
-    if (up && guess.placement.rotation.col(1).dot(*up) < 0.5) continue;
-    candidates.emplace_back();
-    candidates.back().placement = guess.placement;
-    candidates.back().lump = lump;
-  }
-}
-
-TriangleMesh turned_over(TriangleMesh mesh) {
-  for (Triangle& t : mesh.triangles)
-    std::swap(t[1], t[2]);
-  return mesh;
+[[noreturn]] void refuse(const std::string& path, size_t surfaces) {
+  throw Error("'" + path + "': no face was found in it, of any size and turned any way" +
+              (surfaces > 1 ? ", neither in all of it nor mesh by mesh" : "") +
+              ". If there is one, say where: --landmarks FILE with the two outer corners of the eyes, "
+              "exocanthion_left and exocanthion_right (left is the subject's)");
 }
 
 }  // namespace
 
-FoundHead find_head(const GenericFace& face, const TriangleMesh& input, const std::string& path,
-                    const std::optional<Placement>& hint, const std::optional<Vec3>& up) {
-  const int sample_count = 8000;
+FoundHead find_head(const GenericFace& face, std::span<const TriangleMesh> surfaces, const std::string& path,
+                    const HeadHints& hints) {
+  struct Looked {
+    std::unique_ptr<SearchedSurface> surface;
+    std::unique_ptr<Search> search;
+    size_t index;
+  };
+  std::vector<Looked> looked;
+  const bool is_told = hints.given.size() >= 2;
+  Looked* best = nullptr;
+  const auto judge = [&](Looked& one) {
+    if (!one.search->best().fit.used.empty() &&
+        (!best || one.search->best().likeness.score() > best->search->best().likeness.score()))
+      best = &one;
+    return best && best->search->has_face(plain_score);
+  };
+  looked.reserve(surfaces.size());
+  bool is_plain = false;
+  for (size_t s = 0; s < surfaces.size() && !is_plain; ++s) {
+    auto surface = std::make_unique<SearchedSurface>(surfaces[s]);
+    if (surface->open().size() < 50) continue;
+    auto search = std::make_unique<Search>(face, *surface, hints);
+    looked.push_back({std::move(surface), std::move(search), s});
+    if (is_told) {
+      looked.back().search->by_anchors();
+    } else {
+      looked.back().search->by_lumps();
+      if (!looked.back().search->has_face(plain_score)) looked.back().search->by_eyes();
+    }
+    is_plain = judge(looked.back());
+  }
+  for (size_t s = 0; s < std::min(looked.size(), surfaces_for_noses) && !is_plain && !is_told; ++s) {
+    looked[s].search->by_nose();
+    is_plain = judge(looked[s]);
+  }
+  if (!best || (!is_told && !best->search->has_face(least_score))) refuse(path, surfaces.size());
   FoundHead found;
-  TriangleMesh mesh = input;
-  spatial::SurfaceQuery surface(mesh);
-  Samples even = sample_evenly(mesh, sample_count);
-  found.is_inside_out = is_inside_out(even, surface);
-  if (found.is_inside_out) {
-    mesh = turned_over(std::move(mesh));
-    surface = spatial::SurfaceQuery(mesh);
-    even = sample_evenly(mesh, sample_count);
-  }
-  std::vector<Ball> lumps;
-  std::vector<Candidate> candidates;
-  if (hint) {
-    lumps = {{(*hint)(face.vault.centre), face.vault.radius * hint->scale}};
-    candidates.resize(1);
-    candidates.front().placement = *hint;
-  } else {
-    lumps = round_lumps(open_samples(even, surface), 7);
-    for (size_t l = 0; l < lumps.size(); ++l)
-      add_candidates(candidates, guess_placements(face, surface, lumps[l], 16), l, up);
-  }
-  LumpSamples near(mesh, surface, lumps);
-  const Candidate* best = fit_best(face, near, candidates);
-  std::vector<Candidate> partial;
-  const double extent = bounds(even.points).size().norm();
-  if (!hint && !lumps.empty() && (!best || !is_face(best->likeness) || may_be_patch(*best, extent))) {
-    const size_t whole = lumps.size() - 1;
-    add_candidates(partial, guess_by_nose(face, near(whole), 48), whole, up);
-    const Candidate* by_nose = fit_best(face, near, partial);
-    if (by_nose && (!best || is_better(by_nose->likeness, best->likeness))) best = by_nose;
-  }
-  if (!best || !is_face(best->likeness))
-    throw Error(
-        "'" + path +
-        "': no face was found in it. If there is one, give --landmarks FILE with at least four points on the "
-        "skin that are not in one plane, such as pronasale, menton, exocanthion_left and exocanthion_right; "
-        "if it is one mesh among many, name it with --skin");
-  found.fit = best->fit;
-  found.likeness = best->likeness.share;
+  found.fit = best->search->best().fit;
+  found.likeness = best->search->best().likeness;
+  found.surface = best->index;
+  found.is_inside_out = best->surface->is_inside_out();
+  found.is_doubtful = !best->search->has_face(plain_score);
   return found;
+}
+
+FoundHead find_head(const GenericFace& face, const TriangleMesh& mesh, const std::string& path,
+                    const HeadHints& hints) {
+  return find_head(face, std::span<const TriangleMesh>(&mesh, 1), path, hints);
 }
 
 }  // namespace fascia::landmarks

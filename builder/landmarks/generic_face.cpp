@@ -5,6 +5,7 @@
 #include <iterator>
 #include <sstream>
 
+#include "builder/landmarks/likeness.h"
 #include "builder/landmarks/spheres.h"
 #include "geometry/error.h"
 
@@ -147,9 +148,11 @@ GenericFace generic_face(const anatomy::GenericAnatomy& anatomy) {
       face.is_feature.push_back(is_face && spacing_at(p, features) < 0.0055);
     }
   }
-  // Found as it will be found on other meshes, so that the two are alike.
+  // Found as they will be found on other meshes, so that the two are alike.
   const spatial::SurfaceQuery surface(face.skin);
   face.vault = round_lumps(open_samples(sample_evenly(face.skin, 3000), surface), 2).front();
+  face.relief = relief(Neighbours(open_samples(sample_evenly(face.skin, 5000), surface)), face.points.points,
+                       face.points.normals, 1.0);
   return face;
 }
 

@@ -8,6 +8,11 @@
 
 namespace fascia::landmarks {
 
+/// How far a surface stands out of its surroundings at each of some points, at two scales (see likeness.h).
+struct Relief {
+  std::vector<double> fine, broad;
+};
+
 /// The generic head as what is compared with a mesh: points of its outer skin, dense about eyes, nose and
 /// mouth.
 struct GenericFace {
@@ -16,6 +21,7 @@ struct GenericFace {
   std::vector<double> weights;            ///< what a point says about the head's place: 1 face .. 0 neck
   std::vector<bool> is_face;              ///< in front of the ears, between hairline and chin
   std::vector<bool> is_feature;           ///< about eyes, nose and mouth
+  Relief relief;                          ///< at `points`
   TriangleMesh skin;                      ///< the whole skin
   std::vector<std::string> region_names;  ///< lip_upper, mouth_lining, nostril_left, ...
   std::vector<int> region_of_triangle;    ///< of `skin`, index into `region_names`

@@ -52,8 +52,8 @@ std::vector<Protrusion> protrusions(const Neighbours& samples, double radius, si
   return chosen;
 }
 
-/// Mean distance of the face's points from the samples that face as they do, in metres of the generic head,
-/// none counting more than 12 mm.
+}  // namespace
+
 double distance_from(const GenericFace& face, const std::vector<size_t>& points, const Neighbours& samples,
                      const Placement& placement) {
   const double most = 0.012;
@@ -69,16 +69,17 @@ double distance_from(const GenericFace& face, const std::vector<size_t>& points,
   return sum / static_cast<double>(points.size());
 }
 
-}  // namespace
+std::vector<size_t> some_face_points(const GenericFace& face, size_t stride) {
+  std::vector<size_t> some;
+  size_t passed = 0;
+  for (size_t i = 0; i < face.points.size(); ++i)
+    if (face.is_face[i] && passed++ % stride == 0) some.push_back(i);
+  return some;
+}
 
 std::vector<Guess> guess_by_nose(const GenericFace& face, const Neighbours& samples, int count) {
   const double extent = bounds(samples.samples().points).size().norm();
-  std::vector<size_t> face_points;
-  for (size_t i = 0; i < face.points.size(); ++i)
-    if (face.is_face[i]) face_points.push_back(i);
-  std::vector<size_t> few;
-  for (size_t i = 0; i < face_points.size(); i += 5)
-    few.push_back(face_points[i]);
+  const std::vector<size_t> few = some_face_points(face, 5);
   const Neighbours generic(face.points);
   const double nose_radius = 0.025;
   const Protrusion nose = protrusion_at(generic, face.nose_tip, nose_radius);

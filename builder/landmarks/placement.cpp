@@ -51,7 +51,7 @@ double quantile(const std::vector<Match>& all, double share) {
 }  // namespace
 
 Placement refine_placement(const GenericFace& face, const Neighbours& target, const Placement& start,
-                           int rounds, int stride, double* residual) {
+                           int rounds, int stride, double* residual, const std::vector<Anchor>& anchors) {
   Placement placement = start;
   if (residual) *residual = 1.0;
   for (int round = 0; round < rounds; ++round) {
@@ -64,25 +64,29 @@ Placement refine_placement(const GenericFace& face, const Neighbours& target, co
     Mat7 left = Mat7::Zero();
     Eigen::Matrix<double, 7, 1> right = Eigen::Matrix<double, 7, 1>::Zero();
     double sum = 0.0, total = 0.0;
+    // Unknowns: turn, shift and growth, all in units of the head's size about the pivot.
+    const auto hold = [&](const Vec3& from, const Vec3& to, const Vec3& n, double weight) {
+      const Vec3 arm = (from - pivot) / placement.scale;
+      Row7 row;
+      row << arm.cross(n).transpose(), n.transpose(), arm.dot(n);
+      left += weight * row.transpose() * row;
+      right += weight * row.transpose() * n.dot(to - from) / placement.scale;
+    };
     for (const Match& m : all) {
       const double ratio = m.distance / cut;
       if (ratio >= 1.0) continue;
       const double weight = m.weight * (1 - ratio * ratio) * (1 - ratio * ratio);
       sum += m.weight * m.distance;
       total += m.weight;
-      // Unknowns: turn, shift and growth, all in units of the head's size about the pivot.
-      const Vec3 arm = (m.from - pivot) / placement.scale, gap = (m.to - m.from) / placement.scale;
-      for (int axis = 0; axis < 4; ++axis) {
-        // The plane through the match counts fully; the point itself a little, which keeps bare spheres
-        // still.
-        const Vec3 n = axis == 3 ? m.normal : Vec3(Vec3::Unit(axis));
-        const double share = axis == 3 ? weight : 0.05 * weight;
-        Row7 row;
-        row << arm.cross(n).transpose(), n.transpose(), arm.dot(n);
-        left += share * row.transpose() * row;
-        right += share * row.transpose() * n.dot(gap);
-      }
+      // The plane through the match counts fully; the point itself a little, which keeps bare spheres still.
+      hold(m.from, m.to, m.normal, weight);
+      for (int axis = 0; axis < 3; ++axis)
+        hold(m.from, m.to, Vec3::Unit(axis), 0.05 * weight);
     }
+    const double anchor_weight = total / static_cast<double>(std::max<size_t>(1, anchors.size()));
+    for (const Anchor& anchor : anchors)
+      for (int axis = 0; axis < 3; ++axis)
+        hold(placement(anchor.generic), anchor.target, Vec3::Unit(axis), anchor_weight);
     if (total <= 0.0) return start;
     if (residual) *residual = sum / total;
     left.diagonal().array() += 1e-9 * left.trace();

@@ -145,18 +145,24 @@ Registration register_face(const GenericFace& face, const Samples& target_sample
     fit.residuals.push_back(foot.weight > 0.0 ? std::abs(foot.normal.dot(foot.point - front.at[i])) +
                                                     0.3 * (foot.point - front.at[i]).norm()
                                               : std::numeric_limits<double>::infinity());
+    fit.feet.push_back(foot.point);
+    fit.normals.push_back(foot.normal);
     fit.agreements.push_back(foot.weight > 0.0 ? foot.normal.dot(front.normals[i - pinned]) : -1.0);
     fit.overhangs.push_back(overhang(target, front.at[i], front.normals[i - pinned]));
   }
   return fit;
 }
 
-double overhang_at(const GenericFace& face, const Registration& fit, const Vec3& generic) {
-  std::array<std::pair<double, double>, 3> nearest;  // squared distance, overhang
+namespace {
+
+/// Of `values`, one a point of the fit: that of the point nearest to `generic`, median of three.
+double value_at(const GenericFace& face, const Registration& fit, const std::vector<double>& values,
+                const Vec3& generic) {
+  std::array<std::pair<double, double>, 3> nearest;  // squared distance, value
   nearest.fill({std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()});
   for (size_t i = 0; i < fit.used.size(); ++i) {
     const std::pair one((face.points.points[static_cast<size_t>(fit.used[i])] - generic).squaredNorm(),
-                        fit.overhangs[i]);
+                        values[i]);
     if (one < nearest.back()) nearest.back() = one;
     std::sort(nearest.begin(), nearest.end());
   }
@@ -164,23 +170,29 @@ double overhang_at(const GenericFace& face, const Registration& fit, const Vec3&
   return nearest[1].second;
 }
 
-Likeness likeness(const GenericFace& face, const Registration& fit) {
-  double good = 0.0, good_here = 0.0, total = 0.0, here = 0.0, features = 0.0, features_here = 0.0;
-  for (size_t i = 0; i < fit.used.size(); ++i) {
-    const auto point = static_cast<size_t>(fit.used[i]);
-    if (!face.is_face[point]) continue;
-    const bool is_on_mesh = fit.overhangs[i] < beyond_edge;
-    total += 1.0;
-    here += is_on_mesh;
-    features += face.is_feature[point];
-    features_here += face.is_feature[point] && is_on_mesh;
-    const double near = std::exp(-std::pow(fit.residuals[i] / 0.003, 2));
-    const double fits = near * std::clamp((fit.agreements[i] - 0.5) / 0.4, 0.0, 1.0);
-    good += fits;
-    good_here += is_on_mesh ? fits : 0.0;
+}  // namespace
+
+double overhang_at(const GenericFace& face, const Registration& fit, const Vec3& generic) {
+  return value_at(face, fit, fit.overhangs, generic);
+}
+
+double residual_at(const GenericFace& face, const Registration& fit, const Vec3& generic) {
+  return value_at(face, fit, fit.residuals, generic);
+}
+
+Placement similarity_of(const GenericFace& face, const Registration& fit) {
+  const std::vector<size_t> some = some_face_points(face, 2);
+  Eigen::Matrix3Xd from(3, static_cast<Eigen::Index>(some.size())), to = from;
+  for (size_t i = 0; i < some.size(); ++i) {
+    from.col(static_cast<Eigen::Index>(i)) = face.points.points[some[i]];
+    to.col(static_cast<Eigen::Index>(i)) = fit(face.points.points[some[i]]);
   }
-  if (total == 0.0) return {};
-  return {good / total, here > 0.0 ? good_here / here : 0.0, features > 0.0 ? features_here / features : 0.0};
+  const Mat4 map = Eigen::umeyama(from, to, true);
+  Placement placement;
+  placement.scale = map.topLeftCorner<3, 1>().norm();
+  placement.rotation = map.topLeftCorner<3, 3>() / placement.scale;
+  placement.shift = map.topRightCorner<3, 1>();
+  return placement;
 }
 
 }  // namespace fascia::landmarks

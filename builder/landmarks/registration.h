@@ -7,12 +7,6 @@
 
 namespace fascia::landmarks {
 
-/// A point of the generic head that must come to lie at a known one of the target.
-struct Anchor {
-  Vec3 generic, target;  ///< generic head's frame; mesh's frame
-  double weight = 1.0;   ///< of a correspondence found is at most 1
-};
-
 /// One stage of the fit.
 struct RegistrationStage {
   double lambda;  ///< smoothing of the thin plate, metres; about (smoothing length)^3 / (point spacing)^2
@@ -39,6 +33,8 @@ struct Registration {
   std::vector<double> agreements;  ///< cosine between the normals there
   std::vector<double> overhangs;   ///< how far along the generic surface the nearest place of the mesh is:
                                    ///< large beyond the mesh's edge
+  std::vector<Vec3> feet,
+      normals;  ///< where the surface is next to those points, and how it faces there; generic head's frame
   Vec3 operator()(const Vec3& generic) const { return placement(warp(generic)); }
 };
 
@@ -51,18 +47,17 @@ Registration register_face(const GenericFace& face, const Samples& target, const
                            const RegistrationOptions& options = coarse_fit(),
                            const splines::Warp& start = {});
 
+/// The similarity that `fit` moved, turned and grew the face by on the whole; what is then left to bend is
+/// proportions. Whatever placement a fit began from, a few rounds of this lead to the same one.
+Placement similarity_of(const GenericFace& face, const Registration& fit);
+
 /// Metres along the surface from which on a point is beyond the mesh's edge: samples are some 4 mm apart.
 inline constexpr double beyond_edge = 0.008;
 
 /// The overhang about a place on the generic head: that of the nearest of the fit's points, median of three.
 double overhang_at(const GenericFace& face, const Registration& fit, const Vec3& generic);
 
-/// How face-like a fit is.
-struct Likeness {
-  double share = 0.0;     ///< of the face's points: their surface is near and faces as it should
-  double on_mesh = 0.0;   ///< the same among the points that do not hang over the mesh's edge
-  double coverage = 0.0;  ///< share of the points of eyes, nose and mouth that do not hang over it
-};
-Likeness likeness(const GenericFace& face, const Registration& fit);
+/// The distance from the surface about a place on the generic head, likewise, metres of the generic head.
+double residual_at(const GenericFace& face, const Registration& fit, const Vec3& generic);
 
 }  // namespace fascia::landmarks

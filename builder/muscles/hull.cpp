@@ -53,10 +53,12 @@ void measure_sides(Carrier& carrier, Hull& hull) {
   }
 }
 
-/// Inner angle at corner `i`, in [0, 2π); above π where the corner is reflex.
+/// Inner angle at corner `i`, in [−π/2, 3π/2); above π where the corner is reflex. The tip of a sliver has an
+/// angle of nearly nothing, which rounding may turn below zero: counted as a full turn more, it would make
+/// the sum over the corners jump by 2π.
 double inner_angle(Carrier& carrier, const Hull& hull, int i) {
   const double angle = turn(hull.onward[i], hull.backward[i], carrier.normal(hull.corners[i]));
-  return angle < 0.0 ? angle + 2.0 * M_PI : angle;
+  return angle < -0.5 * M_PI ? angle + 2.0 * M_PI : angle;
 }
 
 /// Removes the most reflex corner. Returns false when all are convex.
@@ -85,6 +87,78 @@ std::vector<SurfacePoint> distinct(Carrier& carrier, const std::vector<SurfacePo
     if (!known) kept.push_back(point);
   }
   return kept;
+}
+
+/// `points` moved towards `middle` until they lie at `share` of their way from it.
+std::vector<SurfacePoint> drawn_in(Carrier& carrier, const SurfacePoint& middle,
+                                   const std::vector<SurfacePoint>& points, double share) {
+  std::vector<SurfacePoint> drawn;
+  for (const SurfacePoint& point : points) {
+    const geodesics::Path& path = carrier.connect(middle, point);
+    drawn.push_back(geodesics::point_along(carrier.surface, path, share * path.length));
+  }
+  return drawn;
+}
+
+/// Points just inside a chord of the layout may lie outside the geodesic where the surface is a saddle: they
+/// become corners. `chosen` are those of `points` that are corners already.
+void take_in_outlying(Carrier& carrier, const std::vector<SurfacePoint>& points,
+                      const std::vector<int>& chosen, Hull& hull) {
+  for (int i = 0; i < static_cast<int>(points.size()); ++i) {
+    if (std::find(chosen.begin(), chosen.end(), i) != chosen.end()) continue;
+    for (int k = 0; k < hull.size(); ++k) {
+      const Vec3 offset = carrier.at(points[i]) - hull.positions[k];
+      const double along = offset.dot(hull.onward[k]);
+      if (along <= 0.0 || along >= hull.sides[k] ||
+          (offset - along * hull.onward[k]).norm() > 0.1 * hull.sides[k])
+        continue;
+      const Vec3 direction = direction_at_start(carrier.connect(hull.corners[k], points[i]));
+      if (turn(hull.onward[k], direction, carrier.normal(hull.corners[k])) > -1e-6) continue;
+      hull.corners.insert(hull.corners.begin() + k + 1, points[i]);
+      measure_sides(carrier, hull);
+      break;
+    }
+  }
+}
+
+double turning_of(Carrier& carrier, const Hull& hull) {
+  double turning = 0.0;
+  for (int i = 0; i < hull.size(); ++i)
+    turning += M_PI - inner_angle(carrier, hull, i);
+  return turning;
+}
+
+/// The hull of three or more distinct points: the planar one in geodesic polar coordinates about `middle`,
+/// mended where the surface's curvature makes a difference. `outline` receives the turning of what it was
+/// before, which tells how much of the surface it goes round.
+Hull hull_about(Carrier& carrier, const SurfacePoint& middle, const std::vector<SurfacePoint>& points,
+                double& outline) {
+  Hull hull;
+  const std::vector<int> chosen = planar_hull(polar_layout(carrier, middle, points));
+  for (int i : chosen)
+    hull.corners.push_back(points[i]);
+  measure_sides(carrier, hull);
+  outline = hull.turning = 2.0 * M_PI;
+  if (hull.size() < 3) return hull;
+  outline = turning_of(carrier, hull);
+  take_in_outlying(carrier, points, chosen, hull);
+  while (remove_reflex(carrier, hull)) {
+  }
+  hull.turning = turning_of(carrier, hull);
+  return hull;
+}
+
+/// Whether an outline that turns by `outline` radians about `points` has an inside: the outer angles of half
+/// a closed surface add up to nothing. Those of small regions are unreliable, and such cannot cover half of
+/// anything.
+bool has_inside(Carrier& carrier, const SurfacePoint& middle, const std::vector<SurfacePoint>& points,
+                double outline) {
+  constexpr double least_turning = 0.3, small = 0.25;  // radians; of the surface's diagonal
+  if (outline >= least_turning) return true;
+  double reach = 0.0;
+  for (const SurfacePoint& corner : points)
+    reach = std::max(reach, carrier.connect(middle, corner).length);
+  return reach <= small * bounds(carrier.surface.mesh.vertices).size().norm();
 }
 
 }  // namespace
@@ -134,9 +208,9 @@ Vec3 direction_at_end(const geodesics::Path& path) {
 
 Hull geodesic_hull(Carrier& carrier, const std::vector<SurfacePoint>& points, const std::string& what,
                    double merge) {
-  Hull hull;
   const std::vector<SurfacePoint> kept = distinct(carrier, points, merge);
   if (kept.empty()) throw Error(what + ": the region has no points");
+  Hull hull;
   if (kept.size() <= 2) {
     hull.corners = kept;
     measure_sides(carrier, hull);
@@ -146,40 +220,16 @@ Hull geodesic_hull(Carrier& carrier, const std::vector<SurfacePoint>& points, co
   Vec3 centre = Vec3::Zero();
   for (const SurfacePoint& point : kept)
     centre += carrier.at(point) / double(kept.size());
-  const std::vector<Vec2> flat = polar_layout(carrier, carrier.closest(centre), kept);
-  std::vector<int> chosen = planar_hull(flat);
-  for (int i : chosen)
-    hull.corners.push_back(kept[i]);
-  measure_sides(carrier, hull);
-  if (hull.size() < 3) return hull;
-  // Points just inside a chord of the layout may lie outside the geodesic where the surface is a saddle.
-  for (int i = 0; i < static_cast<int>(kept.size()); ++i) {
-    if (std::find(chosen.begin(), chosen.end(), i) != chosen.end()) continue;
-    for (int k = 0; k < hull.size(); ++k) {
-      const Vec3 offset = carrier.at(kept[i]) - hull.positions[k];
-      const double along = offset.dot(hull.onward[k]);
-      if (along <= 0.0 || along >= hull.sides[k] ||
-          (offset - along * hull.onward[k]).norm() > 0.1 * hull.sides[k])
-        continue;
-      const Vec3 direction = direction_at_start(carrier.connect(hull.corners[k], kept[i]));
-      if (turn(hull.onward[k], direction, carrier.normal(hull.corners[k])) > -1e-6) continue;
-      hull.corners.insert(hull.corners.begin() + k + 1, kept[i]);
-      measure_sides(carrier, hull);
-      break;
-    }
+  const SurfacePoint middle = carrier.closest(centre);
+  constexpr double step = 0.85, least = 0.1;
+  for (double share = 1.0;; share *= step) {
+    const std::vector<SurfacePoint> drawn =
+        share < 1.0 ? distinct(carrier, drawn_in(carrier, middle, kept, share), merge) : kept;
+    double outline = 0.0;
+    hull = hull_about(carrier, middle, drawn, outline);
+    hull.kept = share;
+    if (has_inside(carrier, middle, drawn, outline) || share * step < least) return hull;
   }
-  while (remove_reflex(carrier, hull)) {
-  }
-  for (int i = 0; i < hull.size(); ++i)
-    hull.turning += M_PI - inner_angle(carrier, hull, i);
-  // A sliver, such as a region pressed flat on the surface's rim, has no reliable angles: the size tells.
-  double reach = 0.0;
-  for (const Vec2& p : flat)
-    reach = std::max(reach, p.norm());
-  if (hull.turning < 0.3 && reach > 0.25 * bounds(carrier.surface.mesh.vertices).size().norm())
-    throw Error(what +
-                ": the region covers half of the surface or more, so it has no convex hull; make it smaller");
-  return hull;
 }
 
 }  // namespace fascia::muscles

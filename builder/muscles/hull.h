@@ -39,6 +39,7 @@ struct Hull {
   std::vector<Vec3> backward;   ///< unit direction of the side to the corner before
   std::vector<double> sides;    ///< length to the next corner, metres
   double turning = 0.0;         ///< sum of the outer angles, radians: 2π less the curvature enclosed
+  double kept = 1.0;            ///< share of the region's extent that the hull is of; below 1 when shrunk
   int size() const { return static_cast<int>(corners.size()); }
 };
 
@@ -46,7 +47,9 @@ struct Hull {
 /// geodesic polar coordinates about their middle, then corners that are reflex between the geodesics to
 /// their neighbours removed and points left outside a side taken in, until neither is found. Points
 /// nearer than `merge` metres count as one; of one or two distinct points the hull is these.
-/// Throws `Error` naming `what` when the region covers half a closed surface or more: then it has no hull.
+/// A region that covers half a closed surface or more has no hull: it is drawn in towards its middle until
+/// it has one, and `Hull::kept` says by how much. Throws `Error` naming `what` when there are no points, or
+/// when they lie on parts of the surface that are not connected.
 Hull geodesic_hull(Carrier& carrier, const std::vector<SurfacePoint>& points, const std::string& what,
                    double merge = 1e-5);
 

@@ -89,8 +89,7 @@ Place make_place(const Inputs& inputs, const Edit& edit, const spatial::SurfaceQ
                                            muscle.name + (origin ? ": origin" : ": insertion"))
                          : carried(inputs, region.polygon);
   for (const Vec3& p : place.polygon)
-    if (!p.allFinite())
-      throw Error(muscle.name + ": a region has a point that is not finite; check landmarks and warp");
+    if (!p.allFinite()) throw Error("a region has a point that is not finite; check landmarks and warp");
   return place;
 }
 
@@ -216,6 +215,104 @@ void join_modioli(std::vector<Modiolus>& modioli, Muscle& ring) {
   }
 }
 
+/// What all muscles of a head are laid with, and what became of them so far.
+struct Workshop {
+  const Inputs& inputs;
+  const Options& options;
+  Carrier& smas;
+  const Depths& depths;
+  std::vector<const spatial::SurfaceQuery*> bones;
+  std::map<std::string, OrificeNet> nets;
+  std::map<std::string, Course> courses;
+  Result result;
+
+  /// Runs `make` for the muscle `name`. A muscle that cannot be made is left out with a warning and refuses
+  /// no head; what the user drew of it is an error that he is told of.
+  template <class Make>
+  bool attempt(const std::string& name, Make make) {
+    try {
+      make();
+      return true;
+    } catch (const Error& fault) {
+      if (options.edits.count(name)) throw;
+      result.warnings.push_back(name + " was left out (" + fault.what() +
+                                "); place the landmarks near it with --landmarks, or draw it in --edits");
+      return false;
+    }
+  }
+
+  /// Along the SMAS where the muscle can lie on it, else straight from region to region.
+  std::vector<Fibre> lay(const Course& course) {
+    std::vector<Fibre> fibres;
+    if (!runs_through_space(smas, course)) {
+      try {
+        fibres = lay_on_smas(smas, depths, course, options, result.warnings);
+      } catch (const Error& fault) {
+        result.warnings.push_back(course.muscle.name + " runs straight, for it has no way along the SMAS (" +
+                                  fault.what() + "); check the landmarks near it");
+      }
+    }
+    return fibres.empty() ? lay_through_space(smas, course, bones, options) : fibres;
+  }
+
+  std::vector<Fibre> lay_around(const anatomy::Muscle& from) {
+    const auto net = nets.find(from.band->orifice);
+    if (net == nets.end()) throw Error("the rings around " + from.band->orifice + " could not be laid");
+    return from.kind == MuscleKind::compressor
+               ? lay_compressors(depths, net->second, from, options)
+               : lay_rings(depths, net->second, from, result.modioli, options);
+  }
+
+  Muscle made(const anatomy::Muscle& from) {
+    Muscle muscle = described(from, options);
+    if (from.band) {
+      muscle.fibres = lay_around(from);
+      if (from.band->medial_on_bone) muscle.origin_on = Attachment::cranium;
+    } else {
+      const Course& course = courses.at(from.name);
+      muscle.origin = course.origin.polygon;
+      muscle.insertion = course.insertion.polygon;
+      muscle.fibres = lay(course);
+    }
+    for (const Fibre& fibre : muscle.fibres)
+      for (const FibrePoint& point : fibre.points)
+        if (!point.position.allFinite()) throw Error("a fibre has a point that is not finite");
+    if (from.kind == MuscleKind::sphincter_ring && from.band) join_modioli(result.modioli, muscle);
+    measure(muscle);
+    muscle.crossings = crossings(muscle.fibres, smas.query);
+    muscle.origin_distance = attachment_distance(inputs, muscle, true);
+    muscle.insertion_distance = attachment_distance(inputs, muscle, false);
+    return muscle;
+  }
+
+  void add(Muscle muscle) {
+    if (muscle.shortest < 1e-3)
+      result.warnings.push_back(muscle.name +
+                                ": a fibre is shorter than 1 mm; its regions lie on each other");
+    if (muscle.crossings > 0)
+      result.warnings.push_back(muscle.name + ": its fibres cross in " + std::to_string(muscle.crossings) +
+                                " places; its regions or landmarks near it may be misplaced");
+    result.muscles.push_back(std::move(muscle));
+  }
+};
+
+/// Nets around the orifices and the courses of what has regions, without those that cannot be made.
+void prepare_courses(Workshop& shop, const std::vector<anatomy::Muscle>& wanted) {
+  for (const auto& [orifice, reach] : orifice_reach(wanted))
+    shop.attempt("orbicularis of " + orifice, [&, name = orifice, band = reach] {
+      shop.nets[name] = orifice_net(shop.smas, shop.inputs.landmarks, name, band);
+    });
+  std::vector<Course> courses;
+  for (const anatomy::Muscle& muscle : wanted)
+    if (!muscle.band)
+      shop.attempt(muscle.name, [&] {
+        courses.push_back(make_course(shop.inputs, shop.options, shop.smas.query, muscle));
+      });
+  shop.result.modioli = gather_modioli(shop.smas, courses, shop.options);
+  for (Course& course : courses)
+    shop.courses.emplace(course.muscle.name, std::move(course));
+}
+
 }  // namespace
 
 Result build(const Inputs& inputs, const Options& options) {
@@ -232,47 +329,19 @@ Result build(const Inputs& inputs, const Options& options) {
   std::vector<anatomy::Muscle> wanted;
   for (const anatomy::Muscle& muscle : inputs.muscles)
     if (is_wanted(muscle, options)) wanted.push_back(edited(muscle, options));
-  std::map<std::string, OrificeNet> nets;
-  for (const auto& [orifice, reach] : orifice_reach(wanted))
-    nets[orifice] = orifice_net(smas, inputs.landmarks, orifice, reach);
-  std::vector<Course> courses;
-  for (const anatomy::Muscle& muscle : wanted)
-    if (!muscle.band) courses.push_back(make_course(inputs, options, query, muscle));
 
-  Result result;
-  result.modioli = gather_modioli(smas, courses, options);
-  size_t next = 0;
-  for (const anatomy::Muscle& from : wanted) {
-    Muscle muscle = described(from, options);
-    if (from.band) {
-      const OrificeNet& net = nets.at(from.band->orifice);
-      muscle.fibres = from.kind == MuscleKind::compressor
-                          ? lay_compressors(depths, net, from, options)
-                          : lay_rings(depths, net, from, result.modioli, options);
-      if (from.band->medial_on_bone) muscle.origin_on = Attachment::cranium;
-      if (from.kind == MuscleKind::sphincter_ring) join_modioli(result.modioli, muscle);
-    } else {
-      const Course& course = courses[next++];
-      muscle.origin = course.origin.polygon;
-      muscle.insertion = course.insertion.polygon;
-      if (!runs_through_space(smas, course)) muscle.fibres = lay_on_smas(smas, depths, course, options);
-      if (muscle.fibres.empty()) muscle.fibres = lay_through_space(smas, course, bones, options);
-    }
-    measure(muscle);
-    muscle.crossings = crossings(muscle.fibres, query);
-    muscle.origin_distance = attachment_distance(inputs, muscle, true);
-    muscle.insertion_distance = attachment_distance(inputs, muscle, false);
-    if (muscle.shortest < 1e-3)
-      result.warnings.push_back(muscle.name +
-                                ": a fibre is shorter than 1 mm; its regions lie on each other");
-    if (muscle.crossings > 0)
-      result.warnings.push_back(muscle.name + ": its fibres cross in " + std::to_string(muscle.crossings) +
-                                " places; its regions or landmarks near it may be misplaced");
-    result.muscles.push_back(std::move(muscle));
+  Workshop shop{inputs, options, smas, depths, bones, {}, {}, {}};
+  prepare_courses(shop, wanted);
+  for (const anatomy::Muscle& muscle : wanted) {
+    if (!muscle.band && !shop.courses.count(muscle.name)) continue;  // said already
+    const bool is_made = shop.attempt(muscle.name, [&] { shop.add(shop.made(muscle)); });
+    if (is_made) continue;
+    for (Modiolus& node : shop.result.modioli)
+      std::erase(node.muscles, muscle.name);
   }
-  for (Modiolus& node : result.modioli)
-    node.radius = measured_radius(node, result.muscles, query);
-  return result;
+  for (Modiolus& node : shop.result.modioli)
+    node.radius = measured_radius(node, shop.result.muscles, query);
+  return std::move(shop.result);
 }
 
 }  // namespace fascia::muscles

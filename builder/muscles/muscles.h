@@ -123,8 +123,10 @@ struct Result {
 /// rings at constant distance from the orifice, compressors run across them. Muscles that lie deep or
 /// away from the SMAS (chewing, tongue base, orbit), or whose way an opening of it bars (depressor septi),
 /// run from region to region through their waypoints. Fibres of one muscle that would cross are put in order.
-/// Throws `Error` naming the muscle when inputs are missing, an edit names no muscle, or a region makes no
-/// sense: a sketch with fewer than three points, off the head, of no extent, or whose curve crosses itself.
+/// A muscle that cannot be laid on this head is left out and named in `Result::warnings`, with the reason.
+/// Throws `Error` naming the muscle when inputs are missing, an edit names no muscle, or a region of an
+/// edited muscle makes no sense: a sketch with fewer than three points, off the head, of no extent, or whose
+/// curve crosses itself.
 Result build(const Inputs& inputs, const Options& options = {});
 
 /// Sets lengths, area, volume and thickness of `muscle` from its fibres.

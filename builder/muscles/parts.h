@@ -35,9 +35,10 @@ std::vector<Modiolus> gather_modioli(const Carrier& smas, std::vector<Course>& c
                                      const Options& options);
 
 /// Fibres on the SMAS at their depth: straps, fans and sheets by one construction. None when an opening of
-/// the SMAS bars the way of one of them, or they cannot be laid without crossing.
+/// the SMAS bars the way of one of them, or they cannot be laid without crossing. A region that had to be
+/// drawn in for want of a hull is added to `warnings`.
 std::vector<Fibre> lay_on_smas(Carrier& smas, const Depths& depths, const Course& course,
-                               const Options& options);
+                               const Options& options, std::vector<std::string>& warnings);
 
 /// Fibres straight through space from region to region by the waypoints, kept out of the bones.
 std::vector<Fibre> lay_through_space(const Carrier& smas, const Course& course,

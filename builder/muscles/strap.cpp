@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include "builder/muscles/order.h"
 #include "builder/muscles/parts.h"
@@ -86,10 +87,18 @@ Ends ends_radial(const Hull& origin, const Hull& insertion, const anatomy::Muscl
   return ends;
 }
 
-Ends find_ends(Carrier& smas, const Course& course, const Options& options) {
-  const std::string& name = course.muscle.name;
-  const Hull origin = geodesic_hull(smas, projected(smas, course.origin.polygon), name + ": origin");
-  const Hull insertion = geodesic_hull(smas, projected(smas, course.insertion.polygon), name + ": insertion");
+Ends find_ends(Carrier& smas, const Course& course, const Options& options,
+               std::vector<std::string>& warnings) {
+  const auto hull_of = [&](const Place& place, const char* end) {
+    const std::string what = course.muscle.name + ": " + end;
+    Hull hull = geodesic_hull(smas, projected(smas, place.polygon), what);
+    if (hull.kept < 1.0)
+      warnings.push_back(what + ": the region covers half of the SMAS or more and was drawn in to " +
+                         std::to_string(std::lround(100.0 * hull.kept)) +
+                         " % of its extent; check the landmarks near it, or draw it in --edits");
+    return hull;
+  };
+  const Hull origin = hull_of(course.origin, "origin"), insertion = hull_of(course.insertion, "insertion");
   const auto left = mutual_tangent(smas, origin, insertion, HullSide::right, HullSide::right);
   const auto right = mutual_tangent(smas, origin, insertion, HullSide::left, HullSide::left);
   if (!left || !right) return ends_radial(origin, insertion, course.muscle, options);
@@ -138,8 +147,8 @@ bool goes_round(const std::vector<Vec3>& line, const Vec3& from, const std::vect
 }  // namespace
 
 std::vector<Fibre> lay_on_smas(Carrier& smas, const Depths& depths, const Course& course,
-                               const Options& options) {
-  const Ends ends = find_ends(smas, course, options);
+                               const Options& options, std::vector<std::string>& warnings) {
+  const Ends ends = find_ends(smas, course, options, warnings);
   const size_t count = ends.origin.size();
   const Vec3 &middle_origin = ends.origin[count / 2], &middle_insertion = ends.insertion[count / 2];
   std::vector<Fibre> fibres;

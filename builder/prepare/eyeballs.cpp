@@ -86,20 +86,28 @@ Eyeball fit_sphere(const std::vector<Vec3>& points, double* rms) {
   return sphere;
 }
 
-std::optional<RoundPart> round_part(const std::vector<Vec3>& points, const Vec3& lids) {
+std::optional<RoundPart> round_part(const std::vector<Vec3>& points, const Vec3& lids, double width) {
   if (points.size() < 20) return std::nullopt;
   double rms = 0.0;
   RoundPart part;
   part.ball = fit_sphere(points, &rms);
   const Eyeball& ball = part.ball;
-  if (!(rms < 0.12 * ball.radius) || ball.radius < 0.006 || ball.radius > 0.025 ||
-      (ball.centre - lids).norm() > 0.03)
+  if (!(rms < 0.12 * ball.radius) || ball.radius < 0.2 * width || ball.radius > 0.85 * width ||
+      (ball.centre - lids).norm() > width || ball.centre.z() > lids.z() + 0.3 * ball.radius)
     return std::nullopt;
   std::bitset<24> covered;
   for (const Vec3& p : points)
     covered.set(direction_cell(p - ball.centre));
   part.coverage = static_cast<double>(covered.count()) / 24.0;
   return part;
+}
+
+Eyeball globe_behind(const Bounds& plate, double width) {
+  Eyeball globe;  // a fissure is some 30 mm wide before a globe of 24 mm
+  globe.radius = std::max(0.4 * width, 0.55 * plate.size().x());
+  globe.centre = plate.centre();
+  globe.centre.z() = plate.upper.z() - globe.radius;
+  return globe;
 }
 
 Vec3 gaze_axis(const Eyeball& ball, const std::vector<Vec3>& points, const std::vector<Triangle>& triangles) {

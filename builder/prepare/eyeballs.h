@@ -18,9 +18,15 @@ struct RoundPart {
                           ///< 0.5 and less a shell
 };
 
-/// Fits a ball to `points` (rig frame, metres) of a connected part; nothing when they are not round, not 6 to
-/// 25 mm in radius, or not within 30 mm of the middle `lids` between the corners of the eye.
-std::optional<RoundPart> round_part(const std::vector<Vec3>& points, const Vec3& lids);
+/// Fits a ball to `points` (rig frame, metres) of a connected part; nothing when they are not round, not of
+/// the size of an eyeball behind a palpebral fissure `width` metres wide (0.2 to 0.85 of it in radius), not
+/// within its width of the middle `lids` between the corners of the eye, or round about a place before the
+/// lids, as eyes that are painted on a hollow are.
+std::optional<RoundPart> round_part(const std::vector<Vec3>& points, const Vec3& lids, double width = 0.030);
+
+/// A globe for an eye that is a flat or hollow plate in the fissure: as far behind the plate as the front of
+/// a globe of that size would be. `plate` bounds it, `width` is the fissure's, metres.
+Eyeball globe_behind(const Bounds& plate, double width);
 
 /// Where an eyeball looks, a unit vector: through its cornea where that stands out of the sphere, else
 /// through the pole of a mesh whose triangles run together at the front, else straight ahead (+Z).

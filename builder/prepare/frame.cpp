@@ -111,10 +111,12 @@ Frame from_landmarks(const formats::Scene& scene, const formats::LandmarkFile& g
   const Similarity fit = procrustes(here, generic);
   const double metres =
       options.units == "auto" ? snapped_unit(fit.scale, frame.warnings) : declared_metres(options.units);
-  // A head that stands along the axes keeps them to the last digit; only a turned one is turned.
+  // A head that stands along the axes keeps them to the last digit. One that is turned or tilted is set
+  // upright, for what follows tells up and front from the axes: so it gets the same rig whichever way it
+  // looks.
   const Mat3 axes = nearest_axes(fit.rotation);
   const double angle = Eigen::AngleAxisd(Mat3(fit.rotation * axes.transpose())).angle();
-  const bool is_upright = axes.determinant() > 0 && angle < 25.0 * EIGEN_PI / 180.0;
+  const bool is_upright = axes.determinant() > 0 && angle < 5.0 * EIGEN_PI / 180.0;
   frame.input_to_metres = compose(metres, is_upright ? axes : fit.rotation);
   frame.units = unit_name(metres);
   return frame;
@@ -174,7 +176,7 @@ formats::LandmarkFile in_file_units(const formats::Scene& scene, const formats::
   for (double candidate : {1.0, 1e-3, 1e3, 1e-2, 1e2, 1e-1, 1e1}) {
     double sum = 0.0;
     for (const auto& [name, p] : given.points)
-      sum += surface.nearest_place(candidate * p).distance;
+      sum += surface.nearest_place(candidate * p - scene.offset).distance;
     if (sum < 0.5 * best) {
       best = sum;
       ratio = candidate;
@@ -182,7 +184,7 @@ formats::LandmarkFile in_file_units(const formats::Scene& scene, const formats::
   }
   formats::LandmarkFile file = given;
   for (auto& [name, p] : file.points)
-    p *= ratio;
+    p = ratio * p - scene.offset;
   return file;
 }
 

@@ -1,11 +1,13 @@
 #include "builder/prepare/parts.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 
 #include "builder/prepare/eyeballs.h"
 #include "builder/prepare/part_names.h"
+#include "builder/prepare/tooth_rows.h"
 #include "builder/spatial/surface_query.h"
 #include "geometry/connectivity.h"
 #include "geometry/error.h"
@@ -192,15 +194,16 @@ Part of_jaw(Part upper, const NamedPart& named, const Component& component,
 }
 
 /// Place says what a part can be; among that the name decides, and where place says nothing, the name alone.
-Part part_of(const Component& component, const NamedPart& named, const std::map<std::string, Vec3>& landmarks,
-             bool& is_by_place) {
+Part part_of(const Component& component, const NamedPart& named,
+             const std::map<std::string, Vec3>& landmarks) {
   const Placed placed = place_of(component, landmarks);
   // Brows and lashes of both eyes are often one mesh, which lies between the eyes; cards of hair lie anywhere
   // about the head.
   const bool may_be = named.part && (placed.zone == Zone::unknown || zone_of(*named.part) == placed.zone ||
                                      (zone_of(*named.part) != Zone::mouth && placed.zone != Zone::mouth));
-  is_by_place = !may_be;
-  if (!may_be) return placed.likely;
+  // Some files have the tongue in the mesh of the teeth.
+  const bool is_tongue = placed.likely == Part::tongue && named.part == Part::teeth_upper;
+  if (!may_be || is_tongue) return placed.likely;
   if (*named.part == Part::teeth_upper || *named.part == Part::gums_upper)
     return of_jaw(*named.part, named, component, landmarks);
   return *named.part;
@@ -219,22 +222,60 @@ double middle_of_face(const std::map<std::string, Vec3>& landmarks) {
   return count > 0.0 ? sum / count : 0.0;
 }
 
-/// Two rows of teeth that place alone took for upper ones: the lower of them is the lower row.
-void tell_rows_apart(const std::vector<Component>& components, const std::vector<bool>& is_by_place,
-                     std::vector<Part>& parts) {
-  double lowest = 1e300, highest = -1e300;
-  bool has_both = false;
+/// Heights of the rows of teeth, NaN for a row that is not there.
+struct RowHeights {
+  double upper = NAN, lower = NAN;
+};
+
+/// Puts every piece of teeth in its row by where all of them stand; what its name says goes first, and one
+/// row alone is told by the mouth's line. A piece that is both rows in one is neither.
+RowHeights tell_rows_apart(const std::vector<Component>& components, const std::vector<NamedPart>& names,
+                           const std::map<std::string, Vec3>& landmarks, std::vector<Part>& parts) {
+  constexpr double over = 0.006, under = 0.012;  // metres about the mouth's line that one row does not fill
+  const auto mouth = landmark(landmarks, "stomion");
+  std::vector<size_t> pieces;
+  std::vector<Bounds> boxes;
+  double height = 0.0;
   for (size_t c = 0; c < parts.size(); ++c) {
     if (parts[c] != Part::teeth_upper && parts[c] != Part::teeth_lower) continue;
-    has_both |= parts[c] == Part::teeth_lower;
-    lowest = std::min(lowest, components[c].box.centre()[1]);
-    highest = std::max(highest, components[c].box.centre()[1]);
+    pieces.push_back(c);
+    boxes.push_back(components[c].box);
+    height += components[c].box.centre()[1];
   }
-  if (has_both || highest - lowest < 0.004) return;
-  for (size_t c = 0; c < parts.size(); ++c)
-    if (is_by_place[c] && parts[c] == Part::teeth_upper &&
-        components[c].box.centre()[1] < 0.5 * (lowest + highest))
-      parts[c] = Part::teeth_lower;
+  const std::optional<std::vector<bool>> lower = lower_row(boxes);
+  const bool all_lower = mouth && height < ((*mouth)[1] - 0.003) * static_cast<double>(boxes.size());
+  std::array<double, 2> sums{}, counts{};
+  for (size_t i = 0; i < pieces.size(); ++i) {
+    const NamedPart::Jaw said = names[pieces[i]].jaw;
+    if (!lower && said == NamedPart::Jaw::unsaid && mouth && boxes[i].upper[1] > (*mouth)[1] + over &&
+        boxes[i].lower[1] < (*mouth)[1] - under) {
+      parts[pieces[i]] = Part::mouth_interior;
+      continue;
+    }
+    const bool is_lower = said != NamedPart::Jaw::unsaid ? said == NamedPart::Jaw::lower
+                          : lower                        ? (*lower)[i]
+                                                         : all_lower;
+    parts[pieces[i]] = is_lower ? Part::teeth_lower : Part::teeth_upper;
+    sums[is_lower] += boxes[i].centre()[1];
+    counts[is_lower] += 1.0;
+  }
+  return {counts[0] > 0.0 ? sums[0] / counts[0] : NAN, counts[1] > 0.0 ? sums[1] / counts[1] : NAN};
+}
+
+/// Gums go with the row of teeth they lie beyond, those of both rows in one with both jaws.
+void tell_gums_apart(const std::vector<Component>& components, const std::vector<NamedPart>& names,
+                     const RowHeights& rows, std::vector<Part>& parts) {
+  if (std::isnan(rows.upper) || std::isnan(rows.lower)) return;
+  for (size_t c = 0; c < parts.size(); ++c) {
+    if ((parts[c] != Part::gums_upper && parts[c] != Part::gums_lower) ||
+        names[c].jaw != NamedPart::Jaw::unsaid)
+      continue;
+    const Bounds& box = components[c].box;
+    if (box.upper[1] > rows.upper && box.lower[1] < rows.lower)
+      parts[c] = Part::mouth_interior;
+    else
+      parts[c] = box.centre()[1] > 0.5 * (rows.upper + rows.lower) ? Part::gums_upper : Part::gums_lower;
+  }
 }
 
 }  // namespace
@@ -249,11 +290,17 @@ const char* part_name(Part part) {
 
 namespace {
 
-std::optional<Vec3> middle_of_lids(const std::map<std::string, Vec3>& landmarks, bool is_left) {
+/// The palpebral fissure: the middle between its corners, and its width.
+struct Lids {
+  Vec3 middle = Vec3::Zero();
+  double width = 0.030;  ///< metres
+};
+
+std::optional<Lids> lids_of(const std::map<std::string, Vec3>& landmarks, bool is_left) {
   const auto outer = landmark(landmarks, is_left ? "exocanthion_left" : "exocanthion_right");
   const auto inner = landmark(landmarks, is_left ? "endocanthion_left" : "endocanthion_right");
   if (!outer || !inner) return std::nullopt;
-  return Vec3(0.5 * (*outer + *inner));
+  return Lids{0.5 * (*outer + *inner), (*outer - *inner).norm()};
 }
 
 /// The triangles of one component, with its own vertices.
@@ -264,13 +311,34 @@ TriangleMesh component_mesh(const WeldedScene& welded, size_t component) {
   return submesh(welded.surface, is_kept, nullptr);
 }
 
+/// Marks the plates that are called an eye and lie in the fissure of one side, as anime characters have them.
+std::optional<Eyeball> find_flat_eye(const std::vector<Component>& components,
+                                     const std::vector<NamedPart>& names, const Lids& lids, bool is_left,
+                                     int skin, std::vector<std::optional<Part>>& known) {
+  Bounds plate;
+  bool any = false;
+  for (size_t c = 0; c < components.size(); ++c) {
+    const Bounds& box = components[c].box;
+    const Vec3 off = box.centre() - lids.middle, size = box.size();
+    if (static_cast<int>(c) == skin || known[c] || !names[c].says_eye ||
+        off.head<2>().norm() > 0.5 * lids.width || std::abs(off.z()) > lids.width ||
+        size.x() > 1.5 * lids.width || size.z() > size.x())
+      continue;
+    known[c] = is_left ? Part::eye_left : Part::eye_right;
+    plate.lower = plate.lower.cwiseMin(box.lower);
+    plate.upper = plate.upper.cwiseMax(box.upper);
+    any = true;
+  }
+  return any ? std::optional<Eyeball>(globe_behind(plate, lids.width)) : std::nullopt;
+}
+
 /// Marks the eyeball of one side and shells over it. An eyeball is what is round behind the lids and covers
 /// the most directions.
 std::optional<Eyeball> find_eye(const WeldedScene& welded, const std::vector<Component>& components,
                                 const std::vector<NamedPart>& names,
                                 const std::map<std::string, Vec3>& landmarks, bool is_left, int skin,
                                 std::vector<std::optional<Part>>& known) {
-  const auto lids = middle_of_lids(landmarks, is_left);
+  const auto lids = lids_of(landmarks, is_left);
   std::vector<std::pair<size_t, RoundPart>> round;
   double most = 0.0;
   for (size_t c = 0; c < components.size(); ++c) {
@@ -279,7 +347,8 @@ std::optional<Eyeball> find_eye(const WeldedScene& welded, const std::vector<Com
     if (!lids && !names[c].says_eye) continue;
     const Vec3 size = components[c].box.size();
     if (!(size.minCoeff() > 0.25 * size.maxCoeff())) continue;
-    const auto part = round_part(components[c].points, lids ? *lids : components[c].box.centre());
+    const auto part = lids ? round_part(components[c].points, lids->middle, lids->width)
+                           : round_part(components[c].points, components[c].box.centre());
     if (!part) continue;
     round.emplace_back(c, *part);
     most = std::max(most, part->coverage);
@@ -295,7 +364,7 @@ std::optional<Eyeball> find_eye(const WeldedScene& welded, const std::vector<Com
     eye = part.ball;
     of = c;
   }
-  if (!eye) return std::nullopt;
+  if (!eye) return lids ? find_flat_eye(components, names, *lids, is_left, skin, known) : std::nullopt;
   const TriangleMesh mesh = component_mesh(welded, of);
   eye->gaze = gaze_axis(*eye, mesh.vertices, mesh.triangles);
   return eye;
@@ -316,13 +385,10 @@ Parts recognise_parts(const formats::Scene& scene, const WeldedScene& welded,
   known[static_cast<size_t>(skin)] = Part::skin;
   parts.eye_left = find_eye(welded, components, names, landmarks, true, skin, known);
   parts.eye_right = find_eye(welded, components, names, landmarks, false, skin, known);
-  std::vector<bool> is_by_place(components.size(), false);
-  for (size_t c = 0; c < components.size(); ++c) {
-    bool by_place = false;
-    parts.component_parts[c] = known[c] ? *known[c] : part_of(components[c], names[c], landmarks, by_place);
-    is_by_place[c] = by_place;
-  }
-  tell_rows_apart(components, is_by_place, parts.component_parts);
+  for (size_t c = 0; c < components.size(); ++c)
+    parts.component_parts[c] = known[c] ? *known[c] : part_of(components[c], names[c], landmarks);
+  const RowHeights rows = tell_rows_apart(components, names, landmarks, parts.component_parts);
+  tell_gums_apart(components, names, rows, parts.component_parts);
   return parts;
 }
 

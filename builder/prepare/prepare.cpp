@@ -5,6 +5,7 @@
 #include "builder/spatial/surface_query.h"
 #include "geometry/connectivity.h"
 #include "geometry/error.h"
+#include "geometry/slivers.h"
 
 namespace fascia::prepare {
 
@@ -27,6 +28,19 @@ std::map<std::string, Vec3> onto_skin(const formats::Scene& scene, const spatial
     projected[name] = hit.position;
   }
   return projected;
+}
+
+/// The skin that is computed with: without triangles that have no direction. `skin_vertex[v]` receives the
+/// index in it of the surface's vertex v, or -1.
+TriangleMesh computing_skin(const TriangleMesh& surface, const std::vector<bool>& is_skin,
+                            std::vector<int>& skin_vertex) {
+  constexpr double lowest = 2e-6;  // metres: what single precision leaves of a height in a whole body
+  std::vector<int> mended;
+  const TriangleMesh skin = submesh(surface, is_skin, &skin_vertex);
+  TriangleMesh sound = without_slivers(skin, lowest, &mended);
+  for (int& v : skin_vertex)
+    if (v >= 0) v = mended[static_cast<size_t>(v)];
+  return sound;
 }
 
 }  // namespace
@@ -56,7 +70,7 @@ PreparedHead prepare(const formats::Scene& scene, const formats::LandmarkFile& g
       vertex_part[static_cast<size_t>(v)] = part;
   }
   std::vector<int> skin_vertex;
-  head.skin = submesh(welded.surface, is_skin, &skin_vertex);
+  head.skin = computing_skin(welded.surface, is_skin, skin_vertex);
   for (size_t m = 0; m < scene.meshes.size(); ++m) {
     PreparedMesh mesh;
     mesh.name = scene.meshes[m].name;

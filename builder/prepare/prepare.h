@@ -41,8 +41,9 @@ struct PreparedMesh {
   std::string name;
   std::vector<Vec3> positions;  ///< metres, rig frame
   std::vector<Triangle> triangles;
-  std::vector<Part> parts;         ///< one a vertex
-  std::vector<int> skin_vertices;  ///< vertex of PreparedHead::skin, -1 for other parts
+  std::vector<Part> parts;  ///< one a vertex
+  std::vector<int>
+      skin_vertices;  ///< vertex of PreparedHead::skin, -1 for other parts and vertices of slivers alone
 };
 
 /// An eyeball found in the input.
@@ -55,7 +56,7 @@ struct Eyeball {
 
 struct PreparedHead {
   std::vector<PreparedMesh> meshes;              ///< one for each mesh of the scene, same order
-  TriangleMesh skin;                             ///< welded, metres, rig frame
+  TriangleMesh skin;                             ///< welded, without slivers, metres, rig frame
   std::optional<spatial::SurfaceQuery> surface;  ///< of `skin`; there once prepared, shared by its copies
   std::map<std::string, Vec3> landmarks;         ///< the given ones, on the skin, metres, rig frame
   std::optional<Eyeball> eye_left, eye_right;
@@ -80,6 +81,12 @@ formats::LandmarkFile in_file_units(const formats::Scene& scene, const formats::
 /// All meshes of `scene` as one, in the file's axes and units; of the mesh named `only` alone when that is
 /// not empty. Throws fascia::Error, naming the meshes there are, when `only` names none.
 TriangleMesh joined_meshes(const formats::Scene& scene, const std::string& only = "");
+
+/// Ways to look at `scene` for a head, likely ones first, in the file's axes and units: all of it without the
+/// meshes whose names say hair, clothes, glasses, lashes or brows; all of it; then its largest meshes one by
+/// one, for hair and hats that no name tells. The mesh named `only` alone when that is not empty. Throws as
+/// `joined_meshes` does.
+std::vector<TriangleMesh> search_surfaces(const formats::Scene& scene, const std::string& only = "");
 
 /// Finds units, axes and parts of `scene`, and welds its skin.
 ///

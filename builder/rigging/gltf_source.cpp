@@ -1,75 +1,36 @@
 #include "builder/rigging/gltf_source.h"
 
-#include <cstring>
-#include <nlohmann/json.hpp>
+#include "gltf/edit/appendix.h"
 
 namespace fascia::rigging {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using gltf::Json;
 
-/// Collects the buffer of a made glTF.
-class Buffer {
- public:
-  size_t add(Json& json, const void* data, size_t size, int target, int component, const char* type,
-             size_t count) {
-    bytes.resize((bytes.size() + 3) / 4 * 4);
-    json["bufferViews"].push_back(
-        {{"buffer", 0}, {"byteOffset", bytes.size()}, {"byteLength", size}, {"target", target}});
-    const auto* raw = static_cast<const uint8_t*>(data);
-    bytes.insert(bytes.end(), raw, raw + size);
-    json["accessors"].push_back({{"bufferView", json["bufferViews"].size() - 1},
-                                 {"componentType", component},
-                                 {"count", count},
-                                 {"type", type}});
-    return json["accessors"].size() - 1;
-  }
-
-  std::vector<uint8_t> bytes;
-};
-
-size_t add_positions(Json& json, Buffer& buffer, const std::vector<Vec3>& positions) {
+template <class Point, int n>
+size_t add(gltf::Appendix& data, const std::vector<Point>& points, bool bounds) {
   std::vector<float> values;
-  Eigen::Vector3f low = Eigen::Vector3f::Constant(3e38F), high = -low;
-  for (const Vec3& p : positions) {
-    const Eigen::Vector3f q = p.cast<float>();
-    values.insert(values.end(), q.data(), q.data() + 3);
-    low = low.cwiseMin(q);
-    high = high.cwiseMax(q);
-  }
-  const size_t accessor =
-      buffer.add(json, values.data(), values.size() * 4, 34962, 5126, "VEC3", positions.size());
-  json["accessors"][accessor]["min"] = {low[0], low[1], low[2]};
-  json["accessors"][accessor]["max"] = {high[0], high[1], high[2]};
-  return accessor;
+  values.reserve(n * points.size());
+  for (const Point& p : points)
+    for (int k = 0; k < n; ++k)
+      values.push_back(static_cast<float>(p[k]));
+  return data.add_floats(values, n, bounds, gltf::vertex_target);
 }
 
-Json primitive_of(Json& json, Buffer& buffer, const formats::SceneMesh& mesh) {
+Json primitive_of(gltf::Appendix& data, const formats::SceneMesh& mesh) {
   Json attributes;
-  attributes["POSITION"] = add_positions(json, buffer, mesh.positions);
-  std::vector<float> normals;
-  for (const Vec3& n : vertex_normals({mesh.positions, mesh.triangles})) {
-    const Vec3 unit = n.squaredNorm() > 0 ? n : Vec3(Vec3::UnitZ());
-    for (int k = 0; k < 3; ++k)
-      normals.push_back(static_cast<float>(unit[k]));
-  }
-  attributes["NORMAL"] =
-      buffer.add(json, normals.data(), normals.size() * 4, 34962, 5126, "VEC3", mesh.positions.size());
-  if (mesh.uvs.size() == mesh.positions.size()) {
-    std::vector<float> uvs;
-    for (const Vec2& uv : mesh.uvs)
-      uvs.insert(uvs.end(), {static_cast<float>(uv[0]), static_cast<float>(uv[1])});
-    attributes["TEXCOORD_0"] =
-        buffer.add(json, uvs.data(), uvs.size() * 4, 34962, 5126, "VEC2", mesh.uvs.size());
-  }
-  std::vector<uint32_t> order;
+  attributes["POSITION"] = add<Vec3, 3>(data, mesh.positions, true);
+  std::vector<Vec3> normals = vertex_normals({mesh.positions, mesh.triangles});
+  for (Vec3& n : normals)
+    if (n.squaredNorm() == 0) n = Vec3::UnitZ();
+  attributes["NORMAL"] = add<Vec3, 3>(data, normals, false);
+  if (mesh.uvs.size() == mesh.positions.size())
+    attributes["TEXCOORD_0"] = add<Vec2, 2>(data, mesh.uvs, false);
+  std::vector<uint32_t> corners;
   for (const Triangle& t : mesh.triangles)
-    for (int corner : t)
-      order.push_back(static_cast<uint32_t>(corner));
-  const size_t indices =
-      buffer.add(json, order.data(), order.size() * 4, 34963, 5125, "SCALAR", order.size());
-  return {{"attributes", attributes}, {"indices", indices}, {"material", 0}};
+    corners.insert(corners.end(), t.begin(), t.end());
+  return {{"attributes", attributes}, {"indices", data.add_indices(corners)}, {"material", 0}};
 }
 
 const char* kind_name(formats::FileKind kind) {
@@ -82,9 +43,11 @@ const char* kind_name(formats::FileKind kind) {
 rig::GltfSource gltf_source(const formats::Scene& scene, const Mat4& input_to_metres) {
   rig::GltfSource source;
   source.record.format = kind_name(scene.kind);
+  if (!scene.offset.isZero(0))
+    source.record.json = Json{{"offset", {scene.offset[0], scene.offset[1], scene.offset[2]}}}.dump();
   if (scene.kind == formats::FileKind::glb || scene.kind == formats::FileKind::gltf) {
     source.json = scene.document.json;
-    source.bin = scene.document.binary;
+    source.bin = scene.document.bin;
     return source;
   }
   source.record.bytes = scene.bytes;
@@ -96,18 +59,26 @@ rig::GltfSource gltf_source(const formats::Scene& scene, const Mat4& input_to_me
   json["nodes"].push_back(root);
   json["materials"] = Json::array(
       {{{"name", "head"}, {"pbrMetallicRoughness", {{"metallicFactor", 0.0}, {"roughnessFactor", 0.6}}}}});
-  Buffer buffer;
+  gltf::Appendix data(json, source.bin);
   for (const formats::SceneMesh& mesh : scene.meshes) {
-    const Json primitive = primitive_of(json, buffer, mesh);
+    const Json primitive = primitive_of(data, mesh);
     json["meshes"].push_back({{"name", mesh.name}, {"primitives", Json::array({primitive})}});
     json["nodes"].push_back({{"name", mesh.name}, {"mesh", json["meshes"].size() - 1}});
     json["nodes"][0]["children"].push_back(json["nodes"].size() - 1);
   }
-  buffer.bytes.resize((buffer.bytes.size() + 3) / 4 * 4);
-  json["buffers"] = Json::array({{{"byteLength", buffer.bytes.size()}}});
-  source.json = json.dump();
-  source.bin = std::move(buffer.bytes);
+  json["buffers"] = Json::array({{{"byteLength", source.bin.size()}}});
+  source.json = gltf::text_of(json);
   return source;
+}
+
+Vec3 input_offset(const rig::SourceRecord& record) {
+  const Json notes = Json::parse(record.json.empty() ? "{}" : record.json, nullptr, false);
+  const Json offset = notes.is_object() ? notes.value("offset", Json()) : Json();
+  if (!offset.is_array() || offset.size() != 3) return Vec3::Zero();
+  Vec3 place = Vec3::Zero();
+  for (size_t k = 0; k < 3; ++k)
+    if (offset[k].is_number()) place[static_cast<Eigen::Index>(k)] = offset[k].get<double>();
+  return place;
 }
 
 }  // namespace fascia::rigging

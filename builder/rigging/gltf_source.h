@@ -11,6 +11,11 @@ namespace fascia::rigging {
 /// GLB and glTF go on as they are. From OBJ, PLY and STL a glTF is made: one mesh an object, positions as
 /// they stand in the file under one node that brings them to metres, +Y up; the file itself is kept in
 /// the record, so that its vertex order, polygons, axes and units come back.
+/// A scene that lies far from the origin is put there, and the record's notes say where it was.
 rig::GltfSource gltf_source(const formats::Scene& scene, const Mat4& input_to_metres);
+
+/// Where the input's coordinates had their origin, as seen from the rig's: what is written back is moved by
+/// it, in the input's units. Zero unless the input lay far off.
+Vec3 input_offset(const rig::SourceRecord& record);
 
 }  // namespace fascia::rigging

@@ -1,5 +1,4 @@
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <chrono>
 #include <optional>
@@ -13,36 +12,27 @@ namespace fascia::rigging {
 
 namespace {
 
+constexpr double given_weight = 100.0;  // of a correspondence that was found: at most 1
+
 bool has_all_required(const formats::LandmarkFile& given, const anatomy::GenericAnatomy& anatomy) {
   for (const anatomy::Landmark& landmark : anatomy.landmarks)
     if (landmark.required && !given.points.count(landmark.name)) return false;
   return true;
 }
 
-/// Where the given landmarks put the generic head; nothing when they are fewer than four or lie in a plane.
-std::optional<landmarks::Placement> placement_of(const formats::LandmarkFile& given,
-                                                 const anatomy::GenericAnatomy& anatomy) {
-  std::vector<Vec3> generic, here;
-  for (const auto& [name, p] : given.points)
-    if (const anatomy::Landmark* known = anatomy.landmark(name); known && known->skin) {
-      generic.push_back(*known->skin);
-      here.push_back(p);
-    }
-  if (generic.size() < 4) return std::nullopt;
-  const auto count = static_cast<Eigen::Index>(generic.size());
-  Eigen::Matrix3Xd from(3, count), to(3, count);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    from.col(i) = generic[static_cast<size_t>(i)];
-    to.col(i) = here[static_cast<size_t>(i)];
+/// The given landmarks that the anatomy knows, as places of the generic head's own.
+std::vector<landmarks::Anchor> anchors_of(const formats::LandmarkFile& given,
+                                          const anatomy::GenericAnatomy& anatomy) {
+  std::vector<landmarks::Anchor> anchors;
+  for (const auto& [name, p] : given.points) {
+    const anatomy::Landmark* known = anatomy.landmark(name);
+    if (!known || !known->skin) continue;
+    const bool repeats = std::any_of(anchors.begin(), anchors.end(), [&](const landmarks::Anchor& a) {
+      return (a.generic - *known->skin).norm() < 1e-3;
+    });
+    if (!repeats) anchors.push_back({*known->skin, p, given_weight});
   }
-  const Eigen::Matrix3Xd centred = from.colwise() - from.rowwise().mean();
-  if (Eigen::JacobiSVD<Eigen::Matrix3Xd>(centred).singularValues()[2] < 0.004) return std::nullopt;
-  const Mat4 map = Eigen::umeyama(from, to, true);
-  landmarks::Placement placement;
-  placement.scale = map.topLeftCorner<3, 1>().norm();
-  placement.rotation = map.topLeftCorner<3, 3>() / placement.scale;
-  placement.shift = map.topRightCorner<3, 1>();
-  return placement;
+  return anchors;
 }
 
 std::optional<Vec3> declared_up(const std::string& up) {
@@ -76,9 +66,9 @@ LocatedHead locate_head(const formats::Scene& scene, const formats::LandmarkFile
   located.landmarks = prepare::in_file_units(scene, given);
   located.landmarks.units = prepare::head_units;
   located.generic = landmarks::generic_face(anatomy);
-  const TriangleMesh mesh = prepare::joined_meshes(scene, options.skin);
-  located.found = landmarks::find_head(*located.generic, mesh, scene.path.string(),
-                                       placement_of(located.landmarks, anatomy), declared_up(options.up));
+  located.found = landmarks::find_head(*located.generic, prepare::search_surfaces(scene, options.skin),
+                                       scene.path.string(),
+                                       {anchors_of(located.landmarks, anatomy), declared_up(options.up)});
   for (const auto& [name, p] : landmarks::rough_landmarks(*located.generic, anatomy, *located.found))
     located.landmarks.points.emplace(name, p);
   return located;
@@ -116,6 +106,16 @@ formats::Scene turned_over(formats::Scene scene) {
   return scene;
 }
 
+/// What is said of a face that is hardly like one, and what to do next, by what was done already.
+std::string doubt(const formats::Scene& scene, const formats::LandmarkFile& given) {
+  const std::string found =
+      "'" + scene.path.string() +
+      "': the face found in it is unlike most faces; look at its landmarks (fascia render "
+      "RIG.glb --layers skin,landmarks) and, where they are off, ";
+  if (given.points.size() < 2) return found + "give exocanthion_left and exocanthion_right with --landmarks";
+  return found + "give more of them with --landmarks: " + std::to_string(given.points.size()) + " were given";
+}
+
 Points reference_points(const anatomy::GenericAnatomy& anatomy) {
   Points points;
   for (const anatomy::Landmark& landmark : anatomy.landmarks)
@@ -136,8 +136,9 @@ FoundLandmarks find_landmarks(const formats::Scene& scene, const formats::Landma
   const double started = now();
   const LocatedHead located = locate_head(scene, given, anatomy, options);
   if (located.found) {
-    result.likeness = located.found->likeness;
+    result.likeness = located.found->likeness.score();
     result.is_inside_out = located.found->is_inside_out;
+    if (located.found->is_doubtful) result.warnings.push_back(doubt(scene, given));
   }
   const double located_at = now();
   const Points reference = reference_points(anatomy);

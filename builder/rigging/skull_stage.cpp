@@ -1,4 +1,6 @@
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <cstdio>
 
 #include "builder/rigging/stages.h"
 #include "builder/skull/from_anatomy.h"
@@ -46,6 +48,48 @@ rig::Eye rig_eye(const std::optional<prepare::Eyeball>& eye) {
   return out;
 }
 
+std::string millimetres(double metres) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f mm", 1e3 * metres);
+  return text;
+}
+
+/// Fits the skull under `skin`, to the head's own teeth as far as they stand where the skin puts the jaws:
+/// those of avatars are often of another size than the face, or too far back, and would tear the bone from
+/// under its landmarks.
+skull::FitResult fit_with_teeth(const skull::Generic& generic, const skull::Exterior& skin,
+                                const std::map<std::string, skull::TargetLandmark>& targets,
+                                const skull::FitOptions& options) {
+  constexpr double good = 0.0025, worse = 0.0003;  // metres, of the landmarks' root mean square
+  skull::FitOptions other = options;
+  skull::FitResult fit = skull::fit(generic, skin, targets, other);
+  if (fit.landmark_rms <= good || (!options.teeth_upper && !options.teeth_lower)) return fit;
+  other.teeth_deviation = 0.0025;
+  fit = skull::fit(generic, skin, targets, other);
+  if (fit.landmark_rms <= good) return fit;
+  other.teeth_upper = other.teeth_lower = nullptr;
+  skull::FitResult by_skin = skull::fit(generic, skin, targets, other);
+  if (fit.landmark_rms <= by_skin.landmark_rms + worse) return fit;
+  by_skin.warnings.push_back(
+      "the head's own teeth do not stand where its skin puts the jaws (the skull's landmarks " +
+      millimetres(fit.landmark_rms) + " off with them, " + millimetres(by_skin.landmark_rms) +
+      " without): they move with the jaws, but the skull was fitted without them");
+  return by_skin;
+}
+
+void warn_of_bad_fit(skull::FitResult& fit) {
+  constexpr double bad_rms = 0.004, bad_max = 0.010;  // metres; people's heads fit to 1.5 .. 3 mm
+  if (fit.landmark_rms < bad_rms && fit.landmark_max < bad_max) return;
+  const auto worst = std::max_element(fit.landmarks.begin(), fit.landmarks.end(),
+                                      [](const skull::FittedLandmark& a, const skull::FittedLandmark& b) {
+                                        return a.confidence * a.residual < b.confidence * b.residual;
+                                      });
+  if (worst == fit.landmarks.end()) return;
+  fit.warnings.push_back("the skull fits its landmarks badly (" + millimetres(fit.landmark_rms) +
+                         " in the mean, " + millimetres(worst->residual) + " at '" + worst->name +
+                         "'): check that landmark, or give --tissue-scale for a head that is no adult's");
+}
+
 }  // namespace
 
 rig::Surface rig_surface(const TriangleMesh& mesh) {
@@ -65,11 +109,15 @@ skull::FitResult fit_skull(const anatomy::GenericAnatomy& anatomy, const prepare
     targets[name] = {landmark.position, landmark.confidence};
   skull::FitOptions options;
   options.tissue_scale = tissue_scale;
+  const skull::Generic generic = skull::from_anatomy(anatomy);
+  const skull::Exterior skin = skull::exterior(head.skin);
   const TriangleMesh upper = part_mesh(head, prepare::Part::teeth_upper),
                      lower = part_mesh(head, prepare::Part::teeth_lower);
   if (!upper.empty()) options.teeth_upper = &upper;
   if (!lower.empty()) options.teeth_lower = &lower;
-  return skull::fit(skull::from_anatomy(anatomy), head.skin, targets, options);
+  skull::FitResult fit = fit_with_teeth(generic, skin, targets, options);
+  warn_of_bad_fit(fit);
+  return fit;
 }
 
 rig::Skull rig_skull(const skull::FitResult& skull, const prepare::PreparedHead& head,

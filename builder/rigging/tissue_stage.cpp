@@ -132,6 +132,7 @@ rig::Tissue build_tissue(const formats::Scene& scene, const prepare::PreparedHea
   tissue::TissueOptions tissue_options;
   tissue_options.levels = levels_up_to(options.detail);
   tissue::TissueResult built = tissue::build(inputs, tissue_options);
+  report.warnings.insert(report.warnings.end(), built.warnings.begin(), built.warnings.end());
   for (const auto& figures : built.figures) {
     report.tissue.push_back({figures.level, figures.nodes, figures.springs});
     if (figures.turned_prisms > 0)

@@ -19,7 +19,6 @@
 namespace fascia::skull {
 namespace {
 
-constexpr double evidence_sd = 0.0005;  // m, of teeth that are seen
 
 void check_scale(double scale, const std::string& what) {
   if (!(scale >= 0.05 && scale <= 10))
@@ -84,14 +83,16 @@ void Fitter::State::register_teeth() {
       Observation observation;
       observation.from = point;
       observation.to = transform(found, point);
-      observation.sd = evidence_sd;
+      observation.sd = options.teeth_deviation;
       teeth.push_back(observation);
     }
     return found;
   };
   const auto upper = match(generic.teeth_upper, options.teeth_upper);
   const auto lower = match(generic.teeth_lower, options.teeth_lower);
-  patches = make_patches(generic, upper, lower);
+  constexpr double firm = 0.001;  // m
+  const bool replaced = options.teeth_deviation <= firm;
+  patches = make_patches(generic, replaced ? upper : std::nullopt, replaced ? lower : std::nullopt);
   options.teeth_upper = options.teeth_lower = nullptr;
 }
 

@@ -67,6 +67,8 @@ struct FitOptions {
   double clearance_floor = 0.002;             ///< ...and at least this, m (scaled down with tissue_scale < 1)
   const TriangleMesh* teeth_upper = nullptr;  ///< teeth that the head already has, m
   const TriangleMesh* teeth_lower = nullptr;
+  double teeth_deviation = 0.0005;  ///< of the bone from those teeth, m; above 0.001 they bend the jaws
+                                    ///< towards them instead of replacing the generic ones
   bool trim_uncovered = true;  ///< leave out what would lie under skin that the head does not have
 };
 

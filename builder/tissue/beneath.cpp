@@ -95,10 +95,15 @@ Beneath find_beneath(const TissueInputs& inputs, const FaceRegion& region, const
   for (size_t v = 0; v < n; ++v)
     lengths[v] = smoothing * edge_growth(options, region.feature_distance[v]);
   const SurfaceSmoother smoother(region.mesh, lengths);
-  beneath.normals = vertex_normals(region.mesh);
+  const std::vector<Vec3> own_normals = vertex_normals(region.mesh);
+  beneath.normals = own_normals;
   smoother.smooth(beneath.normals);
-  for (Vec3& normal : beneath.normals)
-    normal.normalize();
+  for (size_t v = 0; v < n; ++v) {
+    // Where sheets lie back to back, what is evened out may cancel.
+    Vec3& normal = beneath.normals[v];
+    normal = normal.norm() > 0.05 ? Vec3(normal.normalized()) : own_normals[v];
+    if (normal.isZero()) normal = Vec3::UnitZ();
+  }
   const Bones bones = bones_of(inputs);
   find_depths(inputs, region, bones, beneath);
   const std::vector<double> smas_limit = beneath.smas_depth, inner_limit = beneath.inner_depth;
@@ -109,15 +114,10 @@ Beneath find_beneath(const TissueInputs& inputs, const FaceRegion& region, const
     beneath.inner_depth[v] = std::max(std::min(beneath.inner_depth[v], inner_rise * inner_limit[v]),
                                       below_smas(beneath.smas_depth[v]));
   }
-  std::vector<bool> rim(n, false);
-  for (const auto& loop : boundary_loops(region.mesh, connectivity(region.mesh)))
-    for (const int v : loop)
-      rim[static_cast<size_t>(v)] = region.outer[static_cast<size_t>(v)];
-  std::vector<double> lips = region.opening_distance[static_cast<size_t>(Opening::mouth)];
-  if (lips.empty()) lips.assign(n, 1e9);
+  const std::vector<double>& lips = region.opening_distance[static_cast<size_t>(Opening::mouth)];
   beneath.lower_lip = lower_lip(inputs, region.mesh, region.outer, lips);
   beneath.jaw_weight =
-      jaw_weights(region.mesh, rim, bones, {lips, beneath.lower_lip}, inputs.mechanics.jaw_influence);
+      jaw_weights(region.mesh, region.rim, bones, {lips, beneath.lower_lip}, inputs.mechanics.jaw_influence);
   return beneath;
 }
 

@@ -207,13 +207,15 @@ std::vector<rig::Binding> bind_parts(const TissueInputs& inputs, const FaceRegio
   const MovingSkin moving{skin, columns.mesh.vertices};
   for (const PartMesh& part : inputs.parts) {
     rig::Binding binding = empty_binding(part);
-    if (part.part == "skin" && part.skin_vertices.size() == part.vertices.size()) {
+    if (part.part == "skin") {
+      const bool is_known = part.skin_vertices.size() == part.vertices.size();
       for (size_t v = 0; v < part.vertices.size(); ++v)
-        put(binding, v, skin[static_cast<size_t>(part.skin_vertices[v])]);
-    } else if (part.part == "skin") {
-      if (!whole) whole.emplace(inputs.skin);
-      for (size_t v = 0; v < part.vertices.size(); ++v)
-        put(binding, v, moving.at(whole->at(part.vertices[v])));
+        if (is_known && part.skin_vertices[v] >= 0) {
+          put(binding, v, skin[static_cast<size_t>(part.skin_vertices[v])]);
+        } else {
+          if (!whole) whole.emplace(inputs.skin);
+          put(binding, v, moving.at(whole->at(part.vertices[v])));
+        }
     } else if (part.part == "teeth_lower" || part.part == "gums_lower" || part.part == "tongue") {
       std::fill(binding.jaw_weights.begin(), binding.jaw_weights.end(), 1.0F);
     } else if (part.part == "eye_left" || part.part == "eye_right") {

@@ -35,6 +35,21 @@ TissueResult::Figures figures_of(const rig::TissueLevel& level) {
   return figures;
 }
 
+bool opens(const FaceRegion& region, Opening opening) {
+  const std::vector<double>& distance = region.opening_distance[static_cast<size_t>(opening)];
+  return std::any_of(distance.begin(), distance.end(), [](double d) { return d <= 0.0; });
+}
+
+/// What does not open, in words.
+std::string closed_features(const FaceRegion& region) {
+  std::string closed;
+  for (const auto& [opening, name] :
+       {std::pair(Opening::mouth, "the lips"), std::pair(Opening::eye_left, "the left eye's lids"),
+        std::pair(Opening::eye_right, "the right eye's lids")})
+    if (!opens(region, opening)) closed += (closed.empty() ? "" : ", ") + std::string(name);
+  return closed;
+}
+
 }  // namespace
 
 TissueResult build(const TissueInputs& inputs, const TissueOptions& options) {
@@ -42,6 +57,9 @@ TissueResult build(const TissueInputs& inputs, const TissueOptions& options) {
     throw Error("the tissue needs the constants of the anatomy: fill TissueInputs::mechanics");
   TissueResult result;
   const FaceRegion region = find_region(inputs, options);
+  if (const std::string closed = closed_features(region); !closed.empty())
+    result.warnings.push_back(closed +
+                              " are closed in the skin, so they do not part: cut the mesh open there");
   const Beneath beneath = find_beneath(inputs, region, options);
   for (const LevelOptions& wanted : options.levels) {
     const Columns columns = make_columns(inputs, region, beneath, wanted, options);

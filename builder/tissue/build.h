@@ -14,6 +14,7 @@ struct TissueResult {
     int turned_prisms = 0;                           ///< prisms of no or negative volume at rest
   };
   std::vector<Figures> figures;
+  std::vector<std::string> warnings;  ///< what this head keeps the face from doing, and the remedy
 };
 
 /// Makes the lattice at each level of `options` and binds every part to it.

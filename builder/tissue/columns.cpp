@@ -6,6 +6,7 @@
 #include "builder/tissue/fissure.h"
 #include "builder/tissue/laplacian.h"
 #include "geometry/connectivity.h"
+#include "geometry/slivers.h"
 #include "sim/energies.h"
 
 namespace fascia::tissue {
@@ -77,6 +78,17 @@ void settle_on_lid_edges(const TissueInputs& inputs, const FaceRegion& region, R
   }
 }
 
+/// A triangle without height has no strain to measure: such are taken out, with what only they hold.
+void drop_slivers(RemeshResult& remeshed) {
+  constexpr double lowest = 2e-5;  // metres, where edges are some 0.5 mm and longer
+  std::vector<int> map;
+  TriangleMesh sound = without_slivers(remeshed.mesh, lowest, &map);
+  std::vector<SurfacePoint> source(sound.vertices.size());
+  for (size_t v = map.size(); v-- > 0;)  // of vertices that became one the first gave its place
+    if (map[v] >= 0) source[static_cast<size_t>(map[v])] = remeshed.source[v];
+  remeshed = {std::move(sound), std::move(source)};
+}
+
 void place_layers(Columns& c) {
   const auto place = [&] {
     for (size_t v = 0; v < c.smas.size(); ++v) {
@@ -129,6 +141,7 @@ Columns make_columns(const TissueInputs& inputs, const FaceRegion& region, const
                      const LevelOptions& level, const TissueOptions& options) {
   RemeshResult remeshed = remesh(region.mesh, target_lengths(inputs, region, level, options));
   settle_on_lid_edges(inputs, region, remeshed);
+  drop_slivers(remeshed);
   Columns c;
   c.mesh = std::move(remeshed.mesh);
   c.source = std::move(remeshed.source);
@@ -144,14 +157,19 @@ Columns make_columns(const TissueInputs& inputs, const FaceRegion& region, const
     c.outer[v] = blend(region, c.source[v], seen) > 0.5;
     c.feature_distance[v] = blend(region, c.source[v], region.feature_distance);
     for (size_t k = 1; k < c.opening_distance.size(); ++k)
-      if (!region.opening_distance[k].empty())
-        c.opening_distance[k][v] = blend(region, c.source[v], region.opening_distance[k]);
+      c.opening_distance[k][v] = blend(region, c.source[v], region.opening_distance[k]);
   }
   c.rim.assign(n, false);
+  std::vector<double> ends(region.rim.size());
+  for (size_t v = 0; v < ends.size(); ++v)
+    ends[v] = region.rim[v] ? 1.0 : 0.0;
   for (const auto& loop : boundary_loops(c.mesh, connectivity(c.mesh)))
-    for (const int v : loop)
-      c.rim[static_cast<size_t>(v)] = c.outer[static_cast<size_t>(v)];
+    for (const int i : loop) {
+      const auto v = static_cast<size_t>(i);
+      c.rim[v] = c.outer[v] && blend(region, c.source[v], ends) > 0.25;
+    }
   c.area = vertex_areas(c.mesh);
+  const std::vector<Vec3> own_normals = vertex_normals(c.mesh);
   c.normals.resize(n);
   c.bone.resize(n);
   for (auto* list : {&c.smas_depth, &c.inner_depth, &c.lower_lip, &c.jaw_weight})
@@ -159,7 +177,8 @@ Columns make_columns(const TissueInputs& inputs, const FaceRegion& region, const
   c.smas.resize(n);
   c.inner.resize(n);
   for (size_t v = 0; v < n; ++v) {
-    c.normals[v] = blend(region, c.source[v], beneath.normals).normalized();
+    c.normals[v] = blend(region, c.source[v], beneath.normals);
+    c.normals[v] = c.normals[v].norm() > 1e-6 ? Vec3(c.normals[v].normalized()) : own_normals[v];
     c.bone[v] = c.outer[v] && blend(region, c.source[v], beneath.bone) > 0.5;
     c.smas_depth[v] = blend(region, c.source[v], beneath.smas_depth);
     c.inner_depth[v] = blend(region, c.source[v], beneath.inner_depth);

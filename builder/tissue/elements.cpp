@@ -113,8 +113,10 @@ Crossing add_crossing(const Columns& c, const std::vector<Edge>& edges, const st
   Crossing crossing{std::vector<double>(c.mesh.triangles.size(), 0.0),
                     std::vector<double>(thickness.size(), 0.0)};
   for (const Edge& edge : edges) {
-    const double t = std::max(mean(thickness, edge.a, edge.b), least_thickness), e = edge.length,
-                 diagonal = std::hypot(e, t);
+    // Springs across a layer under an edge of no length would stand upright, and carry shear with endless
+    // force.
+    const double t = std::max(mean(thickness, edge.a, edge.b), least_thickness),
+                 e = std::max(edge.length, 0.1 * t), diagonal = std::hypot(e, t);
     const double area = (c.area[edge.a] + c.area[edge.b]) / 6.0;  // an edge's share of its two columns
     const double along =
         mean(shear, edge.a, edge.b) * area / t;  // of each spring: its stiffness times the cosine squared
@@ -272,7 +274,8 @@ void add_tethers(const Columns& c, const Attachments& attachments, const anatomy
   for (const auto& loop : boundary_loops(c.mesh, connectivity(c.mesh)))
     for (size_t k = 0; k < loop.size(); ++k) {
       const auto v = static_cast<size_t>(loop[k]);
-      if (c.rim[v] || c.opening_distance[static_cast<size_t>(Opening::mouth)][v] > m.lips.lining_reach)
+      if (c.rim[v] || c.outer[v] ||
+          c.opening_distance[static_cast<size_t>(Opening::mouth)][v] > m.lips.lining_reach)
         continue;
       const auto place = [&](size_t i) -> const Vec3& {
         return c.mesh.vertices[static_cast<size_t>(loop[i % loop.size()])];

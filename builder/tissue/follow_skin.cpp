@@ -183,9 +183,8 @@ void keep_place(const std::vector<std::pair<double, uint32_t>>& entries, size_t 
 std::vector<double> share_from_rim(const FaceRegion& region) {
   constexpr double still = 0.004, full = 0.014;  // metres from the rim
   std::vector<DistanceSeed> rim;
-  for (const auto& loop : boundary_loops(region.mesh, connectivity(region.mesh)))
-    for (const int v : loop)
-      if (region.outer[static_cast<size_t>(v)]) rim.push_back({v});
+  for (size_t v = 0; v < region.rim.size(); ++v)
+    if (region.rim[v]) rim.push_back({static_cast<int>(v)});
   std::vector<double> share = surface_distances(region.mesh, rim, 2.0 * full).distance;
   for (double& value : share)
     value = smoothstep(still, full, value);
@@ -205,7 +204,7 @@ class DeepMouth {
       if (region.outer[static_cast<size_t>(t[0])] && region.outer[static_cast<size_t>(t[1])] &&
           region.outer[static_cast<size_t>(t[2])])
         outer_.triangles.push_back(t);
-    query_.emplace(outer_);
+    if (!outer_.empty()) query_.emplace(outer_);
   }
 
   /// The row of skin vertex `v` at `p`, so far along the surface from the lining's edge.
@@ -215,7 +214,8 @@ class DeepMouth {
     constexpr double between_jaws = 0.008;         // metres from the mouth's height
     constexpr double throat_begin = 0.02, throat_end = 0.065;  // metres from the lining's edge
     Row row;
-    const auto hit = query_->first_hit(p, -normals_[v], range, skip);
+    const auto hit =
+        query_ && !normals_[v].isZero() ? query_->first_hit(p, -normals_[v], range, skip) : std::nullopt;
     const double wall = hit ? 1.0 - smoothstep(thin, thick, hit->distance) : 0.0;
     if (wall > 0.0)
       for (int k = 0; k < 3; ++k)

@@ -17,7 +17,7 @@ struct PartMesh {
   std::vector<Vec3> vertices;  ///< metres, in the file's order
   std::vector<fascia::Triangle> triangles;
   std::vector<int> skin_vertices =
-      {};  ///< of a skin part: the vertex of `TissueInputs::skin` each one is, or none known
+      {};  ///< of a skin part: the vertex of `TissueInputs::skin` each one is, -1 unknown; or none known
 };
 
 /// All that the lattice is made from. Metres; see rig/model/rig.h for axes.

@@ -100,6 +100,72 @@ Opening opening_at(const TissueInputs& inputs, const Vec3& p) {
   return scores[best] < none ? static_cast<Opening>(best + 1) : Opening::none;
 }
 
+/// Stands for a distance where there is no way: finite, for it is interpolated and multiplied by zero.
+constexpr double no_way = 1.0;  // metres
+
+std::vector<double> finite_distances(const TriangleMesh& mesh, const std::vector<DistanceSeed>& seeds) {
+  std::vector<double> distance = surface_distances(mesh, seeds).distance;
+  for (double& d : distance)
+    d = std::min(d, no_way);
+  return distance;
+}
+
+/// The opening that a border loop of the region goes round, as where a mask has holes for mouth and eyes: the
+/// loop lies about it with all its vertices. None when the loop is where the face ends.
+Opening opening_of_loop(const TissueInputs& inputs, const TriangleMesh& mesh, const std::vector<int>& loop) {
+  const Vec3 right = landmark(inputs, "cheilion_right"), left = landmark(inputs, "cheilion_left");
+  std::array<int, 5> votes{};
+  Vec3 centre = Vec3::Zero();
+  for (const int v : loop) {
+    const Vec3& p = mesh.vertices[static_cast<size_t>(v)];
+    ++votes[static_cast<size_t>(opening_at(inputs, p))];
+    centre += p / static_cast<double>(loop.size());
+  }
+  const auto most = std::max_element(votes.begin(), votes.end()) - votes.begin();
+  if (10 * votes[static_cast<size_t>(most)] < 9 * static_cast<int>(loop.size())) return Opening::none;
+  const auto opening = static_cast<Opening>(most);
+  if (opening == Opening::mouth)
+    return (centre - 0.5 * (left + right)).norm() < 0.5 * (left - right).norm() ? opening : Opening::none;
+  if (opening == Opening::eye_left || opening == Opening::eye_right) {
+    const std::string side = opening == Opening::eye_left ? "_left" : "_right";
+    const Vec3 inner = landmark(inputs, "endocanthion" + side),
+               outer = landmark(inputs, "exocanthion" + side);
+    return (centre - 0.5 * (inner + outer)).norm() < 0.5 * (outer - inner).norm() ? opening : Opening::none;
+  }
+  return opening;
+}
+
+/// The outer vertices beyond which the skin goes on. Where it ends, as a mask does at the chin, nothing holds
+/// it but the bone beneath.
+std::vector<bool> rim_of(const TriangleMesh& skin, const FaceRegion& region) {
+  std::vector<int> triangles(region.outer.size(), 0);
+  for (const fascia::Triangle& t : skin.triangles)
+    for (const int corner : t)
+      if (const int v = region.region_vertex[static_cast<size_t>(corner)]; v >= 0)
+        ++triangles[static_cast<size_t>(v)];
+  for (const fascia::Triangle& t : region.mesh.triangles)
+    for (const int v : t)
+      --triangles[static_cast<size_t>(v)];
+  std::vector<bool> rim(region.outer.size());
+  for (size_t v = 0; v < rim.size(); ++v)
+    rim[v] = region.outer[v] && triangles[v] > 0;
+  return rim;
+}
+
+/// Where lips and lids lie on a skin that nowhere opens: the vertices nearest to their landmarks.
+std::vector<DistanceSeed> feature_seeds(const TissueInputs& inputs, const TriangleMesh& mesh) {
+  std::vector<DistanceSeed> seeds;
+  for (const char* name : {"cheilion_left", "cheilion_right", "exocanthion_left", "exocanthion_right",
+                           "endocanthion_left", "endocanthion_right"}) {
+    const Vec3 p = landmark(inputs, name);
+    size_t nearest = 0;
+    for (size_t v = 1; v < mesh.vertices.size(); ++v)
+      if ((mesh.vertices[v] - p).squaredNorm() < (mesh.vertices[nearest] - p).squaredNorm()) nearest = v;
+    seeds.push_back({static_cast<int>(nearest)});
+  }
+  return seeds;
+}
+
 }  // namespace
 
 Vestibule::Vestibule(const TissueInputs& inputs) : mechanics_(inputs.mechanics.vestibule) {
@@ -190,9 +256,13 @@ FaceRegion find_region(const TissueInputs& inputs, const TissueOptions& options)
 
   std::vector<bool> keep(skin.triangles.size());
   for (size_t t = 0; t < keep.size(); ++t) {
-    keep[t] = true;
-    for (const int corner : skin.triangles[t])
-      keep[t] = keep[t] && inward.distance[static_cast<size_t>(corner)] <= options.lining;
+    double farthest = 0.0;
+    bool at_edge = false;  // the first row of lining stays, however coarse the mesh is
+    for (const int corner : skin.triangles[t]) {
+      farthest = std::max(farthest, inward.distance[static_cast<size_t>(corner)]);
+      at_edge = at_edge || face.seed[static_cast<size_t>(corner)] >= 0;
+    }
+    keep[t] = farthest <= options.lining || (at_edge && std::isfinite(farthest));
   }
   region.mesh = submesh(skin, keep, &region.region_vertex);
   // Only the piece around the nose: no islands.
@@ -230,11 +300,18 @@ FaceRegion find_region(const TissueInputs& inputs, const TissueOptions& options)
         edges_of[static_cast<size_t>(region.opening[beyond])].push_back({static_cast<int>(v)});
         break;
       }
-  if (edges.empty())
-    throw Error("the skin has neither a mouth nor eyes that open: cut the lips and lids before building");
-  region.feature_distance = surface_distances(region.mesh, edges).distance;
+  region.rim = rim_of(skin, region);
+  for (const auto& loop : boundary_loops(region.mesh, connectivity(region.mesh)))
+    if (const Opening hole = opening_of_loop(inputs, region.mesh, loop); hole != Opening::none)
+      for (const int v : loop) {
+        if (!region.outer[static_cast<size_t>(v)] || region.rim[static_cast<size_t>(v)]) continue;
+        edges.push_back({v});
+        edges_of[static_cast<size_t>(hole)].push_back({v});
+      }
+  if (edges.empty()) edges = feature_seeds(inputs, region.mesh);
+  region.feature_distance = finite_distances(region.mesh, edges);
   for (size_t k = 1; k < edges_of.size(); ++k)
-    region.opening_distance[k] = surface_distances(region.mesh, edges_of[k]).distance;
+    region.opening_distance[k] = finite_distances(region.mesh, edges_of[k]);
   return region;
 }
 

@@ -16,9 +16,12 @@ struct FaceRegion {
   std::vector<int> skin_vertex;    ///< #region vertices, index in the skin
   std::vector<int> region_vertex;  ///< #skin vertices, index in the region or -1
   std::vector<bool> outer;         ///< #region vertices: seen from outside (lining is not)
+  std::vector<bool> rim;           ///< #region vertices: outer ones beyond which the skin goes on; they stay
   std::vector<double>
-      feature_distance;  ///< #region vertices, metres along the skin to the nearest lip, lid or nostril edge
-  std::array<std::vector<double>, 5> opening_distance;  ///< the same, to each Opening's edge alone
+      feature_distance;  ///< #region vertices, metres along the skin to the nearest lip, lid or nostril edge;
+                         ///< of a skin that nowhere opens, to the corners of mouth and eyes
+  std::array<std::vector<double>, 5>
+      opening_distance;  ///< the same, to each Opening's edge alone; 1 where no such edge can be reached
   std::vector<Opening> opening;  ///< #skin vertices: the opening a vertex inside the head belongs to
   std::vector<double>
       depth;  ///< #skin vertices: metres inward from the edge; 0 outside, infinity out of reach

@@ -30,7 +30,9 @@ class Animation {
     if (!json_["channels"].empty()) edit_.json["animations"].push_back(json_);
   }
 
- private:
+  Json& json() { return json_; }
+
+  /// The accessor of the keys' times.
   size_t times(const std::vector<size_t>& keys) {
     const auto [entry, is_new] = times_.try_emplace(keys, 0);
     if (is_new) {
@@ -42,6 +44,7 @@ class Animation {
     return entry->second;
   }
 
+ private:
   GltfEdit& edit_;
   const Take& take_;
   Json json_;
@@ -64,23 +67,14 @@ std::vector<PrimitiveMotion> shape_of(const MeshMotion& motion, const Face& face
   return shape;
 }
 
-/// Targets the mesh had before keep the weights they had.
-void add_weights(const GltfEdit& edit, const MeshMotion& motion, Animation& animation) {
-  const Json& all = edit.json["meshes"][motion.mesh.mesh]["weights"];
-  const auto added = static_cast<size_t>(motion.components.weights.rows());
-  std::vector<float> before;
-  for (size_t t = 0; t + added < all.size(); ++t)
-    before.push_back(all[t].get<float>());
-  std::vector<float> values;
-  for (const size_t key : motion.keys) {
-    values.insert(values.end(), before.begin(), before.end());
-    for (size_t k = 0; k < added; ++k)
-      values.push_back(
+/// The weights of each component at the keys.
+std::vector<std::vector<float>> weights_at_keys(const MeshMotion& motion) {
+  std::vector<std::vector<float>> weights(static_cast<size_t>(motion.components.weights.rows()));
+  for (size_t k = 0; k < weights.size(); ++k)
+    for (const size_t key : motion.keys)
+      weights[k].push_back(
           motion.components.weights(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(key)));
-  }
-  for (size_t n = 0; n < edit.json["nodes"].size(); ++n)
-    if (edit.json["nodes"][n].value("mesh", -1) == static_cast<int>(motion.mesh.mesh))
-      animation.add(motion.keys, values, {{"node", n}, {"path", "weights"}});
+  return weights;
 }
 
 void add_pointers(GltfEdit& edit, const Recording& recording, Animation& animation) {
@@ -107,7 +101,8 @@ void add_pointers(GltfEdit& edit, const Recording& recording, Animation& animati
 }  // namespace
 
 void add_take(GltfEdit& edit, const std::string& name, const Take& take, const Face& face,
-              const Recording& recording, const std::vector<NodeMotion>& nodes) {
+              const Recording& recording, const std::vector<NodeMotion>& nodes,
+              std::vector<std::string>& warnings) {
   Animation animation(edit, take, name);
   for (const MeshMotion& motion : recording.meshes) {
     std::vector<std::string> names;
@@ -117,8 +112,12 @@ void add_take(GltfEdit& edit, const std::string& name, const Take& take, const F
       shapes.push_back(shape_of(motion, face, k));
     }
     if (shapes.empty()) continue;
-    add_morph_targets(edit, names, shapes);
-    add_weights(edit, motion, animation);
+    gltf::MorphOptions options;
+    options.is_linear = true;
+    const std::vector<gltf::MeshTargets> targets =
+        gltf::add_morph_targets(edit, names, shapes, options, &warnings);
+    gltf::add_weight_channels(edit, targets, weights_at_keys(motion), animation.times(motion.keys),
+                              animation.json());
   }
   add_pointers(edit, recording, animation);
   for (const NodeMotion& motion : nodes) {

@@ -1,12 +1,16 @@
 #include "rig/read/read.h"
 
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
 #include <set>
 #include <string>
 
 #include "geometry/error.h"
+#include "gltf/read/accessors.h"
+#include "gltf/read/container.h"
+#include "gltf/read/model.h"
 #include "rig/model/extensions.h"
-#include "rig/read/accessors.h"
-#include "rig/read/container.h"
 #include "rig/read/visitor.h"
 
 namespace fascia::rig {
@@ -88,7 +92,7 @@ Tissue tissue_of(const tinygltf::Model& model, const tinygltf::Value& object, co
 
 std::vector<Vec3f> vec3_attribute(const tinygltf::Model& model, int accessor, std::size_t count,
                                   const std::string& path) {
-  const std::vector<float> numbers = decode_floats(model, accessor, path);
+  const std::vector<float> numbers = gltf::decode_floats(model, accessor, path);
   if (count != any && numbers.size() != 3 * count) throw Error(path + ": not as many as positions");
   std::vector<Vec3f> vectors(numbers.size() / 3);
   for (std::size_t i = 0; i < vectors.size(); ++i) {
@@ -98,7 +102,32 @@ std::vector<Vec3f> vec3_attribute(const tinygltf::Model& model, int accessor, st
   return vectors;
 }
 
-/// The geometry `binding` names, its fingerprint checked.
+/// Weights a mesh's targets have before any animation plays: the first node's that shows it, else the mesh's
+/// own.
+const std::vector<double>& default_weights(const tinygltf::Model& model, uint32_t mesh) {
+  for (const tinygltf::Node& node : model.nodes)
+    if (node.mesh == static_cast<int>(mesh) && !node.weights.empty()) return node.weights;
+  return model.meshes[mesh].weights;
+}
+
+/// Adds the deltas of attribute `name` that default weights switch on. Returns whether there were any.
+bool add_default_morphs(const tinygltf::Model& model, const Binding& binding, const char* name,
+                        std::vector<Vec3f>& vectors, const std::string& path) {
+  const auto& targets = model.meshes[binding.mesh].primitives[binding.primitive].targets;
+  const std::vector<double>& weights = default_weights(model, binding.mesh);
+  bool any_on = false;
+  for (std::size_t t = 0; t < std::min(targets.size(), weights.size()); ++t) {
+    const auto delta = targets[t].find(name);
+    if (weights[t] == 0.0 || delta == targets[t].end()) continue;
+    const std::vector<Vec3f> moves = vec3_attribute(model, delta->second, vectors.size(), path);
+    for (std::size_t v = 0; v < vectors.size(); ++v)
+      vectors[v] += static_cast<float>(weights[t]) * moves[v];
+    any_on = true;
+  }
+  return any_on;
+}
+
+/// The geometry `binding` names, its fingerprint checked, as it is seen: default weights of morph targets on.
 Primitive bound_primitive(const tinygltf::Model& model, const Binding& binding, const std::string& path) {
   if (binding.mesh >= model.meshes.size() ||
       binding.primitive >= model.meshes[binding.mesh].primitives.size())
@@ -108,7 +137,7 @@ Primitive bound_primitive(const tinygltf::Model& model, const Binding& binding, 
   const tinygltf::Primitive& primitive = mesh.primitives[binding.primitive];
   const auto position = primitive.attributes.find("POSITION");
   if (position == primitive.attributes.end()) throw Error(path + ": the primitive has no POSITION");
-  if (accessor_view(model, position->second, path).components != 3)
+  if (gltf::accessor_view(model, position->second, path).components != 3)
     throw Error(path + ": POSITION is not a VEC3");
   Primitive result;
   result.mesh = binding.mesh;
@@ -122,13 +151,18 @@ Primitive bound_primitive(const tinygltf::Model& model, const Binding& binding, 
     throw MismatchError(path + ": mesh \"" + mesh.name + "\" has " + std::to_string(result.positions.size()) +
                         " vertices where the rig was built for " + std::to_string(binding.vertex_count) +
                         remedy);
-  if (attribute_hash(model, position->second, path) != binding.position_hash)
+  if (gltf::attribute_hash(model, position->second, path) != binding.position_hash)
     throw MismatchError(path + ": the positions of mesh \"" + mesh.name +
                         "\" are not those the rig was built for" + remedy);
-  result.triangles = decode_triangles(model, primitive, result.positions.size(), path);
+  add_default_morphs(model, binding, "POSITION", result.positions, path);
+  result.triangles = gltf::decode_triangles(model, primitive, result.positions.size(), path);
   const auto normal = primitive.attributes.find("NORMAL");
-  if (normal != primitive.attributes.end() && accessor_view(model, normal->second, path).components == 3)
+  if (normal != primitive.attributes.end() &&
+      gltf::accessor_view(model, normal->second, path).components == 3)
     result.normals = vec3_attribute(model, normal->second, result.positions.size(), path);
+  if (add_default_morphs(model, binding, "NORMAL", result.normals, path))
+    for (Vec3f& n : result.normals)
+      n.normalize();
   return result;
 }
 
@@ -146,6 +180,35 @@ void read_primitives(const tinygltf::Model& model, RigFile& file, const std::str
     }
 }
 
+/// Throws unless `matrix` is an affine map that turns and scales by something between a millionth of a
+/// millionth and its inverse: others have no use, and no inverse in single precision.
+void check_map(const Mat4f& matrix, const std::string& path) {
+  const Eigen::Matrix3d linear = matrix.topLeftCorner<3, 3>().cast<double>();
+  const double volume = std::abs(linear.determinant()), largest = linear.cwiseAbs().maxCoeff();
+  if (!(largest > 1e-12 && largest < 1e12 && volume > 1e-6 * largest * largest * largest))
+    throw Error(path + ": not an invertible map of a sensible scale");
+}
+
+/// Numbers that are finite and yet absurd would come out of the solver as no numbers.
+void check_ranges(const Rig& rig, const std::string& name) {
+  const std::string tissue = name + ": " + tissue_extension;
+  check_map(rig.input_to_metres, tissue + "/inputToMetres");
+  const JawJoint& jaw = rig.skull.jaw;
+  if (std::abs(jaw.open_angle) > 3.2F || std::abs(jaw.lateral_angle) > 3.2F)
+    throw Error(name + ": " + skull_extension + "/jaw: it opens by more than half a turn");
+  for (std::size_t level = 0; level < rig.tissue.levels.size(); ++level) {
+    const std::string path = tissue + "/levels/" + std::to_string(level);
+    // A kilometre: a face that far off, or a lattice that large, is none.
+    for (const Vec3f& rest : rig.tissue.levels[level].rest)
+      if (!(rest.cwiseAbs().maxCoeff() < 1e3F)) throw Error(path + "/rest: a node is a kilometre away");
+    for (const Binding& binding : rig.tissue.bindings[level]) {
+      check_map(binding.to_rig, path + "/bindings/toRig");
+      for (const float weight : binding.weights)
+        if (!(std::abs(weight) < 100.0F)) throw Error(path + "/bindings/weights: a weight is above 100");
+    }
+  }
+}
+
 }  // namespace
 
 std::size_t RigFile::primitive_of(const Binding& binding) const {
@@ -157,16 +220,16 @@ std::size_t RigFile::primitive_of(const Binding& binding) const {
 }
 
 bool is_rig(std::span<const uint8_t> bytes) {
-  if (!is_glb(bytes)) return false;
+  if (!gltf::is_glb(bytes)) return false;
   try {
-    return glb_chunks(bytes, "").json.find("\"FASCIA_") != std::string_view::npos;
+    return gltf::glb_chunks(bytes, "").json.find("\"FASCIA_") != std::string_view::npos;
   } catch (const Error&) {
     return false;
   }
 }
 
 RigFile read(std::span<const uint8_t> bytes, const std::string& name) {
-  tinygltf::Model model = load_gltf(bytes, name);
+  tinygltf::Model model = gltf::load_model(bytes, name);
   const std::string prefix = name + ": ";
   RigFile file;
   Rig& rig = file.rig;
@@ -192,10 +255,11 @@ RigFile read(std::span<const uint8_t> bytes, const std::string& name) {
   const tinygltf::Value& tissue = root_object(model, tissue_extension, name);
   rig.tissue = tissue_of(model, tissue, tissue_path, {rig.muscles.size(), rig.actuation.channels.size()},
                          rig.input_to_metres);
+  check_ranges(rig, name);
   file.source = source_record(model, tissue, tissue_path + "/source");
   read_primitives(model, file, tissue_path);
 
-  file.json = glb_chunks(bytes, name).json;
+  file.json = gltf::glb_chunks(bytes, name).json;
   if (!model.buffers.empty()) file.bin = std::move(model.buffers[0].data);
   return file;
 }

@@ -33,14 +33,14 @@ void Reader::texts(const char* name, std::vector<std::string>& values) {
   }
 }
 
-AccessorView Reader::accessor(const char* name, std::size_t components, std::size_t length) {
+gltf::AccessorView Reader::accessor(const char* name, std::size_t components, std::size_t length) {
   if (!has(name)) {
     if (length != 0 && length != any)
       fail(name, "missing, though " + std::to_string(length) + " elements are due");
     return {};
   }
   const int index = checked_number<int>(object_.Get(name), name);
-  const AccessorView view = accessor_view(model_, index, at(name));
+  const gltf::AccessorView view = gltf::accessor_view(model_, index, at(name));
   if (view.components != components)
     fail(name, "its accessor has " + std::to_string(view.components) + " components an element, not " +
                    std::to_string(components));

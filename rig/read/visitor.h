@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "geometry/error.h"
+#include "gltf/read/accessors.h"
 #include "rig/model/element.h"
 #include "rig/model/fields.h"
-#include "rig/read/accessors.h"
 
 namespace fascia::rig {
 
@@ -92,7 +92,7 @@ class Reader {
 
   template <class T>
   void index(const char* name, std::vector<T>& values, std::size_t length, std::size_t limit) {
-    const AccessorView view = accessor(name, Element<T>::components, length);
+    const gltf::AccessorView view = accessor(name, Element<T>::components, length);
     switch (view.count == 0 ? 0 : view.component_type) {
       case 0:
         return;
@@ -184,7 +184,7 @@ class Reader {
 
   template <class T>
   void floats(const char* name, std::vector<T>& values, std::size_t length) {
-    const AccessorView view = accessor(name, Element<T>::components, length);
+    const gltf::AccessorView view = accessor(name, Element<T>::components, length);
     if (view.count == 0) return;
     if (view.component_type != TINYGLTF_COMPONENT_TYPE_FLOAT) fail(name, "its accessor does not hold floats");
     values.resize(view.count);
@@ -198,10 +198,11 @@ class Reader {
   }
 
   /// The accessor property `name` points at; of count 0 when it is left out. Checks shape and length.
-  AccessorView accessor(const char* name, std::size_t components, std::size_t length);
+  gltf::AccessorView accessor(const char* name, std::size_t components, std::size_t length);
 
   template <class Stored, class T>
-  void whole_numbers(const char* name, const AccessorView& view, std::vector<T>& values, std::size_t limit) {
+  void whole_numbers(const char* name, const gltf::AccessorView& view, std::vector<T>& values,
+                     std::size_t limit) {
     values.resize(view.count);
     using Scalar = typename Element<T>::Scalar;
     auto* to = reinterpret_cast<Scalar*>(values.data());

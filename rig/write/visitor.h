@@ -1,39 +1,19 @@
 #pragma once
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "geometry/error.h"
+#include "gltf/edit/appendix.h"
 #include "rig/model/element.h"
 #include "rig/model/fields.h"
 
 namespace fascia::rig {
 
-using Json = nlohmann::ordered_json;
-
-/// Accessors, buffer views and bytes to append to a glTF file.
-class Appendix {
- public:
-  /// Everything goes behind what `root` and `bin` hold already.
-  Appendix(Json& root, std::vector<uint8_t>& bin) : root_(root), bin_(bin) {}
-
-  /// A new buffer view over `bytes`, aligned to eight; returns its index.
-  std::size_t add_view(std::span<const uint8_t> bytes);
-
-  /// A new accessor over `count` floats' elements of `components` each; returns its index.
-  std::size_t add_floats(std::span<const float> numbers, std::size_t components);
-
-  /// A new accessor over whole numbers, in the smallest component type that holds them all.
-  std::size_t add_whole(std::span<const uint32_t> numbers, std::size_t components);
-
- private:
-  Json& root_;
-  std::vector<uint8_t>& bin_;
-};
+using Json = gltf::Json;
 
 /// `value` as the double whose shortest decimal is the float's: 0.436, not 0.43599998950958252.
 double shortest(float value);
@@ -41,7 +21,7 @@ double shortest(float value);
 /// Writes the fields of rig/model/fields.h into one JSON object. Empty lists are left out.
 class Writer {
  public:
-  Writer(Appendix& appendix, std::string path) : appendix_(appendix), path_(std::move(path)) {}
+  Writer(gltf::Appendix& appendix, std::string path) : appendix_(appendix), path_(std::move(path)) {}
 
   void text(const char* name, const std::string& value) { json[name] = value; }
   void number(const char* name, float value) {
@@ -157,7 +137,7 @@ class Writer {
   }
   void numbers(const char* name, std::span<const float> values);
 
-  Appendix& appendix_;
+  gltf::Appendix& appendix_;
   std::string path_;
 };
 

@@ -3,22 +3,18 @@
 #include <algorithm>
 
 #include "geometry/error.h"
+#include "gltf/edit/document.h"
+#include "gltf/read/accessors.h"
+#include "gltf/read/container.h"
+#include "gltf/read/model.h"
 #include "rig/model/extensions.h"
-#include "rig/read/accessors.h"
-#include "rig/read/container.h"
 #include "rig/write/visitor.h"
 
 namespace fascia::rig {
 namespace {
 
 Json parsed(const std::string& text) {
-  try {
-    Json root = Json::parse(text);
-    if (!root.is_object()) throw Error("the glTF file's JSON is not an object");
-    return root;
-  } catch (const nlohmann::json::exception& exception) {
-    throw Error(std::string("the glTF file's JSON is malformed: ") + exception.what());
-  }
+  return gltf::parsed(text, "head");
 }
 
 std::size_t length_of(const Json& root, const char* name) {
@@ -26,7 +22,7 @@ std::size_t length_of(const Json& root, const char* name) {
 }
 
 tinygltf::Model model_of(const GltfSource& source) {
-  return load_gltf(glb_bytes(source.json, source.bin), "head");
+  return gltf::load_model(gltf::glb_bytes(source.json, source.bin), "head");
 }
 
 Fingerprint fingerprint_of(const tinygltf::Model& model, uint32_t mesh, uint32_t primitive,
@@ -37,8 +33,8 @@ Fingerprint fingerprint_of(const tinygltf::Model& model, uint32_t mesh, uint32_t
   const auto& attributes = model.meshes[mesh].primitives[primitive].attributes;
   const auto position = attributes.find("POSITION");
   if (position == attributes.end()) throw Error(path + ": the primitive has no POSITION");
-  const AccessorView view = accessor_view(model, position->second, path);
-  return {static_cast<uint32_t>(view.count), attribute_hash(model, position->second, path)};
+  const gltf::AccessorView view = gltf::accessor_view(model, position->second, path);
+  return {static_cast<uint32_t>(view.count), gltf::attribute_hash(model, position->second, path)};
 }
 
 /// The rig with every binding's fingerprint filled in.
@@ -59,7 +55,7 @@ Tissue fingerprinted(Tissue tissue, const tinygltf::Model& model) {
 }
 
 /// What the file was before the rig: enough to give it back.
-Json source_object(const Json& root, const GltfSource& source, Appendix& appendix) {
+Json source_object(const Json& root, const GltfSource& source, gltf::Appendix& appendix) {
   Json object = {{"accessors", length_of(root, "accessors")},
                  {"bufferViews", length_of(root, "bufferViews")},
                  {"buffers", length_of(root, "buffers")},
@@ -72,7 +68,7 @@ Json source_object(const Json& root, const GltfSource& source, Appendix& appendi
   return object;
 }
 
-Json tissue_object(const Rig& rig, const Tissue& tissue, Appendix& appendix) {
+Json tissue_object(const Rig& rig, const Tissue& tissue, gltf::Appendix& appendix) {
   if (tissue.bindings.size() != tissue.levels.size())
     throw Error(tissue_extension + "/levels: " + std::to_string(tissue.levels.size()) +
                 " levels, but bindings for " + std::to_string(tissue.bindings.size()));
@@ -90,7 +86,7 @@ Json tissue_object(const Rig& rig, const Tissue& tissue, Appendix& appendix) {
 }
 
 template <class Fields>
-Json extension_object(const std::string& name, Appendix& appendix, const Fields& fields) {
+Json extension_object(const std::string& name, gltf::Appendix& appendix, const Fields& fields) {
   Writer writer(appendix, name);
   writer.json["specVersion"] = spec_version;
   fields(writer);
@@ -164,6 +160,23 @@ std::vector<uint8_t> recorded_bytes(const Json& root, const Json& source, const 
 
 }  // namespace
 
+GltfSource glb_source(std::span<const uint8_t> bytes, const std::string& name) {
+  GltfSource source;
+  static_cast<gltf::Document&>(source) = gltf::glb_document(bytes, name);
+  return source;
+}
+
+GltfSource embed(const GltfSource& source) {
+  const auto resolve = [&](const std::string& uri) -> gltf::OutsideFile {
+    auto bytes = source.resolve ? source.resolve(uri) : std::nullopt;
+    return {std::move(bytes), "cannot be read; put it beside the glTF file"};
+  };
+  GltfSource result;
+  result.record = source.record;
+  static_cast<gltf::Document&>(result) = gltf::self_contained(source, resolve, "head");
+  return result;
+}
+
 Fingerprint fingerprint(const GltfSource& source, uint32_t mesh, uint32_t primitive) {
   return fingerprint_of(model_of(embed(source)), mesh, primitive, "head");
 }
@@ -175,7 +188,7 @@ std::vector<uint8_t> write(const GltfSource& source, const Rig& rig) {
   const Tissue tissue = fingerprinted(rig.tissue, model_of(base));
 
   std::vector<uint8_t> bin = base.bin;
-  Appendix appendix(root, bin);
+  gltf::Appendix appendix(root, bin);
   Json source_record = source_object(root, base, appendix);
   Json added = Json::object();
   added[skull_extension] =
@@ -201,7 +214,7 @@ std::vector<uint8_t> write(const GltfSource& source, const Rig& rig) {
   if (!root.contains("buffers")) root["buffers"] = Json::array({Json::object()});
   root["buffers"][0]["byteLength"] = bin.size();
 
-  std::vector<uint8_t> bytes = glb_bytes(root.dump(), bin);
+  std::vector<uint8_t> bytes = gltf::glb_bytes(gltf::text_of(root), bin);
   // What cannot be read back must not leave the house.
   read(bytes, "rig");
   return bytes;
@@ -230,7 +243,7 @@ GltfSource original(const GltfSource& rig_file) {
     throw Error(tissue_extension + "/source: malformed: " + exception.what());
   }
   forget_extensions(root);
-  result.json = root.dump();
+  result.json = gltf::text_of(root);
   return result;
 }
 

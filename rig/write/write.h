@@ -7,15 +7,14 @@
 #include <string>
 #include <vector>
 
+#include "gltf/read/document.h"
 #include "rig/model/rig.h"
 #include "rig/read/read.h"
 
 namespace fascia::rig {
 
 /// A glTF file to carry a rig: its JSON text and binary chunk as they came.
-struct GltfSource {
-  std::string json;
-  std::vector<uint8_t> bin;  ///< of buffer 0 when that has no URI; else empty
+struct GltfSource : gltf::Document {
   /// Bytes of a file the JSON names beside itself, by URI (not data URIs, percent-decoded), or nothing when
   /// it is not there. Buffers must be there; images that are not keep their URI.
   std::function<std::optional<std::vector<uint8_t>>(const std::string& uri)> resolve;

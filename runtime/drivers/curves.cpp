@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "geometry/error.h"
-#include "rig/read/container.h"
+#include "gltf/read/container.h"
 #include "runtime/drivers/text.h"
 
 namespace fascia::runtime {
@@ -48,7 +48,7 @@ double Curves::duration() const {
 }
 
 Curves read_curves(std::span<const uint8_t> bytes, const ReadOptions& options) {
-  if (rig::is_glb(bytes)) {
+  if (gltf::is_glb(bytes)) {
     Curves curves = read_gltf_curves(bytes);
     settle(curves);
     return curves;

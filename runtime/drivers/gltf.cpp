@@ -4,9 +4,10 @@
 #include <nlohmann/json.hpp>
 
 #include "geometry/error.h"
+#include "gltf/read/accessors.h"
+#include "gltf/read/container.h"
+#include "gltf/read/model.h"
 #include "rig/model/extensions.h"
-#include "rig/read/accessors.h"
-#include "rig/read/container.h"
 #include "runtime/drivers/curves.h"
 
 namespace fascia::runtime {
@@ -42,8 +43,8 @@ Curve sampled(const tinygltf::Model& model, const Json& sampler, const std::stri
   const std::string path = "curves: animation of " + name;
   Curve curve;
   curve.name = name;
-  const std::vector<float> times = rig::decode_floats(model, sampler.at("input").get<int>(), path);
-  const std::vector<float> values = rig::decode_floats(model, sampler.at("output").get<int>(), path);
+  const std::vector<float> times = gltf::decode_floats(model, sampler.at("input").get<int>(), path);
+  const std::vector<float> values = gltf::decode_floats(model, sampler.at("output").get<int>(), path);
   curve.times.assign(times.begin(), times.end());
   const std::string kind = sampler.value("interpolation", "LINEAR");
   const std::size_t per_key = kind == "CUBICSPLINE" ? 3 : 1;
@@ -128,11 +129,11 @@ void read_first(const Json& root, Read read, Curves& result) {
 }  // namespace
 
 Curves read_gltf_curves(std::span<const uint8_t> bytes) {
-  const tinygltf::Model model = rig::load_gltf(bytes, "curves");
+  const tinygltf::Model model = gltf::load_model(bytes, "curves");
   Curves result;
   try {
     // tinygltf 2.7 drops pointer channels, so the animations are read from the JSON itself.
-    const Json root = Json::parse(rig::glb_chunks(bytes, "curves").json);
+    const Json root = Json::parse(gltf::glb_chunks(bytes, "curves").json);
     read_first(
         root, [&](const Json& animation, Curves& found) { read_pointers(model, root, animation, found); },
         result);

@@ -23,6 +23,7 @@ std::string text_of(const std::filesystem::path& path) {
 
 TEST(Write, FibresAreLinesInObjAndEdgesInPly) {
   const auto folder = std::filesystem::temp_directory_path() / "fascia_write_test";
+  std::filesystem::create_directories(folder);
   write(folder / "fibres.obj", two_fibres());
   const std::string obj = text_of(folder / "fibres.obj");
   EXPECT_NE(obj.find("g zygomaticus_major_left"), std::string::npos);

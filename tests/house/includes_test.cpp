@@ -14,14 +14,15 @@ namespace fs = std::filesystem;
 /// What each room may include, by the first folder of the path (docs/architecture.md).
 const std::map<std::string, std::set<std::string>> rooms = {
     {"geometry", {}},
-    {"formats", {"geometry"}},
+    {"gltf", {"geometry"}},
+    {"formats", {"geometry", "gltf"}},
     {"anatomy", {"geometry"}},
-    {"rig", {"geometry"}},
+    {"rig", {"geometry", "gltf"}},
     {"sim", {}},
-    {"builder", {"geometry", "formats", "anatomy", "rig", "sim"}},
-    {"runtime", {"rig/model", "rig/read", "sim", "geometry"}},
+    {"builder", {"geometry", "formats", "anatomy", "rig", "sim", "gltf"}},
+    {"runtime", {"rig/model", "rig/read", "gltf/read", "sim", "geometry"}},
     {"view", {"geometry", "rig"}},
-    {"cli", {"geometry", "formats", "anatomy", "rig", "sim", "builder", "runtime", "view"}},
+    {"cli", {"geometry", "gltf", "formats", "anatomy", "rig", "sim", "builder", "runtime", "view"}},
     {"samples", {}},
 };
 
@@ -46,7 +47,6 @@ std::vector<std::string> quoted_includes(const fs::path& path) {
 bool allowed(const std::string& room, const std::string& include) {
   if (include.rfind(room + "/", 0) == 0) return true;
   if (include.find('/') == std::string::npos) return true;  // a neighbour in the same folder
-  if (include.rfind("cmake/tinygltf/", 0) == 0) return room == "formats" || room == "rig";
   for (const std::string& other : rooms.at(room))
     if (include.rfind(other + "/", 0) == 0) return true;
   // Only project rooms are judged: other paths are libraries or a room's own layout.

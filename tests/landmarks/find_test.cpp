@@ -202,7 +202,7 @@ TEST(FindLandmarks, KeepsGivenOnesAndBendsTheRestTowardThem) {
 
 TEST(FindHead, LooksOnlyWhereTheCrownMayBe) {
   const auto crown = [](const std::optional<Vec3>& up) -> Vec3 {
-    return find_head(face(), face().skin, "head.obj", std::nullopt, up).placement().rotation.col(1);
+    return find_head(face(), face().skin, "head.obj", {{}, up}).placement().rotation.col(1);
   };
   EXPECT_GT(crown(Vec3::UnitY()).dot(Vec3::UnitY()), 0.98);
   // Told wrongly it must not be found the right way up.

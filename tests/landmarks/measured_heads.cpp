@@ -74,6 +74,15 @@ std::map<std::string, int> ict_landmark_vertices() {
   return vertices;
 }
 
+std::map<std::string, int> ict_model_vertices() {
+  std::ifstream file(measured_data() / "ict/landmarks68.json");
+  const auto all = nlohmann::json::parse(file).at("multi_pie_68_vertex_indices");
+  std::map<std::string, int> found;
+  for (const auto& [name, number] : multi_pie_numbers())
+    found[name] = all.at(static_cast<size_t>(number)).get<int>();
+  return found;
+}
+
 Vec3 offset_of_definition(const std::string& landmark, const Vec3& generic) {
   static const formats::Scene scene = formats::read(measured_data() / "ict/neutral.glb");
   const auto vertex = static_cast<size_t>(ict_landmark_vertices().at(landmark));

@@ -25,6 +25,9 @@ std::filesystem::path measured_data();
 /// in every person.
 std::map<std::string, int> ict_landmark_vertices();
 
+/// The same in the vertex order of the face model itself.
+std::map<std::string, int> ict_model_vertices();
+
 /// Where the same points are on the generic head beside its own landmarks of the name: the chin and the tip
 /// of the nose are 2 mm off by definition. Metres, rig frame.
 Vec3 offset_of_definition(const std::string& landmark, const Vec3& generic);

@@ -8,6 +8,7 @@
 #include "builder/prepare/eyeballs.h"
 #include "builder/prepare/part_names.h"
 #include "builder/prepare/parts.h"
+#include "builder/prepare/tooth_rows.h"
 #include "geometry/connectivity.h"
 #include "geometry/error.h"
 
@@ -34,11 +35,15 @@ formats::SceneMesh seamed_sphere(const std::string& name, const Vec3& centre, do
   return mesh;
 }
 
+/// Landmarks on the sphere that stands for a head.
 std::map<std::string, Vec3> reference() {
-  return {{"nasion", Vec3(0, 0.04, 0.10)},
-          {"gnathion", Vec3(0, -0.07, 0.10)},
-          {"exocanthion_left", Vec3(0.045, 0.035, 0.08)},
-          {"exocanthion_right", Vec3(-0.045, 0.035, 0.08)}};
+  std::map<std::string, Vec3> points = {{"nasion", Vec3(0, 0.04, 0.10)},
+                                        {"gnathion", Vec3(0, -0.07, 0.10)},
+                                        {"exocanthion_left", Vec3(0.045, 0.035, 0.08)},
+                                        {"exocanthion_right", Vec3(-0.045, 0.035, 0.08)}};
+  for (auto& [name, p] : points)
+    p = 0.11 * p.normalized();
+  return points;
 }
 
 /// A "head": a sphere of 11 cm radius with an eye, in the units and axes of `to_file`.
@@ -75,6 +80,20 @@ TEST(Prepare, FindsUnitsAndAxesFromLandmarks) {
     EXPECT_NEAR((head.input_to_metres * to_file - Mat4::Identity()).norm(), 0.0, 1e-12);
     EXPECT_NEAR(head.landmarks.at("exocanthion_left")[0],
                 0.11 * reference()["exocanthion_left"].normalized()[0], 2e-3);
+  }
+}
+
+TEST(Prepare, ATiltedHeadIsSetUprightAndOneAlongTheAxesKeepsThem) {
+  for (const double tilt : {0.03, 0.15, 0.4}) {
+    Mat4 to_file = Mat4::Identity();
+    to_file.topLeftCorner<3, 3>() =
+        100.0 * Eigen::AngleAxisd(tilt, Vec3(0.3, 1.0, -0.2).normalized()).toRotationMatrix();
+    const PreparedHead head = prepare(scene_in(to_file), landmarks_in(to_file, 1.0, ""), reference(), {});
+    const Mat4 rest = head.input_to_metres * to_file;
+    if (tilt < 0.1)
+      EXPECT_NEAR((head.input_to_metres.topLeftCorner<3, 3>() - 0.01 * Mat3::Identity()).norm(), 0.0, 1e-12);
+    else
+      EXPECT_NEAR((rest - Mat4::Identity()).norm(), 0.0, 1e-9) << tilt;
   }
 }
 
@@ -243,6 +262,76 @@ TEST(Eyeballs, LookThroughTheirPole) {
   mesh = weld(mesh, 1e-9, &map);
   EXPECT_GT(gaze_axis({Vec3::Zero(), 0.012}, mesh.vertices, mesh.triangles).dot(turn * Vec3::UnitY()), 0.999);
   EXPECT_EQ(gaze_axis({Vec3::Zero(), 0.012}, {}, {}), Vec3::UnitZ());
+}
+
+/// Bounds about `centre`, `size` across; metres.
+Bounds box(const Vec3& centre, const Vec3& size) {
+  return {centre - 0.5 * size, centre + 0.5 * size};
+}
+
+/// Single teeth in two rows that curve about the arch and slope and tilt by so much a metre.
+std::vector<Bounds> single_teeth(double slope, double tilt, double curve, double overbite) {
+  std::vector<Bounds> teeth;
+  for (const bool lower : {false, true})
+    for (int k = -6; k <= 6; ++k) {
+      const double angle = 0.24 * k, radius = lower ? 0.022 : 0.024;
+      const Vec3 at(radius * std::sin(angle), 0.0, 1.4 * radius * std::cos(angle));
+      const double height = slope * at.z() + tilt * at.x() + curve * at.z() * at.z();
+      teeth.push_back(box(at + Vec3(0, height + (lower ? -1 : 1) * (0.0045 - 0.5 * overbite), 0),
+                          Vec3(0.0062, 0.009 + 0.001 * (k % 2), 0.007)));
+    }
+  return teeth;
+}
+
+TEST(ToothRows, SingleTeethOfSlopingTiltedAndCurvedRows) {
+  for (const double slope : {-0.3, 0.0, 0.3})
+    for (const double tilt : {-0.12, 0.0, 0.12})
+      for (const double curve : {-6.0, 0.0, 6.0})
+        for (const double overbite : {-0.012, 0.0, 0.003}) {
+          const std::vector<Bounds> teeth = single_teeth(slope, tilt, curve, overbite);
+          const auto lower = lower_row(teeth);
+          ASSERT_TRUE(lower.has_value());
+          for (size_t i = 0; i < teeth.size(); ++i)
+            EXPECT_EQ((*lower)[i], i >= teeth.size() / 2)
+                << i << " " << slope << " " << tilt << " " << curve << " " << overbite;
+        }
+}
+
+TEST(ToothRows, WholeJawsWithTheirGums) {
+  const std::vector<Bounds> jaws = {box(Vec3(0, 0.008, 0), Vec3(0.05, 0.010, 0.04)),
+                                    box(Vec3(0, 0.012, 0), Vec3(0.054, 0.014, 0.042)),
+                                    box(Vec3(0, -0.001, -0.002), Vec3(0.048, 0.010, 0.038)),
+                                    box(Vec3(0, -0.006, -0.002), Vec3(0.052, 0.012, 0.04))};
+  EXPECT_EQ(lower_row(jaws), (std::vector<bool>{false, false, true, true}));
+}
+
+TEST(ToothRows, OneRowAloneIsNotParted) {
+  std::vector<Bounds> teeth = single_teeth(0.3, 0.1, 5.0, 0.0);
+  teeth.resize(teeth.size() / 2);
+  EXPECT_FALSE(lower_row(teeth).has_value());
+  EXPECT_FALSE(lower_row({}).has_value());
+}
+
+TEST(Eyeballs, ScaleWithTheFissureAndAreNotHollow) {
+  const auto cap = [](double radius, double back) {  // the front of a ball; `back` -1 makes it hollow
+    std::vector<Vec3> points;
+    for (int i = 0; i < 12; ++i)
+      for (int k = 1; k < 6; ++k) {
+        const double a = 2 * M_PI * i / 12, b = 0.25 * k;
+        points.push_back(radius *
+                         Vec3(std::sin(b) * std::cos(a), std::sin(b) * std::sin(a), back * std::cos(b)));
+      }
+    return points;
+  };
+  EXPECT_TRUE(round_part(cap(0.012, 1.0), Vec3(0, 0, 0.010), 0.030));
+  EXPECT_FALSE(round_part(cap(0.040, 1.0), Vec3(0, 0, 0.034), 0.030));
+  EXPECT_TRUE(round_part(cap(0.040, 1.0), Vec3(0, 0, 0.034), 0.070)) << "a third of a toon's face";
+  EXPECT_FALSE(round_part(cap(0.012, -1.0), Vec3(0, 0, -0.010), 0.030)) << "a hollow turns about its front";
+  const Bounds plate = box(Vec3(0.03, 0.01, 0.05), Vec3(0.04, 0.03, 0.004));
+  const Eyeball globe = globe_behind(plate, 0.045);
+  EXPECT_LT(globe.centre.z() + 0.8 * globe.radius, plate.lower.z());
+  EXPECT_NEAR(globe.centre.z() + globe.radius, plate.upper.z(), 1e-12);
+  EXPECT_GT(2.0 * globe.radius, plate.size().x());
 }
 
 }  // namespace

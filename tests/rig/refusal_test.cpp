@@ -6,7 +6,7 @@
 #include <random>
 
 #include "geometry/error.h"
-#include "rig/read/container.h"
+#include "gltf/read/container.h"
 #include "rig/read/read.h"
 #include "rig/write/write.h"
 #include "tests/rig/tiny_rig.h"
@@ -30,7 +30,7 @@ std::string refusal(const std::function<void(Json&)>& change) {
   const rig::GltfSource file = rig::glb_source(test::tiny_rig_file());
   Json root = Json::parse(file.json);
   change(root);
-  const std::vector<uint8_t> bytes = rig::glb_bytes(root.dump(), file.bin);
+  const std::vector<uint8_t> bytes = gltf::glb_bytes(root.dump(), file.bin);
   return message_of([&] { rig::read(bytes, "head.glb"); });
 }
 
@@ -88,6 +88,24 @@ TEST(Refusal, WrongAccessors) {
   EXPECT_SAYS(refusal([&](Json& root) { level(root)["prisms"] = "none"; }), path + "prisms");
 }
 
+TEST(Refusal, NumbersThatAreFiniteAndAbsurd) {
+  const auto scaled = [](double factor) {
+    return [factor](Json& root) {
+      for (Json& value : extension(root, "FASCIA_tissue")["inputToMetres"])
+        value = factor * value.get<double>();
+    };
+  };
+  for (const double factor : {0.0, 1e-30, 1e30})
+    EXPECT_SAYS(refusal(scaled(factor)), "inputToMetres");
+  EXPECT_EQ(refusal(scaled(1e-3)), "");
+  EXPECT_SAYS(refusal([](Json& root) { extension(root, "FASCIA_skull")["jaw"]["openAngle"] = 1e30; }), "jaw");
+  EXPECT_SAYS(refusal([](Json& root) {
+                for (Json& value : extension(root, "FASCIA_tissue")["levels"][0]["bindings"][0]["toRig"])
+                  value = 0.0;
+              }),
+              "toRig");
+}
+
 TEST(Refusal, ValuesOutOfRange) {
   // Claiming one column less makes indices point past the nodes.
   EXPECT_NE(refusal([](Json& root) { extension(root, "FASCIA_tissue")["levels"][0]["columns"] = 288; }), "");
@@ -112,7 +130,7 @@ TEST(Refusal, ValuesOutOfRange) {
 TEST(Refusal, AChangedMeshIsFoundOut) {
   rig::GltfSource file = rig::glb_source(test::tiny_rig_file());
   file.bin[4] ^= 1;  // a bit of the first vertex
-  const std::string moved = message_of([&] { rig::read(rig::glb_bytes(file.json, file.bin), "head.glb"); });
+  const std::string moved = message_of([&] { rig::read(gltf::glb_bytes(file.json, file.bin), "head.glb"); });
   EXPECT_SAYS(moved, "FASCIA_tissue/levels/0/bindings/0");
   EXPECT_SAYS(moved, "face");
   EXPECT_SAYS(moved, "build the rig again");
@@ -125,7 +143,7 @@ TEST(Refusal, AChangedMeshIsFoundOut) {
 
 TEST(Refusal, APlainHeadIsNoRig) {
   const rig::GltfSource head = test::tiny_head();
-  const std::vector<uint8_t> bytes = rig::glb_bytes(head.json, head.bin);
+  const std::vector<uint8_t> bytes = gltf::glb_bytes(head.json, head.bin);
   // The head's own animation names a FASCIA channel; that alone makes no rig.
   EXPECT_SAYS(message_of([&] { rig::read(bytes, "head.glb"); }), "not a Fascia rig");
   EXPECT_TRUE(rig::is_rig(test::tiny_rig_file()));
@@ -141,7 +159,7 @@ TEST(Refusal, EveryTruncationIsAnError) {
 
 TEST(Refusal, NoCorruptionCrashes) {
   const std::vector<uint8_t> sound = test::tiny_rig_file();
-  const rig::GlbChunks chunks = rig::glb_chunks(sound, "rig");
+  const gltf::GlbChunks chunks = gltf::glb_chunks(sound, "rig");
   const std::size_t json_end = 20 + chunks.json.size();
   std::mt19937 random(7);
   int refused = 0;

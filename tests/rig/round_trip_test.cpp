@@ -7,7 +7,7 @@
 
 #include "geometry/error.h"
 #include "rig/model/fields.h"
-#include "rig/read/container.h"
+#include "gltf/read/container.h"
 #include "rig/read/read.h"
 #include "rig/write/write.h"
 #include "tests/rig/tiny_rig.h"

@@ -11,7 +11,7 @@
 #include <valijson/validator.hpp>
 
 #include "rig/model/extensions.h"
-#include "rig/read/container.h"
+#include "gltf/read/container.h"
 #include "tests/rig/tiny_rig.h"
 
 namespace fascia {

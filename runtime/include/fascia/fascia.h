@@ -30,7 +30,12 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#if defined(_WIN32)
+/* Define FASCIA_STATIC when linking the static library; the library's own build defines FASCIA_BUILDING. */
+#if defined(FASCIA_STATIC)
+#define FASCIA_API
+#elif defined(_WIN32) && defined(FASCIA_BUILDING)
+#define FASCIA_API __declspec(dllexport)
+#elif defined(_WIN32)
 #define FASCIA_API __declspec(dllimport)
 #elif defined(__GNUC__)
 #define FASCIA_API __attribute__((visibility("default")))

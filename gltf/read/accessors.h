@@ -1,14 +1,15 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
-#include <span>
 #include <string>
 #include <vector>
 
-#include "cmake/tinygltf/tinygltf.h"
-#include "rig/model/rig.h"
+#include "gltf/tinygltf/tinygltf.h"
 
-namespace fascia::rig {
+namespace fascia::gltf {
+
+using Triangle = std::array<uint32_t, 3>;
 
 /// An accessor's elements in its buffer, every bound checked.
 struct AccessorView {
@@ -22,10 +23,6 @@ struct AccessorView {
   std::size_t component_size() const;
   std::size_t element_size() const { return components * component_size(); }
 };
-
-/// Reads the JSON and the buffers of a GLB file with tinygltf: no images, no files beside it.
-/// Throws fascia::Error naming `name`.
-tinygltf::Model load_gltf(std::span<const uint8_t> glb, const std::string& name);
 
 /// View of accessor `index`. Throws fascia::Error, beginning with `path`, when the index, the buffer view or
 /// the range is out of bounds.
@@ -45,4 +42,4 @@ std::vector<Triangle> decode_triangles(const tinygltf::Model& model, const tinyg
 /// counts as zeros; sparse values are applied.
 uint64_t attribute_hash(const tinygltf::Model& model, int index, const std::string& path);
 
-}  // namespace fascia::rig
+}  // namespace fascia::gltf

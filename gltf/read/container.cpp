@@ -1,10 +1,10 @@
-#include "rig/read/container.h"
+#include "gltf/read/container.h"
 
 #include <cstring>
 
 #include "geometry/error.h"
 
-namespace fascia::rig {
+namespace fascia::gltf {
 namespace {
 
 constexpr uint32_t magic = 0x46546C67;       // "glTF"
@@ -62,7 +62,7 @@ std::vector<uint8_t> glb_bytes(std::string_view json, std::span<const uint8_t> b
   const std::size_t json_size = (json.size() + 3) / 4 * 4, binary_size = (binary.size() + 3) / 4 * 4;
   const std::size_t total =
       header_size + chunk_header_size + json_size + (binary.empty() ? 0 : chunk_header_size + binary_size);
-  if (total > UINT32_MAX) throw Error("the rig would be larger than the four gigabytes a GLB file can hold");
+  if (total > UINT32_MAX) throw Error("the file would be larger than the four gigabytes a GLB file can hold");
   std::vector<uint8_t> bytes;
   bytes.reserve(total);
   put_word(bytes, magic);
@@ -81,4 +81,4 @@ std::vector<uint8_t> glb_bytes(std::string_view json, std::span<const uint8_t> b
   return bytes;
 }
 
-}  // namespace fascia::rig
+}  // namespace fascia::gltf

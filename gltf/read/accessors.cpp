@@ -1,17 +1,11 @@
-#include "rig/read/accessors.h"
+#include "gltf/read/accessors.h"
 
 #include <cstring>
 
 #include "geometry/error.h"
-#include "rig/read/container.h"
 
-namespace fascia::rig {
+namespace fascia::gltf {
 namespace {
-
-bool ignore_image(tinygltf::Image*, const int, std::string*, std::string*, int, int, const unsigned char*,
-                  int, void*) {
-  return true;
-}
 
 std::size_t size_of_component(int type) {
   switch (type) {
@@ -171,36 +165,6 @@ std::size_t AccessorView::component_size() const {
   return size_of_component(component_type);
 }
 
-tinygltf::Model load_gltf(std::span<const uint8_t> glb, const std::string& name) {
-  glb_chunks(glb, name);
-  tinygltf::TinyGLTF loader;
-  loader.SetImageLoader(ignore_image, nullptr);
-  // The file stands for itself: anything it names beside itself is not there.
-  tinygltf::FsCallbacks no_files{};
-  no_files.FileExists = [](const std::string&, void*) { return false; };
-  no_files.ExpandFilePath = [](const std::string& path, void*) { return path; };
-  no_files.ReadWholeFile = [](std::vector<unsigned char>*, std::string*, const std::string&, void*) {
-    return false;
-  };
-  no_files.WriteWholeFile = [](std::string*, const std::string&, const std::vector<unsigned char>&, void*) {
-    return false;
-  };
-  loader.SetFsCallbacks(no_files);
-  tinygltf::Model model;
-  std::string error, warning;
-  bool read = false;
-  try {
-    read = loader.LoadBinaryFromMemory(&model, &error, &warning, glb.data(),
-                                       static_cast<unsigned int>(glb.size()));
-  } catch (const std::exception& exception) {
-    error = exception.what();
-  }
-  while (!error.empty() && (error.back() == '\n' || error.back() == ' '))
-    error.pop_back();
-  if (!read) throw Error(name + ": not a sound glTF file: " + (error.empty() ? "unknown reason" : error));
-  return model;
-}
-
 AccessorView accessor_view(const tinygltf::Model& model, int index, const std::string& path) {
   const tinygltf::Accessor& accessor = accessor_at(model, index, path);
   AccessorView view;
@@ -284,4 +248,4 @@ uint64_t attribute_hash(const tinygltf::Model& model, int index, const std::stri
   return hash_words(bytes.data(), bytes.size());
 }
 
-}  // namespace fascia::rig
+}  // namespace fascia::gltf

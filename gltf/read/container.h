@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace fascia::rig {
+namespace fascia::gltf {
 
 /// The two chunks of a GLB file, as views into its bytes.
 struct GlbChunks {
@@ -25,4 +25,4 @@ GlbChunks glb_chunks(std::span<const uint8_t> bytes, const std::string& name);
 /// Throws fascia::Error when the file would pass the format's four gigabytes.
 std::vector<uint8_t> glb_bytes(std::string_view json, std::span<const uint8_t> binary);
 
-}  // namespace fascia::rig
+}  // namespace fascia::gltf

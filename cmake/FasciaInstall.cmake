@@ -1,0 +1,120 @@
+# What `cmake --install` puts where, in components:
+#   runtime      the shared library and the Bullet module
+#   development  the C header, the static library, CMake package and pkg-config file
+#   tool         the fascia command, its manual page and shell completions
+#   builder      the offline builder as static libraries with their C++ headers
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/fascia)
+set(builder_headers ${CMAKE_INSTALL_INCLUDEDIR}/fascia-builder)
+
+# fascia_closure(RESULT target...): these static and interface libraries of the project and all that they link.
+function(fascia_closure result)
+  set(found "")
+  set(open ${ARGN})
+  while(open)
+    list(POP_FRONT open name)
+    string(REGEX REPLACE "^\\$<LINK_ONLY:(.*)>$" "\\1" name "${name}")
+    if(NOT TARGET "${name}")
+      continue()
+    endif()
+    get_target_property(alias ${name} ALIASED_TARGET)
+    if(alias)
+      set(name ${alias})
+    endif()
+    get_target_property(imported ${name} IMPORTED)
+    if(imported OR name IN_LIST found)
+      continue()
+    endif()
+    list(APPEND found ${name})
+    foreach(property LINK_LIBRARIES INTERFACE_LINK_LIBRARIES)
+      get_target_property(links ${name} ${property})
+      if(links)
+        list(APPEND open ${links})
+      endif()
+    endforeach()
+  endwhile()
+  set(${result} ${found} PARENT_SCOPE)
+endfunction()
+
+# One static library for hosts that link the runtime in: the objects of every room it stands on.
+fascia_closure(runtime_rooms fascia_runtime_core)
+add_library(fascia_runtime_static STATIC ${PROJECT_SOURCE_DIR}/runtime/version.cpp)
+foreach(room IN LISTS runtime_rooms)
+  get_target_property(kind ${room} TYPE)
+  if(kind STREQUAL "STATIC_LIBRARY")
+    target_sources(fascia_runtime_static PRIVATE $<TARGET_OBJECTS:${room}>)
+  endif()
+endforeach()
+target_include_directories(fascia_runtime_static PUBLIC
+  $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/runtime/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+target_compile_definitions(fascia_runtime_static INTERFACE FASCIA_STATIC)
+target_link_libraries(fascia_runtime_static INTERFACE ${CMAKE_DL_LIBS})
+set_target_properties(fascia_runtime_static PROPERTIES EXPORT_NAME runtime_static
+  OUTPUT_NAME $<IF:$<BOOL:${WIN32}>,fascia_static,fascia>)
+set_target_properties(fascia_runtime PROPERTIES EXPORT_NAME runtime)
+
+install(TARGETS fascia_runtime EXPORT fascia_runtime_targets
+  RUNTIME COMPONENT runtime
+  LIBRARY COMPONENT runtime NAMELINK_COMPONENT development
+  ARCHIVE COMPONENT development)
+install(TARGETS fascia_runtime_static EXPORT fascia_runtime_targets ARCHIVE COMPONENT development)
+install(EXPORT fascia_runtime_targets NAMESPACE fascia:: DESTINATION ${package_folder} COMPONENT development)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/runtime/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
+# The module lies beside the library that loads it.
+if(TARGET fascia_bullet_module)
+  install(TARGETS fascia_bullet_module LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT runtime)
+endif()
+
+set(FASCIA_BUILDER_DEPENDENCIES Eigen3 nlohmann_json embree TBB)
+if(TARGET draco::draco)
+  list(APPEND FASCIA_BUILDER_DEPENDENCIES draco meshoptimizer)
+endif()
+list(JOIN FASCIA_BUILDER_DEPENDENCIES " " FASCIA_BUILDER_DEPENDENCIES)
+configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/fasciaConfig.cmake.in
+  ${PROJECT_BINARY_DIR}/install/fasciaConfig.cmake INSTALL_DESTINATION ${package_folder})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/install/fasciaConfigVersion.cmake
+  COMPATIBILITY SameMinorVersion)
+file(RELATIVE_PATH FASCIA_PREFIX_FROM_PKGCONFIG ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
+configure_file(${CMAKE_CURRENT_LIST_DIR}/fascia.pc.in ${PROJECT_BINARY_DIR}/install/fascia.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/install/fasciaConfig.cmake ${PROJECT_BINARY_DIR}/install/fasciaConfigVersion.cmake
+  DESTINATION ${package_folder} COMPONENT development)
+install(FILES ${PROJECT_BINARY_DIR}/install/fascia.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
+foreach(component runtime development tool builder)
+  install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/fascia-${component}
+    COMPONENT ${component} RENAME copyright)
+endforeach()
+
+if(FASCIA_BUILD_BUILDER)
+  fascia_closure(builder_rooms fascia_rigging fascia_formats fascia_rig)
+  foreach(room IN LISTS builder_rooms)
+    string(REGEX REPLACE "^fascia_" "" name ${room})
+    set_target_properties(${room} PROPERTIES EXPORT_NAME ${name})
+  endforeach()
+  install(TARGETS ${builder_rooms} EXPORT fascia_builder_targets
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}/fascia-builder COMPONENT builder)
+  install(EXPORT fascia_builder_targets NAMESPACE fascia:: DESTINATION ${package_folder} COMPONENT builder)
+  foreach(room geometry gltf formats anatomy rig sim builder)
+    if(IS_DIRECTORY ${PROJECT_SOURCE_DIR}/${room})
+      install(DIRECTORY ${PROJECT_SOURCE_DIR}/${room} DESTINATION ${builder_headers} COMPONENT builder
+        FILES_MATCHING PATTERN "*.h")
+    endif()
+  endforeach()
+
+  set_target_properties(fascia PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
+  install(TARGETS fascia RUNTIME COMPONENT tool)
+  set(manual ${PROJECT_BINARY_DIR}/install/manual)
+  set(manual_files "")
+  foreach(kind man bash zsh fish)
+    list(APPEND manual_files ${manual}.${kind})
+    add_custom_command(OUTPUT ${manual}.${kind} COMMAND fascia manual ${kind} > ${manual}.${kind} DEPENDS fascia VERBATIM)
+  endforeach()
+  add_custom_target(fascia_manual ALL DEPENDS ${manual_files})
+  install(FILES ${manual}.man DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 RENAME fascia.1 COMPONENT tool)
+  install(FILES ${manual}.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME fascia COMPONENT tool)
+  install(FILES ${manual}.zsh DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions RENAME _fascia COMPONENT tool)
+  install(FILES ${manual}.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d RENAME fascia.fish
+    COMPONENT tool)
+endif()
+include(FasciaPackages)

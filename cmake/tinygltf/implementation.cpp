@@ -1,2 +1,0 @@
-#define TINYGLTF_IMPLEMENTATION
-#include "cmake/tinygltf/tinygltf.h"

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "gltf/edit/appendix.h"
+
+namespace fascia::gltf {
+
+/// Changes to a glTF file that leave everything else in it as it came: data are appended, never moved.
+class Edit {
+ public:
+  /// `document` must be self-contained. Throws fascia::Error when its JSON is malformed.
+  explicit Edit(Document document);
+  Edit(const Edit&) = delete;
+  Edit& operator=(const Edit&) = delete;
+
+  Appendix& data() { return appendix_; }
+
+  /// Appends an accessor of `values` (float, `width` numbers each) and returns its index. `bounds` adds
+  /// min and max, which POSITION and animation inputs need.
+  size_t add_floats(std::span<const float> values, int width, bool bounds, int target = 0) {
+    return appendix_.add_floats(values, static_cast<std::size_t>(width), bounds, target);
+  }
+
+  /// A primitive's JSON. Throws when it is not there.
+  Json& primitive(uint32_t mesh, uint32_t index);
+
+  /// Nodes that show `mesh`.
+  std::vector<std::size_t> nodes_of(uint32_t mesh) const;
+
+  /// The file as GLB.
+  std::vector<uint8_t> bytes() const;
+
+  Json json;
+
+ private:
+  std::vector<uint8_t> bin_;
+  Appendix appendix_;
+};
+
+}  // namespace fascia::gltf

@@ -1,0 +1,215 @@
+#include "gltf/edit/morph_targets.h"
+
+#include <algorithm>
+#include <set>
+
+#include "geometry/error.h"
+#include "gltf/edit/animation.h"
+#include "gltf/edit/shading.h"
+#include "gltf/read/model.h"
+
+namespace fascia::gltf {
+namespace {
+
+/// One mesh of the file while targets are added to it.
+class MeshMorphs {
+ public:
+  MeshMorphs(Edit& edit, const tinygltf::Model& model, uint32_t mesh)
+      : edit_(edit), mesh_(mesh), path_("mesh " + std::to_string(mesh)), shading_(mesh_shading(model, mesh)) {
+    Json& entry = json();
+    for (Json& primitive : entry["primitives"])
+      before_ = std::max(before_, primitive.contains("targets") ? primitive["targets"].size() : 0);
+    names_ = target_names(entry, before_);
+    rest_ = shading_.turned(still());
+  }
+
+  std::size_t count() const { return names_.size(); }
+  std::size_t before() const { return before_; }
+
+  /// Adds one shape; returns its index, or -1 when it moves nothing here.
+  int add(const std::string& name, const std::vector<PrimitiveMotion>& shape, const MorphOptions& options,
+          std::set<std::string>& renamed) {
+    const std::vector<std::vector<Vec3f>> displacements = gathered(shape);
+    const bool moves =
+        std::any_of(displacements.begin(), displacements.end(), [](const std::vector<Vec3f>& motion) {
+          return std::any_of(motion.begin(), motion.end(), [](const Vec3f& d) { return !d.isZero(0); });
+        });
+    if (!moves) return -1;
+    const auto known = std::find(names_.begin(), names_.begin() + static_cast<std::ptrdiff_t>(before_), name);
+    const bool exists = known != names_.begin() + static_cast<std::ptrdiff_t>(before_);
+    if (exists) renamed.insert(name);
+    const bool replaces = exists && options.existing == MorphOptions::Existing::replace;
+    const std::size_t index = replaces ? static_cast<std::size_t>(known - names_.begin()) : names_.size();
+    if (!replaces) names_.push_back(exists ? free_name(name) : name);
+    put(index, displacements, turned(displacements, options));
+    return static_cast<int>(index);
+  }
+
+  /// Names, default weights and normals, once all shapes are in.
+  void finish() {
+    Json& entry = json();
+    if (!entry.contains("extras") || !entry["extras"].is_object()) {
+      const Json kept = entry.value("extras", Json());
+      entry["extras"] = Json::object();
+      if (!kept.is_null()) entry["extras"]["extras"] = kept;
+    }
+    entry["extras"]["targetNames"] = names_;
+    if (!entry.contains("weights")) entry["weights"] = Json::array();
+    while (entry["weights"].size() < names_.size())
+      entry["weights"].push_back(0.0);
+    for (std::size_t p = 0; p < shading_.primitives().size(); ++p)
+      add_normals(p);
+  }
+
+ private:
+  static std::vector<std::string> target_names(const Json& entry, std::size_t count) {
+    std::vector<std::string> names;
+    const Json::json_pointer place("/extras/targetNames");
+    if (entry.contains("extras") && entry["extras"].is_object() && entry.contains(place) &&
+        entry[place].is_array())
+      for (const Json& name : entry[place])
+        names.push_back(name.is_string() ? name.get<std::string>()
+                                         : "target_" + std::to_string(names.size()));
+    names.resize(std::min(names.size(), count));
+    while (names.size() < count)
+      names.push_back("target_" + std::to_string(names.size()));
+    return names;
+  }
+
+  std::string free_name(const std::string& name) const {
+    std::string candidate = "fascia_" + name;
+    while (std::find(names_.begin(), names_.end(), candidate) != names_.end())
+      candidate += "_";
+    return candidate;
+  }
+
+  Json& json() { return edit_.json["meshes"][mesh_]; }
+  std::vector<std::vector<Vec3f>> still() const {
+    return {shading_.primitives().size(), std::vector<Vec3f>()};
+  }
+
+  std::vector<std::vector<Vec3f>> gathered(const std::vector<PrimitiveMotion>& shape) const {
+    std::vector<std::vector<Vec3f>> displacements = still();
+    for (const PrimitiveMotion& motion : shape) {
+      if (motion.mesh != mesh_) continue;
+      if (motion.primitive >= displacements.size() ||
+          motion.displacement.size() != shading_.primitives()[motion.primitive].positions.size())
+        throw Error(path_ + " primitive " + std::to_string(motion.primitive) +
+                    ": the motion has another number of vertices: build the rig again");
+      displacements[motion.primitive] = motion.displacement;
+    }
+    return displacements;
+  }
+
+  /// By how much normals and tangents turn for a shape at weight 1.
+  MeshShading::Turned turned(const std::vector<std::vector<Vec3f>>& displacements,
+                             const MorphOptions& options) const {
+    MeshShading::Turned there = shading_.turned(displacements);
+    if (!options.is_linear) return minus(there, rest_, 1.0F);
+    std::vector<std::vector<Vec3f>> back = displacements;
+    for (std::vector<Vec3f>& motion : back)
+      for (Vec3f& d : motion)
+        d = -d;
+    return minus(there, shading_.turned(back), 0.5F);
+  }
+
+  static MeshShading::Turned minus(MeshShading::Turned a, const MeshShading::Turned& b, float scale) {
+    for (auto [to, from] : {std::pair(&a.normals, &b.normals), std::pair(&a.tangents, &b.tangents)})
+      for (std::size_t p = 0; p < to->size(); ++p)
+        for (std::size_t v = 0; v < (*to)[p].size(); ++v)
+          (*to)[p][v] = scale * ((*to)[p][v] - (*from)[p][v]);
+    return a;
+  }
+
+  void put(std::size_t index, const std::vector<std::vector<Vec3f>>& displacements,
+           const MeshShading::Turned& turned) {
+    for (std::size_t p = 0; p < shading_.primitives().size(); ++p) {
+      const ShadedPrimitive& rest = shading_.primitives()[p];
+      std::vector<Vec3f> motion = displacements[p];
+      motion.resize(rest.positions.size(), Vec3f::Zero());
+      Json target = {{"POSITION", edit_.data().add_vectors(motion, true)}};
+      if (!rest.triangles.empty() || rest.has_normals)
+        target["NORMAL"] = edit_.data().add_vectors(turned.normals[p], false);
+      if (!rest.tangents.empty()) target["TANGENT"] = edit_.data().add_vectors(turned.tangents[p], false);
+      Json& primitive = edit_.primitive(mesh_, static_cast<uint32_t>(p));
+      if (!primitive.contains("targets")) primitive["targets"] = Json::array();
+      if (index < primitive["targets"].size())
+        primitive["targets"][index] = std::move(target);
+      else
+        primitive["targets"].push_back(std::move(target));
+    }
+  }
+
+  void add_normals(std::size_t p) {
+    const ShadedPrimitive& rest = shading_.primitives()[p];
+    if (rest.has_normals || rest.triangles.empty()) return;
+    const std::span<const float> flat(reinterpret_cast<const float*>(rest.normals.data()),
+                                      3 * rest.normals.size());
+    const std::size_t normals = edit_.add_floats(flat, 3, false, vertex_target);
+    edit_.primitive(mesh_, static_cast<uint32_t>(p))["attributes"]["NORMAL"] = normals;
+  }
+
+  Edit& edit_;
+  uint32_t mesh_;
+  std::string path_;
+  MeshShading shading_;
+  MeshShading::Turned rest_;
+  std::size_t before_ = 0;
+  std::vector<std::string> names_;
+};
+
+}  // namespace
+
+std::vector<MeshTargets> add_morph_targets(Edit& edit, const std::vector<std::string>& names,
+                                           const std::vector<std::vector<PrimitiveMotion>>& shapes,
+                                           const MorphOptions& options, std::vector<std::string>* warnings) {
+  const tinygltf::Model model = load_model(edit.bytes(), "head");
+  std::set<uint32_t> meshes;
+  for (const auto& shape : shapes)
+    for (const PrimitiveMotion& motion : shape)
+      meshes.insert(motion.mesh);
+  std::vector<MeshTargets> result;
+  std::vector<std::string> heard;
+  std::set<std::string> existing;
+  for (const uint32_t mesh : meshes) {
+    MeshMorphs morphs(edit, model, mesh);
+    MeshTargets targets{mesh, 0, {}};
+    for (std::size_t s = 0; s < shapes.size(); ++s)
+      targets.targets.push_back(morphs.add(names[s], shapes[s], options, existing));
+    targets.count = morphs.count();
+    if (std::all_of(targets.targets.begin(), targets.targets.end(), [](int target) { return target < 0; }))
+      continue;
+    morphs.finish();
+    lengthen_weights(edit, model, mesh, morphs.before(), morphs.count(), heard);
+    result.push_back(std::move(targets));
+  }
+  const bool replaced = options.existing == MorphOptions::Existing::replace;
+  for (const std::string& name : existing)
+    heard.push_back("the head has a shape '" + name + "' of its own: " +
+                    (replaced ? "it is replaced" : "the new one is called 'fascia_" + name + "'"));
+  if (warnings != nullptr) warnings->insert(warnings->end(), heard.begin(), heard.end());
+  return result;
+}
+
+void add_weight_channels(Edit& edit, const std::vector<MeshTargets>& meshes,
+                         const std::vector<std::vector<float>>& weights, std::size_t time, Json& animation) {
+  const std::size_t keys = weights.empty() ? 0 : weights[0].size();
+  for (const MeshTargets& mesh : meshes)
+    for (const std::size_t node : edit.nodes_of(mesh.mesh)) {
+      const std::vector<float> still = default_weights(edit.json, edit.json["nodes"][node], mesh.count);
+      std::vector<float> values;
+      values.reserve(keys * mesh.count);
+      for (std::size_t f = 0; f < keys; ++f) {
+        values.insert(values.end(), still.begin(), still.end());
+        for (std::size_t s = 0; s < mesh.targets.size(); ++s)
+          if (mesh.targets[s] >= 0)
+            values[f * mesh.count + static_cast<std::size_t>(mesh.targets[s])] = weights[s][f];
+      }
+      animation["samplers"].push_back(
+          {{"input", time}, {"output", edit.add_floats(values, 1, false)}, {"interpolation", "LINEAR"}});
+      animation["channels"].push_back(
+          {{"sampler", animation["samplers"].size() - 1}, {"target", {{"node", node}, {"path", "weights"}}}});
+    }
+}
+
+}  // namespace fascia::gltf

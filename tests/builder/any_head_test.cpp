@@ -1,0 +1,170 @@
+// Heads as people have them, made from the embedded one: each must come out as a rig that moves.
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <sstream>
+
+#include "anatomy/anatomy.h"
+#include "cli/demo_curves.h"
+#include "formats/landmark_file.h"
+#include "formats/scene.h"
+#include "tests/builder/posed_face.h"
+
+namespace fascia::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The embedded head's skin in metres, changed by `change` and written as OBJ in millimetres beside its
+/// landmarks, which `place` carries along.
+class Variant {
+ public:
+  using Change = std::function<void(TriangleMesh&)>;
+  using Place = std::function<Vec3(const Vec3&)>;
+  Variant(
+      const std::string& name, const Change& change, const Place& place = [](const Vec3& p) { return p; }) {
+    const fs::path folder = fs::temp_directory_path() / ("fascia_any_head_" + name);
+    fs::create_directories(folder);
+    cli::write_embedded_head(folder / "head.obj", folder / "landmarks.json");
+    const formats::Scene scene = formats::read(folder / "head.obj");
+    TriangleMesh skin;
+    for (const formats::SceneMesh& mesh : scene.meshes) {
+      if (mesh.name.find("teeth") != std::string::npos) continue;
+      const int base = skin.vertex_count();
+      for (const Vec3& p : mesh.positions)
+        skin.vertices.push_back(1e-3 * p);
+      for (const Triangle& t : mesh.triangles)
+        skin.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
+    }
+    for (Vec3& p : skin.vertices)
+      p = place(p);
+    change(skin);
+    std::ostringstream obj, points;
+    obj.precision(9);
+    points.precision(9);
+    for (const Vec3& p : skin.vertices)
+      obj << "v " << 1e3 * p.x() << " " << 1e3 * p.y() << " " << 1e3 * p.z() << "\n";
+    for (const Triangle& t : skin.triangles)
+      obj << "f " << t[0] + 1 << " " << t[1] + 1 << " " << t[2] + 1 << "\n";
+    formats::write_text(folder / "head.obj", obj.str());
+    points << "{\"units\":\"mm\",\"landmarks\":{";
+    bool first = true;
+    for (const anatomy::Landmark& landmark : anatomy::load_generic().landmarks) {
+      if (!landmark.skin) continue;
+      const Vec3 p = 1e3 * place(*landmark.skin);
+      points << (first ? "" : ",") << "\"" << landmark.name << "\":[" << p.x() << "," << p.y() << "," << p.z()
+             << "]";
+      first = false;
+    }
+    points << "}}";
+    formats::write_text(folder / "landmarks.json", points.str());
+    face_.emplace(folder / "head.obj", folder / "landmarks.json", "test_any_" + name, "low");
+    fs::remove_all(folder);
+  }
+  PosedFace& face() { return *face_; }
+
+ private:
+  std::optional<PosedFace> face_;
+};
+
+void no_change(TriangleMesh&) {}
+
+Vec3 landmark(const std::string& name) {
+  for (const anatomy::Landmark& landmark : anatomy::load_generic().landmarks)
+    if (landmark.name == name && landmark.skin) return *landmark.skin;
+  ADD_FAILURE() << "no landmark " << name;
+  return Vec3::Zero();
+}
+
+/// What any head with lips and lids does, however it was made.
+void expect_opens_and_closes(PosedFace& face) {
+  face.pose({});
+  EXPECT_EQ(face.largest_motion(), 0.0);
+  face.pose({{"jaw_open", 1.0}});
+  EXPECT_LT(face.moved("labiale_inferius").y() - face.moved("labiale_superius").y(), -12.0);
+  EXPECT_LT(face.moved("pogonion").y(), -10.0) << "the chin goes with the jaw";
+  face.pose({{"lid_upper_left", 1.0}, {"lid_upper_right", 1.0}});
+  for (const std::string side : {"left", "right"})
+    EXPECT_LT(face.moved("palpebrale_superius_" + side).y(), -3.0) << side;
+  EXPECT_LT(face.moved("menton").norm(), 0.5);
+}
+
+TEST(AnyHead, WithoutEyeballsAndTeeth) {
+  Variant head("bare", no_change);
+  expect_opens_and_closes(head.face());
+}
+
+TEST(AnyHead, WithTrianglesOfNoArea) {
+  Variant plain("plain", no_change), head("slivers", [](TriangleMesh&skin) {
+    const auto count = static_cast<size_t>(skin.triangle_count());
+    for (size_t t = 0; t < count; t += 97) {  // a cap on a side, and a needle at a corner
+      const Triangle corners = skin.triangles[t];
+      const int middle = skin.vertex_count(), twin = middle + 1;
+      const Vec3 a = skin.vertices[static_cast<size_t>(corners[0])],
+                 b = skin.vertices[static_cast<size_t>(corners[1])];
+      skin.vertices.push_back(0.5 * (a + b));
+      skin.vertices.push_back(a);
+      skin.triangles[t] = {middle, corners[1], corners[2]};
+      skin.triangles.push_back({twin, middle, corners[2]});
+      skin.triangles.push_back({corners[0], corners[1], middle});
+      skin.triangles.push_back({corners[0], twin, corners[2]});
+    }
+  });
+  expect_opens_and_closes(head.face());
+  for (const char* name : {"cheilion_left", "pogonion", "labiale_superius"}) {
+    plain.face().pose({{"jaw_open", 0.7}, {"zygomaticus_major_left", 0.5}});
+    head.face().pose({{"jaw_open", 0.7}, {"zygomaticus_major_left", 0.5}});
+    EXPECT_LT((plain.face().moved(name) - head.face().moved(name)).norm(), 0.5) << name;
+  }
+}
+
+TEST(AnyHead, AsAMaskWithHolesForMouthAndEyes) {
+  Variant head("mask", [](TriangleMesh& skin) {
+    const double back = landmark("tragion_left").z() + 0.02, bottom = landmark("menton").y() - 0.006;
+    const Vec3 lips = landmark("stomion");
+    const Vec3 eyes[] = {0.5 * (landmark("endocanthion_left") + landmark("exocanthion_left")),
+                         0.5 * (landmark("endocanthion_right") + landmark("exocanthion_right"))};
+    std::vector<Triangle> kept;
+    const std::vector<Vec3> normals = vertex_normals(skin);
+    for (const Triangle& t : skin.triangles) {
+      Vec3 p = Vec3::Zero(), normal = Vec3::Zero();
+      for (const int v : t) {
+        p += skin.vertices[static_cast<size_t>(v)] / 3.0;
+        normal += normals[static_cast<size_t>(v)];
+      }
+      bool lining = (p - lips).norm() < 0.035 && p.z() < lips.z() - 0.004 && std::abs(p.x()) < 0.018;
+      for (const Vec3& eye : eyes)
+        lining = lining || ((p - eye).norm() < 0.022 && normal.z() < 0.0);
+      if (p.z() > back && p.y() > bottom && !lining) kept.push_back(t);
+    }
+    skin.triangles = kept;
+  });
+  PosedFace& face = head.face();
+  face.pose({{"jaw_open", 1.0}});
+  EXPECT_LT(face.moved("labiale_inferius").y() - face.moved("labiale_superius").y(), -8.0);
+  EXPECT_LT(face.moved("pogonion").y(), -8.0) << "a mask's edge at the chin goes with the jaw";
+}
+
+TEST(AnyHead, TurnedMovedAndScaledItPosesAlike) {
+  const Mat3 turn =
+      (Eigen::AngleAxisd(0.15, Vec3::UnitY()) * Eigen::AngleAxisd(-0.12, Vec3::UnitX())).matrix();
+  Variant plain("straight", no_change),
+      turned("turned", no_change, [&](const Vec3&p) { return Vec3(turn * p + Vec3(0.3, -0.2, 0.1)); });
+  const PosedFace::Values poses[] = {{{"jaw_open", 0.8}},
+                                     {{"zygomaticus_major_left", 1}, {"zygomaticus_major_right", 1}},
+                                     {{"lid_upper_left", 1.0}, {"lid_upper_right", 1.0}}};
+  for (const PosedFace::Values& pose : poses) {
+    plain.face().pose(pose);
+    turned.face().pose(pose);
+    for (const char* name : {"cheilion_left", "cheilion_right", "pogonion", "labiale_inferius",
+                             "palpebrale_superius_left", "palpebrale_superius_right"})
+      EXPECT_LT((turned.face().moved(name) - turn * plain.face().moved(name)).norm(), 0.5)
+          << name << " in " << pose.begin()->first;
+  }
+}
+
+}  // namespace
+}  // namespace fascia::testing

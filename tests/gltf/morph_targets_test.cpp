@@ -1,0 +1,187 @@
+#include "gltf/edit/morph_targets.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "gltf/edit/instances.h"
+#include "tests/gltf/sheet.h"
+
+namespace fascia::gltf {
+namespace {
+
+using test::bump;
+using test::floats;
+using test::sheet;
+using test::SheetOptions;
+
+struct Result {
+  Document document;
+  Json json;
+  std::vector<MeshTargets> targets;
+  std::vector<std::string> warnings;
+};
+
+Result morphed(const SheetOptions& sheet_options, const std::vector<std::string>& names,
+               const std::vector<std::vector<PrimitiveMotion>>& shapes, const MorphOptions& options = {}) {
+  Edit edit(sheet(sheet_options));
+  Result result;
+  result.targets = add_morph_targets(edit, names, shapes, options, &result.warnings);
+  result.document = glb_document(edit.bytes(), "result");
+  result.json = Json::parse(result.document.json);
+  return result;
+}
+
+Vec3f element(const std::vector<float>& flat, std::size_t i) {
+  return Vec3f(flat[3 * i], flat[3 * i + 1], flat[3 * i + 2]);
+}
+
+TEST(MorphTargets, NormalsTurnWithTheSurface) {
+  SheetOptions with;
+  with.normals = with.tangents = true;
+  const Result result = morphed(with, {"bump"}, {bump(1)});
+  const Json target = result.json["meshes"][0]["primitives"][0]["targets"][0];
+  EXPECT_EQ(element(floats(result.document, target["POSITION"]), 12), Vec3f(0, 0, 1));
+  const std::vector<float> normals = floats(result.document, target["NORMAL"]);
+  // Round vertex 11, left of the bump, lie six triangles of half a unit each: four level ones, and two that
+  // rise to the bump, with area vectors (-1, 0, 1) / 2 and (-1, 1, 1) / 2 by the sheet's diagonals, or their
+  // mirror images.
+  const Vec3f left = Vec3f(0, 0, 1) + element(normals, 11), right = Vec3f(0, 0, 1) + element(normals, 13);
+  EXPECT_NEAR(left.norm(), 1, 1e-6);
+  EXPECT_NEAR(left.x() / left.z(), -1.0 / 3, 1e-5);
+  EXPECT_NEAR(left.x(), -right.x(), 1e-6);
+  EXPECT_TRUE(element(normals, 0).isZero(0));
+  // Tangents stay square with the normals and of length 1.
+  const Vec3f tangent = Vec3f(1, 0, 0) + element(floats(result.document, target["TANGENT"]), 11);
+  EXPECT_NEAR(tangent.norm(), 1, 1e-6);
+  EXPECT_NEAR(tangent.dot(left), 0, 1e-6);
+  EXPECT_GT(tangent.z(), 0);  // it climbs
+}
+
+TEST(MorphTargets, AHeadWithoutNormalsGetsSmoothOnes) {
+  const Result result = morphed({}, {"bump"}, {bump(1)});
+  const Json primitive = result.json["meshes"][0]["primitives"][0];
+  const std::vector<float> normals = floats(result.document, primitive["attributes"]["NORMAL"]);
+  for (std::size_t v = 0; v < 25; ++v)
+    EXPECT_EQ(element(normals, v), Vec3f(0, 0, 1));
+  EXPECT_TRUE(primitive["targets"][0].contains("NORMAL"));
+}
+
+TEST(MorphTargets, OnlyWhatMovesIsStored) {
+  std::vector<PrimitiveMotion> still = bump(0);
+  const Result result = morphed({}, {"still", "bump"}, {still, bump(1)});
+  EXPECT_EQ(result.json["meshes"][0]["primitives"][0]["targets"].size(), 1U);
+  EXPECT_EQ(result.json["meshes"][0]["extras"]["targetNames"], Json::array({"bump"}));
+  EXPECT_EQ(result.targets[0].targets, (std::vector<int>{-1, 0}));
+  const Json position =
+      result.json["accessors"]
+                 [result.json["meshes"][0]["primitives"][0]["targets"][0]["POSITION"].get<std::size_t>()];
+  EXPECT_EQ(position["sparse"]["count"], 1);
+  EXPECT_TRUE(morphed({}, {"still"}, {still}).targets.empty());
+}
+
+TEST(MorphTargets, NoAccessorIsWithoutData) {
+  // Two primitives with buffers of their own would be given; here the second stands still.
+  SheetOptions two;
+  two.primitives = 2;
+  const Result result = morphed(two, {"bump"}, {{bump(1, 2)[0]}});
+  for (const Json& accessor : result.json["accessors"])
+    EXPECT_TRUE(accessor.contains("bufferView") || accessor.contains("sparse")) << accessor;
+}
+
+TEST(MorphTargets, ASharedVertexBufferStaysShared) {
+  SheetOptions seven;
+  seven.primitives = 7;
+  const Result shared = morphed(seven, {"bump"}, {bump(1, 7)}), one = morphed({}, {"bump"}, {bump(1)});
+  const Json& primitives = shared.json["meshes"][0]["primitives"];
+  for (const Json& primitive : primitives) {
+    EXPECT_EQ(primitive["targets"], primitives[0]["targets"]);
+    EXPECT_EQ(primitive["attributes"], primitives[0]["attributes"]);
+  }
+  EXPECT_LT(shared.document.bin.size(), one.document.bin.size() + 400);
+}
+
+TEST(MorphTargets, ClipsWeightsAndNamesThatWereThereStay) {
+  SheetOptions with;
+  with.weights = {0.8F, 0};
+  with.clip = true;
+  const Result result = morphed(with, {"jawOpen", "bump"}, {bump(1), bump(2)});
+  const Json mesh = result.json["meshes"][0];
+  EXPECT_EQ(mesh["extras"]["targetNames"], Json({"lift", "jawOpen", "fascia_jawOpen", "bump"}));
+  EXPECT_EQ(mesh["primitives"][0]["targets"].size(), 4U);
+  EXPECT_EQ(mesh["weights"].size(), 4U);
+  EXPECT_NEAR(mesh["weights"][0].get<double>(), 0.8, 1e-6);
+  const Json sampler = result.json["animations"][0]["samplers"][0];
+  EXPECT_EQ(floats(result.document, sampler["output"]),
+            (std::vector<float>{0.8F, 0, 0, 0, 0.5F, 0.25F, 0, 0, 0, 1, 0, 0}));
+  ASSERT_EQ(result.warnings.size(), 1U);
+  EXPECT_NE(result.warnings[0].find("jawOpen"), std::string::npos);
+}
+
+TEST(MorphTargets, AShapeTakesAnOldOnesPlaceOnRequest) {
+  SheetOptions with;
+  with.weights = {0.8F, 0};
+  with.clip = true;
+  MorphOptions replace;
+  replace.existing = MorphOptions::Existing::replace;
+  const Result result = morphed(with, {"jawOpen"}, {bump(1)}, replace);
+  const Json mesh = result.json["meshes"][0];
+  EXPECT_EQ(mesh["extras"]["targetNames"], Json({"lift", "jawOpen"}));
+  EXPECT_EQ(element(floats(result.document, mesh["primitives"][0]["targets"][1]["POSITION"]), 12),
+            Vec3f(0, 0, 1));
+  EXPECT_EQ(result.targets[0].targets, std::vector<int>{1});
+}
+
+TEST(MorphTargets, WeightChannelsKeepDefaultWeights) {
+  SheetOptions with;
+  with.weights = {0.8F, 0};
+  Edit edit(sheet(with));
+  const std::vector<MeshTargets> targets = add_morph_targets(edit, {"bump"}, {bump(1)});
+  Json animation = {{"samplers", Json::array()}, {"channels", Json::array()}};
+  const std::vector<float> times = {0, 1};
+  add_weight_channels(edit, targets, {{0, 1}}, edit.add_floats(times, 1, true), animation);
+  EXPECT_EQ(floats(glb_document(edit.bytes(), "x"), animation["samplers"][0]["output"]),
+            (std::vector<float>{0.8F, 0, 0, 0.8F, 0, 1}));
+}
+
+TEST(MorphTargets, ALinearShapeHasNoSide) {
+  SheetOptions with;
+  with.normals = true;
+  MorphOptions linear;
+  linear.is_linear = true;
+  const Result up = morphed(with, {"a"}, {bump(1)}, linear), down = morphed(with, {"a"}, {bump(-1)}, linear);
+  const auto normal = [](const Result& result) {
+    return element(floats(result.document, result.json["meshes"][0]["primitives"][0]["targets"][0]["NORMAL"]),
+                   11);
+  };
+  EXPECT_LT((normal(up) + normal(down)).norm(), 1e-6);
+  EXPECT_NEAR(normal(up).z(), 0, 1e-6);
+}
+
+TEST(SetPose, TakesOffWhatDefaultWeightsAdd) {
+  SheetOptions with;
+  with.weights = {0.5F, 0};
+  Edit edit(sheet(with));
+  std::vector<float> seen;
+  for (int v = 0; v < 25; ++v)
+    seen.insert(seen.end(), {static_cast<float>(v % 5), static_cast<float>(v / 5), v == 12 ? 4.5F : 3.5F});
+  set_pose(edit, {{0, 0, seen}});
+  const Document posed = glb_document(edit.bytes(), "x");
+  const Json primitive = Json::parse(posed.json)["meshes"][0]["primitives"][0];
+  EXPECT_EQ(element(floats(posed, primitive["attributes"]["POSITION"]), 7), Vec3f(2, 1, 3));
+  const Vec3f normal = element(floats(posed, primitive["attributes"]["NORMAL"]), 11);
+  EXPECT_NEAR(normal.x() / normal.z(), -1.0 / 3, 1e-5);  // as the baked bump above
+}
+
+TEST(Instances, EachNodeGetsAMeshOfItsOwn) {
+  Json root = Json::parse(R"({"nodes":[{"mesh":0},{"mesh":1,"scale":[-1,1,1]},{"mesh":1},{}],
+                              "meshes":[{"name":"skin"},{"name":"eye"}]})");
+  EXPECT_EQ(separate_instances(root), 1U);
+  EXPECT_EQ(root["nodes"][1]["mesh"], 1);
+  EXPECT_EQ(root["nodes"][2]["mesh"], 2);
+  EXPECT_EQ(root["meshes"][2]["name"], "eye");
+  EXPECT_EQ(separate_instances(root), 0U);
+}
+
+}  // namespace
+}  // namespace fascia::gltf

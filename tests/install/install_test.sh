@@ -1,0 +1,39 @@
+#!/bin/sh
+# Installs the build into a folder of its own and uses it as a stranger would: find_package and pkg-config, shared and
+# static, C99 and C++20.
+#   install_test.sh BUILD_FOLDER SOURCE_FOLDER RIG.glb
+set -eu
+build=$1 source=$2 rig=$3
+place=$(mktemp -d)
+trap 'rm -rf "$place"' EXIT
+
+cmake --install "$build" --prefix "$place/fascia" >"$place/log" || { cat "$place/log"; exit 1; }
+test "$(wc -l <"$place/log")" -gt 5 || { echo "nothing was installed"; exit 1; }
+
+cmake -S "$source/consumer" -B "$place/consumer" -DCMAKE_PREFIX_PATH="$place/fascia" >/dev/null
+cmake --build "$place/consumer" >/dev/null
+for program in shared_c99 static_c99 shared_cxx20; do
+  "$place/consumer/$program" "$rig" || { echo "$program failed"; exit 1; }
+done
+if ldd "$place/consumer/static_c99" | grep -q libfascia; then echo "the static program needs the shared library"; exit 1; fi
+
+pc=$(find "$place/fascia" -name fascia.pc)
+flags=$(PKG_CONFIG_PATH=$(dirname "$pc") pkg-config --cflags --libs fascia)
+cc -std=c99 -Wall -Wextra -Werror "$source/consumer/play.c" -o "$place/by_pkg_config" $flags -lm
+LD_LIBRARY_PATH=$(dirname "$pc")/.. "$place/by_pkg_config" "$rig"
+
+library=$(find "$place/fascia" -name 'libfascia.so.*.*.*')
+readelf -d "$library" | grep -q 'SONAME.*libfascia\.so\.0' || { echo "no SONAME"; exit 1; }
+if nm -D --defined-only "$library" | awk '{print $3}' | grep -v '^fascia_\|^FASCIA_0'; then echo "symbols that are not the interface's"; exit 1; fi
+
+if [ -x "$place/fascia/bin/fascia" ]; then
+  "$place/fascia/bin/fascia" --version
+  MANPAGER=cat man -l "$place/fascia/share/man/man1/fascia.1" >/dev/null 2>&1 || test -s "$place/fascia/share/man/man1/fascia.1"
+  bash -c "set -e; . '$place/fascia/share/bash-completion/completions/fascia'; COMP_WORDS=(fascia bu); COMP_CWORD=1; _fascia; \
+           test \"\${COMPREPLY[0]}\" = build"
+fi
+if [ -f "$(find "$place/fascia" -name fascia_builder_targets.cmake)" ]; then
+  cmake -S "$source/builder_consumer" -B "$place/builder" -DCMAKE_PREFIX_PATH="$place/fascia" >/dev/null
+  cmake --build "$place/builder" >/dev/null
+  "$place/builder/landmarks"
+fi

@@ -1,0 +1,181 @@
+// Heads of every kind, made of the embedded one: found as they come, the same in every pose, order and
+// triangulation, and the better for every landmark given.
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+#include "builder/rigging/find_landmarks.h"
+#include "geometry/error.h"
+#include "tests/landmarks/made_heads.h"
+
+namespace fascia::testing {
+namespace {
+
+const anatomy::GenericAnatomy& anatomy_of_tests() {
+  static const anatomy::GenericAnatomy anatomy = anatomy::load_generic();
+  return anatomy;
+}
+
+Mat3 turn(double degrees, const Vec3& axis) {
+  return Eigen::AngleAxisd(degrees * EIGEN_PI / 180, axis.normalized()).toRotationMatrix();
+}
+
+struct Errors {
+  double mean = 0.0, most = 0.0;
+  std::string worst;
+};
+
+/// Millimetres between found landmarks and known ones, in the size the head has.
+Errors errors(const MadeHead& head, const rigging::FoundLandmarks& found) {
+  const Mat4 to_file = found.head.input_to_metres.inverse();
+  Errors all;
+  for (const auto& [name, truth] : head.truth) {
+    const double off =
+        head.millimetres * (transform_point(to_file, found.landmarks.at(name).position) - truth).norm();
+    all.mean += off / static_cast<double>(head.truth.size());
+    if (off > all.most) all.worst = name;
+    all.most = std::max(all.most, off);
+  }
+  return all;
+}
+
+void expect_found(const MadeHead& head, double mean_mm, double most_mm) {
+  SCOPED_TRACE(head.name);
+  try {
+    const Errors off = errors(head, rigging::find_landmarks(head.scene, {}, anatomy_of_tests()));
+    EXPECT_LE(off.mean, mean_mm);
+    EXPECT_LE(off.most, most_mm) << off.worst;
+  } catch (const Error& error) {
+    ADD_FAILURE() << error.what();
+  }
+}
+
+Vec3 as_it_is(const Vec3& p) {
+  return p;
+}
+
+MadeHead made(const std::string& name, const Bend& bend) {
+  return made_head(anatomy_of_tests(), name, bend);
+}
+
+TEST(AnyHead, OfEveryProportion) {
+  expect_found(made("child", as_child), 2.5, 6.0);
+  expect_found(made("elder", as_elder), 2.5, 7.0);
+  expect_found(made("large eyes", with_large_eyes), 2.5, 6.0);
+  expect_found(made("anime", as_anime), 4.0, 10.0);
+  expect_found(made("toon", as_toon), 4.0, 10.0);
+  expect_found(made("creature", as_creature), 4.0, 10.0);
+}
+
+TEST(AnyHead, DressedWhateverTheMeshesAreCalled) {
+  expect_found(dressed(made("adult", as_it_is), {"Body", "Coat", "Hair"}), 2.0, 5.0);
+  expect_found(dressed(made("adult", as_it_is), {"mesh_1", "mesh_2", "mesh_3"}), 2.0, 5.0);
+  expect_found(dressed(made("child", as_child), {"Body", "Coat", "Hair"}), 3.0, 8.0);
+}
+
+TEST(AnyHead, FromFourHundredTrianglesOn) {
+  expect_found(coarse(made("adult", as_it_is), 400), 5.0, 14.0);
+  expect_found(coarse(made("adult", as_it_is), 1500), 2.5, 7.0);
+}
+
+TEST(AnyHead, AnOpenMask) {
+  expect_found(mask(made("adult", as_it_is)), 2.0, 6.0);
+  expect_found(moved(mask(made("adult", as_it_is)), turn(140, Vec3(1, 2, 0)), 100.0, Vec3(1, 0, 0)), 2.0,
+               6.0);
+}
+
+/// The largest distance in millimetres between what is found in `other` and in `head`, `there` being where
+/// other's copy of a landmark found in `head` lies.
+double largest_difference(
+    const MadeHead& head, const MadeHead& other,
+    const std::function<std::pair<std::string, Vec3>(const std::string&, const Vec3&)>& there) {
+  const rigging::FoundLandmarks a = rigging::find_landmarks(head.scene, {}, anatomy_of_tests());
+  const rigging::FoundLandmarks b = rigging::find_landmarks(other.scene, {}, anatomy_of_tests());
+  const Mat4 file_a = a.head.input_to_metres.inverse(), file_b = b.head.input_to_metres.inverse();
+  double largest = 0.0;
+  for (const auto& [name, truth] : head.truth) {
+    const auto [same, place] = there(name, transform_point(file_a, a.landmarks.at(name).position));
+    largest = std::max(
+        largest, other.millimetres * (transform_point(file_b, b.landmarks.at(same).position) - place).norm());
+  }
+  return largest;
+}
+
+TEST(SameHead, SameLandmarksInEveryPose) {
+  for (const MadeHead& head : {made("adult", as_it_is), made("child", as_child), made("anime", as_anime)})
+    for (const Mat3& rotation :
+         {turn(10, Vec3(1, 1, 0)), turn(-8, Vec3(0, 1, 2)), turn(165, Vec3(2, 1, 3))}) {
+      const Vec3 shift(0.4, -0.3, 1.0);
+      const double off = largest_difference(head, moved(head, rotation, 100.0, shift),
+                                            [&](const std::string& name, const Vec3& p) {
+                                              return std::pair(name, Vec3(100.0 * (rotation * p + shift)));
+                                            });
+      EXPECT_LE(off, 1.0) << head.name;
+    }
+}
+
+TEST(SameHead, SameLandmarksInOtherOrderAndTriangles) {
+  const auto itself = [](const std::string& name, const Vec3& p) { return std::pair(name, p); };
+  for (const MadeHead& head : {made("adult", as_it_is), made("elder", as_elder)}) {
+    EXPECT_LE(largest_difference(head, reordered(head, 5), itself), 1.0) << head.name;
+    EXPECT_LE(largest_difference(head, subdivided(head), itself), 1.0) << head.name;
+  }
+}
+
+TEST(SameHead, AMirroredHeadHasMirroredLandmarks) {
+  // Not symmetric to begin with.
+  const MadeHead head =
+      made("askew", [](const Vec3& p) { return Vec3(p + Vec3(0.05 * p[1], 0, 0.04 * p[0])); });
+  const double off = largest_difference(head, mirrored(head), [](const std::string& name, const Vec3& p) {
+    std::string other = name;
+    if (const size_t at = name.rfind("_left"); at != std::string::npos)
+      other.replace(at, 5, "_right");
+    else if (const size_t right = name.rfind("_right"); right != std::string::npos)
+      other.replace(right, 6, "_left");
+    return std::pair(other, Vec3(-p[0], p[1], p[2]));
+  });
+  EXPECT_LE(off, 1.0);
+}
+
+TEST(GivenLandmarks, AlwaysHelp) {
+  // Heads so changed that finding alone is far off, or finds nothing.
+  const auto strange = [](const Vec3& p) {
+    Vec3 to = as_creature(as_anime(p));
+    to[1] *= 0.8;
+    return to;
+  };
+  const MadeHead head = moved(made("strange", strange), turn(70, Vec3(1, -2, 1)), 10.0, Vec3(0, 1, 0));
+  const std::vector<std::string> order = {"exocanthion_left", "exocanthion_right", "pronasale",
+                                          "cheilion_left",    "cheilion_right",    "menton",
+                                          "glabella",         "subnasale"};
+  double before = 1e300;
+  for (size_t count : {2u, 5u, 8u}) {
+    formats::LandmarkFile given;
+    for (size_t i = 0; i < count; ++i)
+      given.points[order[i]] = head.truth.at(order[i]);
+    const Errors off = errors(head, rigging::find_landmarks(head.scene, given, anatomy_of_tests()));
+    EXPECT_LE(off.mean, before + 0.3) << count << " given";
+    EXPECT_LE(off.mean, 6.0) << count << " given";
+    before = off.mean;
+  }
+}
+
+TEST(GivenLandmarks, MakeAHeadOfWhatIsHardlyOne) {
+  // A ball with three bumps is no face, but it is if its owner says so.
+  const MadeHead adult = made("adult", as_it_is);
+  MadeHead ball = adult;
+  ball.scene.meshes.resize(1);
+  for (Vec3& p : ball.scene.meshes[0].positions) {
+    const Vec3 from = p - Vec3(0, 0.04, 0.01);
+    p = Vec3(0, 0.04, 0.01) + 0.09 * from.normalized() + 0.12 * from;
+  }
+  formats::LandmarkFile given;
+  for (const char* name : {"exocanthion_left", "exocanthion_right", "pronasale", "menton", "cheilion_left"}) {
+    const Vec3 from = adult.truth.at(name) - Vec3(0, 0.04, 0.01);
+    given.points[name] = Vec3(0, 0.04, 0.01) + 0.09 * from.normalized() + 0.12 * from;
+  }
+  EXPECT_NO_THROW(rigging::find_landmarks(ball.scene, given, anatomy_of_tests()));
+}
+
+}  // namespace
+}  // namespace fascia::testing

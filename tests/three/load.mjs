@@ -1,0 +1,75 @@
+// Loads GLB files with three.js and compares what it would draw with our own PLY of the same pose.
+//   node load.mjs FILE.glb                            it loads; every number is finite
+//   node load.mjs FILE.glb SHAPE|- POSE.ply local|world   with SHAPE at 1, vertices agree to 1e-4 of the head's size
+// `local` compares before node transforms (heads that came as OBJ, PLY or STL), `world` after them (GLB, glTF).
+import {readFile} from 'node:fs/promises';
+
+// What the loader expects of a browser; pictures are not looked at.
+globalThis.self = globalThis;
+globalThis.createImageBitmap = async () => ({width: 1, height: 1, close() {}});
+const {GLTFLoader} = await import('three/examples/jsm/loaders/GLTFLoader.js');
+const {Vector3} = await import('three');
+
+async function load(path) {
+  const bytes = await readFile(path);
+  const buffer = bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength);
+  return new Promise((resolve, reject) => new GLTFLoader().parse(buffer, '', resolve, reject));
+}
+
+/** Meshes in the order of the file: by mesh, then by primitive. */
+function meshesOf(gltf) {
+  const found = [];
+  gltf.scene.updateMatrixWorld(true);
+  gltf.scene.traverse((object) => {
+    if (!object.isMesh) return;
+    const {meshes, primitives} = gltf.parser.associations.get(object);
+    found.push({object, order: [meshes ?? 0, primitives ?? 0]});
+  });
+  found.sort((a, b) => a.order[0] - b.order[0] || a.order[1] - b.order[1]);
+  return found.map((entry) => entry.object);
+}
+
+function pointsOf(mesh, shape, space) {
+  if (mesh.morphTargetInfluences && shape !== '-') {
+    const index = mesh.morphTargetDictionary[shape];
+    if (index !== undefined) mesh.morphTargetInfluences[index] = 1;
+  }
+  const points = [];
+  for (let i = 0; i < mesh.geometry.attributes.position.count; ++i) {
+    const point = mesh.getVertexPosition(i, new Vector3());
+    points.push(space === 'world' ? point.applyMatrix4(mesh.matrixWorld) : point);
+  }
+  return points;
+}
+
+function plyPoints(text) {
+  const count = Number(/element vertex (\d+)/.exec(text)[1]);
+  const body = text.slice(text.indexOf('end_header') + 11).split('\n');
+  return body.slice(0, count).map((line) => new Vector3(...line.split(' ').slice(0, 3).map(Number)));
+}
+
+const [path, shape = '-', ply, space = 'world'] = process.argv.slice(2);
+const gltf = await load(path);
+const points = meshesOf(gltf).flatMap((mesh) => pointsOf(mesh, shape, space));
+if (points.length === 0 || points.some((p) => !Number.isFinite(p.x + p.y + p.z))) {
+  console.error(`${path}: three.js finds no vertices, or some that are no numbers`);
+  process.exit(1);
+}
+for (const clip of gltf.animations)
+  for (const track of clip.tracks)
+    if (track.values.length % track.times.length !== 0) {
+      console.error(`${path}: track ${track.name} has ${track.values.length} values for ${track.times.length} keys`);
+      process.exit(1);
+    }
+if (!ply) {
+  console.log(`${path}: three.js loads ${points.length} vertices, ${gltf.animations.length} clips`);
+  process.exit(0);
+}
+const expected = plyPoints(await readFile(ply, 'utf8'));
+const low = expected.reduce((a, p) => a.clone().min(p), expected[0]);
+const high = expected.reduce((a, p) => a.clone().max(p), expected[0]);
+let worst = expected.length === points.length ? 0 : Infinity;
+for (let i = 0; i < Math.min(expected.length, points.length); ++i) worst = Math.max(worst, expected[i].distanceTo(points[i]));
+worst /= high.distanceTo(low);
+console.log(`${path} ${shape}: ${points.length} vertices, farthest ${worst.toExponential(2)} of the head's size`);
+process.exit(worst < 1e-4 ? 0 : 1);
