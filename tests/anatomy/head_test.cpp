@@ -26,7 +26,7 @@ struct Mesh {
 };
 
 std::string data_file(const std::string& name) {
-  return test::data().string() + "/../../anatomy/" + name;
+  return fascia::test::data().string() + "/../../anatomy/" + name;
 }
 
 std::map<std::string, Mesh> read_head() {
