@@ -1,5 +1,6 @@
 #include "builder/prepare/tooth_rows.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -62,9 +63,37 @@ std::vector<size_t> neighbouring(const std::vector<Bounds>& pieces) {
   return group;
 }
 
+/// The pieces with the slope and tilt taken off that they have in common, so that single teeth beside each
+/// other stand at one height. Few pieces, such as whole rows, do not tell a slope from one standing over the
+/// other.
+std::vector<Bounds> levelled(std::vector<Bounds> pieces) {
+  constexpr size_t fewest = 8;
+  if (pieces.size() < fewest) return pieces;
+  Vec3 middle = Vec3::Zero();
+  for (const Bounds& box : pieces)
+    middle += box.centre() / static_cast<double>(pieces.size());
+  Eigen::Matrix2d moments = 1e-9 * Eigen::Matrix2d::Identity();  // square metres: pieces in one line
+  Vec2 rises = Vec2::Zero();
+  for (const Bounds& box : pieces) {
+    const Vec3 off = box.centre() - middle;
+    const Vec2 flat(off.x(), off.z());
+    moments += flat * flat.transpose();
+    rises += off.y() * flat;
+  }
+  const Vec2 slope = moments.inverse() * rises;
+  for (Bounds& box : pieces) {
+    const Vec3 off = box.centre() - middle;
+    const double rise = slope.dot(Vec2(off.x(), off.z()));
+    box.lower.y() -= rise;
+    box.upper.y() -= rise;
+  }
+  return pieces;
+}
+
 }  // namespace
 
-std::optional<std::vector<bool>> lower_row(const std::vector<Bounds>& pieces) {
+std::optional<std::vector<bool>> lower_row(const std::vector<Bounds>& as_they_stand) {
+  const std::vector<Bounds> pieces = levelled(as_they_stand);
   const size_t count = pieces.size();
   const std::vector<size_t> group = neighbouring(pieces);
   std::vector<int> above(count, 0);  // by group: pieces of other rows beneath it, less those over it

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "anatomy/anatomy.h"
+#include "builder/spatial/surface_query.h"
 #include "cli/demo_curves.h"
 #include "formats/landmark_file.h"
 #include "formats/scene.h"
@@ -19,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The embedded head's skin in metres, changed by `change` and written as OBJ in millimetres beside its
-/// landmarks, which `place` carries along.
+/// landmarks, which `place` carries along. Motions are compared in the rig's axes, which stand upright.
 class Variant {
  public:
   using Change = std::function<void(TriangleMesh&)>;
@@ -52,8 +53,10 @@ class Variant {
     formats::write_text(folder / "head.obj", obj.str());
     points << "{\"units\":\"mm\",\"landmarks\":{";
     bool first = true;
+    const spatial::SurfaceQuery surface(skin);
     for (const anatomy::Landmark& landmark : anatomy::load_generic().landmarks) {
-      if (!landmark.skin) continue;
+      // What a head has not got, as a mask its crown, is not given.
+      if (!landmark.skin || surface.closest(place(*landmark.skin)).distance > 0.004) continue;
       const Vec3 p = 1e3 * place(*landmark.skin);
       points << (first ? "" : ",") << "\"" << landmark.name << "\":[" << p.x() << "," << p.y() << "," << p.z()
              << "]";
@@ -148,7 +151,7 @@ TEST(AnyHead, AsAMaskWithHolesForMouthAndEyes) {
   EXPECT_LT(face.moved("pogonion").y(), -8.0) << "a mask's edge at the chin goes with the jaw";
 }
 
-TEST(AnyHead, TurnedMovedAndScaledItPosesAlike) {
+TEST(AnyHead, TurnedAndMovedItPosesAlike) {
   const Mat3 turn =
       (Eigen::AngleAxisd(0.15, Vec3::UnitY()) * Eigen::AngleAxisd(-0.12, Vec3::UnitX())).matrix();
   Variant plain("straight", no_change),
@@ -161,7 +164,7 @@ TEST(AnyHead, TurnedMovedAndScaledItPosesAlike) {
     turned.face().pose(pose);
     for (const char* name : {"cheilion_left", "cheilion_right", "pogonion", "labiale_inferius",
                              "palpebrale_superius_left", "palpebrale_superius_right"})
-      EXPECT_LT((turned.face().moved(name) - turn * plain.face().moved(name)).norm(), 0.5)
+      EXPECT_LT((turned.face().moved(name) - plain.face().moved(name)).norm(), 0.5)
           << name << " in " << pose.begin()->first;
   }
 }
