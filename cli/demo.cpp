@@ -4,11 +4,13 @@
 #include <memory>
 
 #include "anatomy/anatomy.h"
+#include "cli/bake_file.h"
 #include "cli/common.h"
 #include "cli/demo_curves.h"
 #include "cli/picture.h"
 #include "cli/play_file.h"
 #include "cli/rig_build.h"
+#include "cli/take/curves.h"
 #include "formats/scene.h"
 #include "geometry/error.h"
 #include "view/image.h"
@@ -169,7 +171,11 @@ void run(const Common& common, const std::filesystem::path& folder,
   const PlayFigures played = play_file(common, play);
   clock.say("played ten seconds into " + play.output.string() + " (" +
             std::to_string(played.milliseconds_a_frame).substr(0, 5) + " ms a frame)");
-  bake_file(common, rig_path, "arkit", folder / "arkit.glb", "own", "low");
+  BakeRequest bake;
+  bake.rig = rig_path;
+  bake.output = folder / "arkit.glb";
+  bake.level = "low";
+  bake_file(common, bake);
   clock.say("baked the ARKit shapes into " + (folder / "arkit.glb").string());
   const rig::RigFile file = rig::read(formats::read_bytes(rig_path), rig_path.string());
   view::write_png(folder / "contact_sheet.png", contact_sheet(rig_path, file.rig));

@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "anatomy/anatomy.h"
 #include "cli/common.h"
 #include "formats/scene.h"
 #include "geometry/error.h"
@@ -15,7 +16,7 @@ using Json = nlohmann::ordered_json;
 
 struct Request {
   std::filesystem::path rig;
-  bool channels = false, validate = false;
+  bool channels = false, validate = false, names = false;
 };
 
 Json contents(const rig::RigFile& file) {
@@ -90,7 +91,31 @@ void check_tissue(const rig::Rig& rig, const std::string& name) {
   }
 }
 
+/// The table of other programs' names, which needs no rig.
+void list_names(const Common& common) {
+  const Json table = Json::parse(anatomy::embedded_file("aliases.json"));
+  for (const Json& vocabulary : table["vocabularies"]) {
+    common.say(vocabulary["name"].get<std::string>() + ": " + vocabulary["title"].get<std::string>());
+    for (const auto& [name, targets] : vocabulary["names"].items()) {
+      std::string meaning;
+      for (const auto& [target, share] : targets.items()) {
+        char factor[32] = "";
+        if (share.get<double>() != 1.0) std::snprintf(factor, sizeof factor, "%g ", share.get<double>());
+        meaning += (meaning.empty() ? "" : " + ") + std::string(factor) + target;
+      }
+      common.say("  " + name + std::string(name.size() < 22 ? 22 - name.size() : 1, ' ') +
+                 (meaning.empty() ? "(nothing of the face)" : meaning));
+    }
+  }
+  common.say(
+      "Every rig's own names, ARKit's, action units, visemes and VRM's are known in any spelling: "
+      "mouthSmile_L, MouthSmileLeft, blendShapes.mouthSmileLeft, viseme_PP, AU12.");
+  common.report(table);
+}
+
 void run(const Common& common, const Request& request) {
+  if (request.names) return list_names(common);
+  if (request.rig.empty()) throw CLI::RequiredError("RIG");
   // Reading checks every index, accessor and fingerprint; what is unsound does not come through.
   const std::vector<uint8_t> bytes = formats::read_bytes(request.rig);
   const rig::RigFile file = rig::read(bytes, request.rig.string());
@@ -110,7 +135,9 @@ void run(const Common& common, const Request& request) {
 void add_info(CLI::App& app, Common& common) {
   auto request = std::make_shared<Request>();
   CLI::App* command = app.add_subcommand("info", "Say what is in a rig, and whether it is sound");
-  command->add_option("RIG", request->rig, "Rig (.glb)")->required();
+  command->add_option("RIG", request->rig, "Rig (.glb)");
+  command->add_flag("--names", request->names,
+                    "List the names of other programs that rigs know; needs no rig");
   command->add_flag("--channels", request->channels, "List every channel and vocabulary");
   command->add_flag("--validate", request->validate, "Say whether the rig is sound");
   command->callback([request, &common] { run(common, *request); });

@@ -1,8 +1,37 @@
 #include "cli/motion.h"
 
-#include <Eigen/Dense>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <mutex>
+
+#include "cli/progress.h"
 
 namespace fascia::cli {
+
+namespace {
+
+using Motions = std::vector<PrimitiveMotion>;
+
+/// Takes what `less` moves off `from`.
+void subtract(Motions& from, const Motions& less) {
+  for (const PrimitiveMotion& part : less) {
+    const auto same = [&](const PrimitiveMotion& motion) {
+      return motion.mesh == part.mesh && motion.primitive == part.primitive;
+    };
+    auto found = std::find_if(from.begin(), from.end(), same);
+    if (found == from.end()) {
+      from.push_back({part.mesh, part.primitive, {}});
+      from.back().displacement.assign(part.displacement.size(), rig::Vec3f::Zero());
+      found = from.end() - 1;
+    }
+    for (size_t v = 0; v < part.displacement.size(); ++v)
+      found->displacement[v] -= part.displacement[v];
+  }
+}
+
+}  // namespace
 
 std::vector<PrimitiveMotion> motion_from_rest(const Face& face) {
   std::vector<PrimitiveMotion> motions;
@@ -19,57 +48,33 @@ std::vector<PrimitiveMotion> motion_from_rest(const Face& face) {
   return motions;
 }
 
-BakedShapes bake_shapes(const Common& common, Face& face,
-                        const std::vector<std::pair<std::string, std::string>>& targets) {
-  BakedShapes baked;
-  for (const auto& [name, what_to_set] : targets) {
-    common.progress("baking " + name);
-    // Each shape from rest: the order in which they are baked leaves no trace.
-    face.clear();
-    face.reset();
-    face.set(what_to_set, 1.0);
-    face.pose();
-    baked.names.push_back(name);
-    baked.shapes.push_back(motion_from_rest(face));
-  }
-  return baked;
+void pose_shape(Face& face, const ShapeToBake& shape) {
+  face.clear();
+  face.reset();
+  for (const std::string& name : shape.sets)
+    face.set(name, 1.0);
+  face.pose();
 }
 
-Components principal_components(const std::vector<std::vector<float>>& frames, size_t limit,
-                                double tolerance) {
-  Components result;
-  if (frames.empty() || frames[0].empty()) return result;
-  const Eigen::Index count = static_cast<Eigen::Index>(frames.size()),
-                     size = static_cast<Eigen::Index>(frames[0].size());
-  Eigen::MatrixXf motion(size, count);
-  for (Eigen::Index f = 0; f < count; ++f)
-    motion.col(f) = Eigen::Map<const Eigen::VectorXf>(frames[static_cast<size_t>(f)].data(), size);
-  // Frames are far fewer than coordinates: the eigenvectors of the small Gram matrix give the components.
-  const Eigen::MatrixXd gram = (motion.transpose() * motion).cast<double>();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gram);
-  Eigen::MatrixXf left = motion;
-  for (size_t k = 0; k < limit && static_cast<Eigen::Index>(k) < count; ++k) {
-    const double largest = left.cwiseAbs().maxCoeff();
-    result.largest_error = std::sqrt(3.0) * largest;
-    if (result.largest_error <= tolerance) break;
-    const Eigen::Index column = count - 1 - static_cast<Eigen::Index>(k);
-    if (eigen.eigenvalues()[column] <= 1e-14 * eigen.eigenvalues()[count - 1]) break;
-    const Eigen::VectorXf turn = eigen.eigenvectors().col(column).cast<float>();
-    const Eigen::VectorXf direction = motion * turn;
-    // Weights of at most 1, so that a slider in a viewer means something.
-    const float peak = turn.cwiseAbs().maxCoeff();
-    const Eigen::VectorXf shape = direction * peak;
-    const Eigen::VectorXf weights = turn / peak;
-    left.noalias() -= shape * weights.transpose();
-    result.shapes.emplace_back(shape.data(), shape.data() + size);
-    result.weights.emplace_back(weights.data(), weights.data() + count);
-  }
-  result.largest_error = 0.0;
-  for (Eigen::Index f = 0; f < count; ++f)
-    for (Eigen::Index i = 0; i + 2 < size; i += 3)
-      result.largest_error =
-          std::max(result.largest_error, static_cast<double>(left.col(f).segment<3>(i).norm()));
-  return result;
+BakedShapes bake_shapes(const Common& common, const Face& face, const std::vector<ShapeToBake>& shapes) {
+  BakedShapes baked;
+  baked.shapes.resize(shapes.size());
+  for (const ShapeToBake& shape : shapes)
+    baked.names.push_back(shape.name);
+  Progress progress(common, "baking shape", shapes.size());
+  std::mutex progress_mutex;
+  tbb::enumerable_thread_specific<Face> faces([&] { return face.sibling(); });
+  tbb::parallel_for(size_t{0}, shapes.size(), [&](size_t s) {
+    Face& own = faces.local();
+    pose_shape(own, shapes[s]);
+    baked.shapes[s] = motion_from_rest(own);
+    const std::lock_guard lock(progress_mutex);
+    progress.step();
+  });
+  for (size_t s = shapes.size(); s-- > 0;)
+    for (const size_t part : shapes[s].corrects)
+      subtract(baked.shapes[s], baked.shapes[part]);
+  return baked;
 }
 
 }  // namespace fascia::cli

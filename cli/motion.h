@@ -1,6 +1,7 @@
 #pragma once
 
-#include <filesystem>
+#include <string>
+#include <vector>
 
 #include "cli/common.h"
 #include "cli/gltf_edit.h"
@@ -11,25 +12,24 @@ namespace fascia::cli {
 /// Displacements from rest of every mesh of `face` that moves.
 std::vector<PrimitiveMotion> motion_from_rest(const Face& face);
 
+/// A shape: what stands at 1 in it.
+struct ShapeToBake {
+  std::string name;
+  std::vector<std::string> sets;
+  /// Of a corrective, the shapes whose sum is taken off: numbers of earlier ones in the list.
+  std::vector<size_t> corrects;
+};
+
 struct BakedShapes {
   std::vector<std::string> names;
   std::vector<std::vector<PrimitiveMotion>> shapes;
 };
 
-/// Poses `face` at 1 for each of `targets`, pairs of target name and what to set.
-BakedShapes bake_shapes(const Common& common, Face& face,
-                        const std::vector<std::pair<std::string, std::string>>& targets);
+/// Poses `face` as the shape has it, from rest: the order in which shapes are posed leaves no trace.
+void pose_shape(Face& face, const ShapeToBake& shape);
 
-/// A motion as few shapes and their weights over time: principal components.
-struct Components {
-  std::vector<std::vector<float>> shapes;   ///< displacement of all coordinates a component
-  std::vector<std::vector<float>> weights;  ///< #components, one weight a frame
-  double largest_error = 0.0;               ///< in the coordinates' unit, any vertex of any frame
-};
-
-/// Principal components of `frames` (displacements of equal length, three numbers a vertex), as many as bring
-/// every vertex within `tolerance`, at most `limit`.
-Components principal_components(const std::vector<std::vector<float>>& frames, size_t limit,
-                                double tolerance);
+/// Poses a sibling of `face` for each of `shapes`, as many at a time as there are threads; the same whatever
+/// their number.
+BakedShapes bake_shapes(const Common& common, const Face& face, const std::vector<ShapeToBake>& shapes);
 
 }  // namespace fascia::cli

@@ -8,31 +8,73 @@
 
 namespace fascia::cli {
 
+namespace {
+
+void run(const Common& common, const PlayRequest& request) {
+  const PlayFigures figures = play_file(common, request);
+  std::vector<std::string> files;
+  for (const std::filesystem::path& path : figures.files) {
+    files.push_back(path.string());
+    const bool is_glb = path.extension() == ".glb";
+    char error[32];
+    std::snprintf(error, sizeof error, "%.3f", figures.largest_error_mm);
+    common.say("wrote " + path.string() + ": " + std::to_string(figures.frames) + " frames" +
+               (is_glb ? ", " + std::to_string(figures.components) + " morph targets, " +
+                             std::to_string(figures.keys) + " keys, largest error " + error + " mm"
+                       : ""));
+  }
+  common.report({{"output", request.output.string()},
+                 {"files", files},
+                 {"frames", figures.frames},
+                 {"seconds", figures.duration},
+                 {"start_seconds", figures.start},
+                 {"morph_targets", figures.components},
+                 {"morph_targets_wanted", figures.wanted},
+                 {"keys", figures.keys},
+                 {"largest_error_mm", figures.largest_error_mm},
+                 {"largest_error_seconds", figures.largest_error_seconds},
+                 {"milliseconds_a_frame", figures.milliseconds_a_frame},
+                 {"resets", figures.resets},
+                 {"matched", figures.matched},
+                 {"unmatched", figures.unmatched}});
+}
+
+}  // namespace
+
 void add_play(CLI::App& app, Common& common) {
   auto request = std::make_shared<PlayRequest>();
   CLI::App* command = app.add_subcommand("play", "Simulate a rig along curves and write the animation");
   command->add_option("RIG", request->rig, "Rig (.glb)")->required();
-  command->add_option("--curves", request->curves, "Curves: .csv, .json or .glb")->required();
-  command->add_option("--fps", request->frames_per_second, "Frames a second")->check(CLI::Range(1.0, 1000.0));
+  command->add_option("--curves", request->curves, "Curves: a table (.csv), .json or .glb")->required();
+  command->add_option("--fps", request->frames_per_second, "Frames a second to simulate and write")
+      ->check(CLI::Range(1.0, 1000.0))
+      ->capture_default_str();
+  command
+      ->add_option("--fps-in", request->curve_frames_per_second,
+                   "Frames a second of the curves' rows or timecodes (default: as their file says)")
+      ->check(CLI::Range(1.0, 1000.0));
+  command
+      ->add_option(
+          "--time-unit", request->time_unit,
+          "Unit of the curves' times: s, ms, us or seconds in one unit (default: as their file says)")
+      ->transform(
+          CLI::CheckedTransformer(std::map<std::string, double>{{"s", 1.0}, {"ms", 1e-3}, {"us", 1e-6}}) |
+          CLI::Range(1e-9, 3600.0));
+  command->add_option("--targets", request->most_targets, "Morph targets a mesh at most")
+      ->check(CLI::Range(1, 4096))
+      ->capture_default_str();
+  command->add_flag(
+      "--head", request->keeps_head,
+      "Keep the captured rotation of the head as motion of the file's nodes (default: left out)");
   command->add_option("--solver", request->solver, "Solver")
-      ->check(CLI::IsMember({"own", "reference", "bullet"}));
-  command->add_option("--level", request->level, "Level of detail: low, medium or high");
-  command->add_option("-o,--output", request->output, "Animation to write (.glb)")->required();
-  command->callback([request, &common] {
-    const PlayFigures figures = play_file(common, *request);
-    common.say("wrote " + request->output.string() + ": " + std::to_string(figures.frames) + " frames, " +
-               std::to_string(figures.components) + " morph targets, largest error " +
-               std::to_string(figures.largest_error_mm).substr(0, 5) + " mm");
-    common.report({{"output", request->output.string()},
-                   {"frames", figures.frames},
-                   {"seconds", figures.duration},
-                   {"morph_targets", figures.components},
-                   {"largest_error_mm", figures.largest_error_mm},
-                   {"milliseconds_a_frame", figures.milliseconds_a_frame},
-                   {"resets", figures.resets},
-                   {"matched", figures.matched},
-                   {"unmatched", figures.unmatched}});
-  });
+      ->check(CLI::IsMember({"own", "reference", "bullet"}))
+      ->capture_default_str();
+  command->add_option("--level", request->level,
+                      "Level of detail: low, medium or high (default: the rig's finest)");
+  command
+      ->add_option("-o,--output", request->output, "Animation to write: .glb, or a point cache, .pc2 or .mdd")
+      ->required();
+  command->callback([request, &common] { run(common, *request); });
 }
 
 }  // namespace fascia::cli

@@ -1,231 +1,163 @@
 #include "cli/play_file.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "cli/gltf_edit.h"
-#include "cli/motion.h"
+#include "cli/take/point_cache.h"
+#include "cli/take/take_animation.h"
 #include "formats/scene.h"
 #include "geometry/error.h"
+#include "rig/read/read.h"
 #include "rig/write/write.h"
 
 namespace fascia::cli {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+constexpr double tolerance_mm = 0.1;  ///< of the written motion, at any vertex of any frame
 
-/// Which coordinates of all meshes move at all during the animation.
-struct MovingPart {
-  size_t mesh;  // in Face::meshes
-  std::vector<uint32_t> vertices;
-};
+double metres_in_a_unit(const Face& face) {
+  fascia_asset_info info = {};
+  info.struct_size = sizeof info;
+  check(fascia_asset_get_info(face.asset(), &info), "rig");
+  return static_cast<double>(Eigen::Map<const Eigen::Vector3f>(info.input_to_metres).norm());
+}
 
-struct Recording {
+void write_caches(const Common& common, const PlayRequest& request, CacheKind kind, const Take& take,
+                  Face& face, PlayFigures& figures) {
   std::vector<float> times;
-  std::vector<std::vector<std::vector<float>>> frames;  // frame, mesh, coordinates: displacement
-  std::vector<std::vector<float>> values;               // frame, channel
-  std::vector<double> milliseconds;
-  int resets = 0;
-};
-
-Recording record(const Common& common, Face& face, const Curves& curves, double frames_per_second) {
-  Recording recording;
-  const size_t channels = face.channel_names().size();
-  const int count = static_cast<int>(std::floor(curves.duration() * frames_per_second + 1e-6)) + 1;
-  curves.apply(0.0, face);
-  face.pose();
-  for (int f = 0; f < count; ++f) {
-    const double time = f / frames_per_second;
-    if (f % 60 == 0) common.progress("playing " + std::to_string(f) + " of " + std::to_string(count));
-    if (f > 0) {
-      curves.apply(time, face);
-      const auto started = std::chrono::steady_clock::now();
-      if (!face.step(1.0 / frames_per_second)) ++recording.resets;
-      recording.milliseconds.push_back(
-          std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - started).count());
-    }
-    std::vector<std::vector<float>> frame;
-    for (size_t m = 0; m < face.meshes().size(); ++m) {
-      const std::span<const float> now = face.positions(m), rest = face.rest(m);
-      frame.emplace_back(now.size());
-      for (size_t i = 0; i < now.size(); ++i)
-        frame.back()[i] = now[i] - rest[i];
-    }
-    recording.times.push_back(static_cast<float>(time));
-    recording.frames.push_back(std::move(frame));
-    const float* effective = fascia_face_effective_values(face.handle());
-    recording.values.emplace_back(effective, effective + channels);
+  for (size_t f = 0; f < take.frames(); ++f)
+    times.push_back(static_cast<float>(take.time(f)));
+  PointCaches caches(request.output, kind, cached_objects(request.rig, face), times);
+  {
+    Progress progress(common, "playing frame", take.frames());
+    const PerformanceFigures played = perform(take, face, progress, [&](size_t) { caches.add(face); });
+    figures.resets = played.resets;
+    figures.milliseconds_a_frame = played.milliseconds_a_frame;
   }
-  return recording;
+  figures.files = caches.finish();
 }
 
-std::vector<MovingPart> moving_parts(const Recording& recording) {
-  std::vector<MovingPart> parts;
-  for (size_t m = 0; m < recording.frames[0].size(); ++m) {
-    MovingPart part{m, {}};
-    for (size_t v = 0; 3 * v < recording.frames[0][m].size(); ++v) {
-      bool moves = false;
-      for (const auto& frame : recording.frames)
-        moves |= frame[m][3 * v] != 0 || frame[m][3 * v + 1] != 0 || frame[m][3 * v + 2] != 0;
-      if (moves) part.vertices.push_back(static_cast<uint32_t>(v));
-    }
-    if (!part.vertices.empty()) parts.push_back(std::move(part));
+/// The largest error of all meshes, and what more targets would do.
+void look_at_errors(const Take& take, const Recording& recording, double millimetres, PlayFigures& figures) {
+  bool is_known = true;
+  for (const MeshMotion& motion : recording.meshes) {
+    figures.components = std::max(figures.components, static_cast<size_t>(motion.components.weights.rows()));
+    if (motion.components.wanted == 0) is_known = false;
+    figures.wanted = std::max(figures.wanted, motion.components.wanted);
+    figures.keys = std::max(figures.keys, motion.keys.size());
+    if (millimetres * motion.largest_error <= figures.largest_error_mm) continue;
+    figures.largest_error_mm = millimetres * motion.largest_error;
+    figures.largest_error_seconds = take.time(motion.largest_error_frame);
   }
-  return parts;
+  if (!is_known) figures.wanted = 0;
 }
 
-std::vector<std::vector<float>> gathered(const Recording& recording, const std::vector<MovingPart>& parts) {
-  std::vector<std::vector<float>> frames;
-  for (const auto& frame : recording.frames) {
-    std::vector<float> all;
-    for (const MovingPart& part : parts)
-      for (uint32_t v : part.vertices)
-        all.insert(all.end(), &frame[part.mesh][3 * v], &frame[part.mesh][3 * v] + 3);
-    frames.push_back(std::move(all));
-  }
-  return frames;
+/// The head turns about the joint of the jaw, which lies a little before and above the joint of the neck.
+std::vector<NodeMotion> turned_nodes(const PlayRequest& request, const Take& take, const Face& face,
+                                     GltfEdit& edit) {
+  const rig::RigFile file = rig::read(formats::read_bytes(request.rig), request.rig.string());
+  fascia_asset_info info = {};
+  info.struct_size = sizeof info;
+  check(fascia_asset_get_info(face.asset(), &info), "rig");
+  const Mat4 to_metres = Eigen::Map<const Eigen::Matrix4f>(info.input_to_metres).cast<double>();
+  const Vec3 pivot = (to_metres.inverse() * file.rig.skull.jaw.origin.cast<double>().homogeneous()).head<3>();
+  Eigen::Matrix3d axes = to_metres.topLeftCorner<3, 3>();
+  axes /= axes.col(0).norm();
+  std::vector<uint32_t> meshes;
+  for (const FaceMesh& mesh : face.meshes())
+    meshes.push_back(mesh.mesh);
+  return head_motion(edit.json, take, meshes, axes, pivot);
 }
 
-std::vector<PrimitiveMotion> scattered(const std::vector<float>& shape, const Face& face,
-                                       const std::vector<MovingPart>& parts) {
-  std::vector<PrimitiveMotion> motions;
-  size_t at = 0;
-  for (const MovingPart& part : parts) {
-    const FaceMesh& mesh = face.meshes()[part.mesh];
-    PrimitiveMotion motion{mesh.mesh, mesh.primitive,
-                           std::vector<rig::Vec3f>(mesh.vertex_count, rig::Vec3f::Zero())};
-    for (uint32_t v : part.vertices) {
-      motion.displacement[v] = rig::Vec3f(shape[at], shape[at + 1], shape[at + 2]);
-      at += 3;
-    }
-    motions.push_back(std::move(motion));
+/// Records the take and measures it. Vertices outside the sample may be off farther than those in it: then
+/// once more, aiming lower, as long as more targets are free.
+Recording record_within(const Common& common, const PlayRequest& request, const Take& take, const Face& face,
+                        double tolerance) {
+  double aim = tolerance;
+  for (int attempt = 0;; ++attempt) {
+    Face first = face.sibling();
+    Recording recording = record(common, take, first, {request.most_targets, aim});
+    Face second = face.sibling();
+    measure(common, take, second, recording);
+    double largest = 0.0;
+    for (const MeshMotion& motion : recording.meshes)
+      if (motion.components.weights.rows() < static_cast<Eigen::Index>(request.most_targets))
+        largest = std::max(largest, motion.largest_error);
+    if (largest <= tolerance || attempt == 2) return recording;
+    aim *= 0.8 * tolerance / largest;
   }
-  return motions;
 }
 
-void add_pointer_channels(GltfEdit& edit, const Recording& recording, size_t time, Json& animation) {
-  bool any = false;
-  for (size_t c = 0; c < recording.values[0].size(); ++c) {
-    std::vector<float> values;
-    bool moves = false;
-    for (const auto& frame : recording.values) {
-      values.push_back(frame[c]);
-      moves |= frame[c] != recording.values[0][c];
-    }
-    if (!moves) continue;
-    any = true;
-    animation["samplers"].push_back(
-        {{"input", time}, {"output", edit.add_floats(values, 1, false)}, {"interpolation", "LINEAR"}});
-    const std::string pointer = "/extensions/FASCIA_actuation/channels/" + std::to_string(c) + "/value";
-    animation["channels"].push_back(
-        {{"sampler", animation["samplers"].size() - 1},
-         {"target",
-          {{"path", "pointer"}, {"extensions", {{"KHR_animation_pointer", {{"pointer", pointer}}}}}}}});
-  }
-  if (!any) return;
-  Json& used = edit.json["extensionsUsed"];
-  if (std::find(used.begin(), used.end(), "KHR_animation_pointer") == used.end())
-    used.push_back("KHR_animation_pointer");
+void write_animation(const Common& common, const PlayRequest& request, const Take& take, Face& face,
+                     PlayFigures& figures) {
+  const double metres = metres_in_a_unit(face);
+  Recording recording = record_within(common, request, take, face, 1e-3 * tolerance_mm / metres);
+  look_at_errors(take, recording, 1e3 * metres, figures);
+  figures.resets = recording.figures.resets;
+  figures.milliseconds_a_frame = recording.figures.milliseconds_a_frame;
+
+  const std::vector<uint8_t> bytes = formats::read_bytes(request.rig);
+  GltfEdit edit(rig::glb_source(bytes, request.rig.string()));
+  std::vector<std::string> warnings;
+  std::vector<NodeMotion> nodes;
+  if (request.keeps_head) nodes = turned_nodes(request, take, face, edit);
+  add_take(edit, request.curves.stem().string(), take, face, recording, nodes, warnings);
+  for (const std::string& warning : warnings)
+    common.warn(warning);
+  const std::vector<uint8_t> out = edit.bytes();
+  formats::write_bytes(request.output, out.data(), out.size());
+  figures.files = {request.output};
+}
+
+void say_how_far_off(const Common& common, const PlayRequest& request, const PlayFigures& figures) {
+  if (figures.largest_error_mm <= tolerance_mm) return;
+  const std::string more = figures.wanted > figures.components
+                               ? "--targets " + std::to_string(figures.wanted) + " would be within 0.1 mm"
+                               : "more (--targets) come closer";
+  char line[320];
+  std::snprintf(
+      line, sizeof line,
+      "%zu morph targets are up to %.2f mm off the simulated motion (at %.2f s); %s, a cache (-o %s.pc2) "
+      "is exact",
+      figures.components, figures.largest_error_mm, figures.largest_error_seconds, more.c_str(),
+      request.output.stem().c_str());
+  common.warn(line);
 }
 
 }  // namespace
 
-Curves::Curves(const std::filesystem::path& path) {
-  const std::vector<uint8_t> bytes = formats::read_bytes(path);
-  fascia_curves* curves = nullptr;
-  check(fascia_curves_load(bytes.data(), bytes.size(), &curves), "'" + path.string() + "'");
-  curves_.reset(curves);
-  fascia_curves_info info = {};
-  info.struct_size = sizeof info;
-  check(fascia_curves_get_info(curves, &info), "'" + path.string() + "'");
-  names_.assign(info.names, info.names + info.count);
-  duration_ = info.duration;
-}
-
-double Curves::duration() const {
-  return duration_;
-}
-
-std::vector<std::string> Curves::unmatched(const Face& face) const {
-  std::vector<uint8_t> matched(names_.size());
-  uint32_t count = 0;
-  check(fascia_curves_match(curves_.get(), face.asset(), &count, matched.data()), "curves");
-  std::vector<std::string> names;
-  for (size_t i = 0; i < names_.size(); ++i)
-    if (!matched[i]) names.push_back(names_[i]);
-  return names;
-}
-
-void Curves::apply(double seconds, const Face& face) const {
-  check(fascia_curves_apply(curves_.get(), seconds, 1.0F, face.handle()), "curves");
-}
-
 PlayFigures play_file(const Common& common, const PlayRequest& request) {
   check_output(request.output, {request.rig, request.curves});
-  if (request.output.extension() != ".glb")
-    throw Error("'" + request.output.string() + "': an animation is written as .glb");
-  const Curves curves(request.curves);
-  Face face(request.rig, {FASCIA_SPACE_MESH, request.solver, request.level});
+  CacheKind kind{};
+  const bool wants_cache = is_cache(request.output, kind);
+  if (!wants_cache && request.output.extension() != ".glb")
+    throw Error("'" + request.output.string() + "': an animation is written as .glb, .pc2 or .mdd");
+  const Curves curves(request.curves, request.curve_frames_per_second, request.time_unit);
   PlayFigures figures;
-  figures.unmatched = curves.unmatched(face);
-  for (const std::string& name : curves.names())
-    if (std::find(figures.unmatched.begin(), figures.unmatched.end(), name) == figures.unmatched.end())
-      figures.matched.push_back(name);
-  if (figures.matched.empty())
-    throw Error("'" + request.curves.string() + "': none of its " + std::to_string(curves.names().size()) +
-                " curves has a name that the rig knows; 'fascia info --channels' lists them");
-  for (const std::string& name : figures.unmatched)
-    common.warn("curve '" + name + "' has no channel in the rig");
-
-  Recording recording = record(common, face, curves, request.frames_per_second);
-  figures.frames = static_cast<int>(recording.times.size());
-  figures.duration = recording.times.back();
-  figures.resets = recording.resets;
-  if (!recording.milliseconds.empty()) {
-    std::nth_element(
-        recording.milliseconds.begin(),
-        recording.milliseconds.begin() + static_cast<std::ptrdiff_t>(recording.milliseconds.size() / 2),
-        recording.milliseconds.end());
-    figures.milliseconds_a_frame = recording.milliseconds[recording.milliseconds.size() / 2];
-  }
-  if (recording.resets > 0)
-    common.warn("the simulation had to be put back to rest " + std::to_string(recording.resets) + " times");
-
-  fascia_asset_info info = {};
-  info.struct_size = sizeof info;
-  check(fascia_asset_get_info(face.asset(), &info), "rig");
-  const double metres = Eigen::Map<const Eigen::Vector3f>(info.input_to_metres).norm();
-  const std::vector<MovingPart> parts = moving_parts(recording);
-  common.progress("finding principal components");
-  const Components components = principal_components(gathered(recording, parts), 64, 1e-4 / metres);
-  figures.components = components.shapes.size();
-  figures.largest_error_mm = 1e3 * metres * components.largest_error;
-
-  const std::vector<uint8_t> bytes = formats::read_bytes(request.rig);
-  GltfEdit edit(rig::glb_source(bytes, request.rig.string()));
-  std::vector<std::string> names;
-  std::vector<std::vector<PrimitiveMotion>> shapes;
-  for (size_t k = 0; k < components.shapes.size(); ++k) {
-    names.push_back("motion_" + std::to_string(k));
-    shapes.push_back(scattered(components.shapes[k], face, parts));
-  }
-  gltf::MorphOptions morphs;
-  morphs.is_linear = true;
-  std::vector<std::string> warnings;
-  const std::vector<gltf::MeshTargets> targets =
-      gltf::add_morph_targets(edit, names, shapes, morphs, &warnings);
-  for (const std::string& warning : warnings)
-    common.warn(warning);
-  Json animation = {
-      {"name", request.curves.stem().string()}, {"samplers", Json::array()}, {"channels", Json::array()}};
-  const size_t time = edit.add_floats(recording.times, 1, true);
-  gltf::add_weight_channels(edit, targets, components.weights, time, animation);
-  add_pointer_channels(edit, recording, time, animation);
-  if (!animation["channels"].empty()) edit.json["animations"].push_back(animation);
-  const std::vector<uint8_t> out = edit.bytes();
-  formats::write_bytes(request.output, out.data(), out.size());
+  Face face(request.rig,
+            {wants_cache ? FASCIA_SPACE_INPUT : FASCIA_SPACE_MESH, request.solver, request.level});
+  const MatchedNames names = match(common, curves, face, request.curves);
+  figures.matched = names.matched;
+  figures.unmatched = names.unmatched;
+  if (curves.turns_head() && !request.keeps_head && !wants_cache)
+    common.warn("the curves turn the head, which is left out; --head keeps it as motion of the file's nodes");
+  if (request.keeps_head && (wants_cache || !curves.turns_head()))
+    throw Error("--head: " + std::string(wants_cache
+                                             ? "a point cache holds no nodes; write .glb"
+                                             : "no curve turns the head (HeadYaw, HeadPitch, HeadRoll)"));
+  const Take take{curves, request.frames_per_second};
+  figures.frames = take.frames();
+  figures.duration = take.time(take.frames() - 1);
+  figures.start = curves.start();
+  if (wants_cache)
+    write_caches(common, request, kind, take, face, figures);
+  else
+    write_animation(common, request, take, face, figures);
+  if (figures.resets > 0)
+    common.warn("the simulation had to be put back to rest " + std::to_string(figures.resets) + " times");
+  say_how_far_off(common, request, figures);
   return figures;
 }
 

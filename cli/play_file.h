@@ -1,52 +1,41 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "cli/common.h"
-#include "cli/posing.h"
 
 namespace fascia::cli {
 
 struct PlayRequest {
   std::filesystem::path rig, curves, output;
   double frames_per_second = 60.0;
+  double curve_frames_per_second = 0.0;  ///< of the curves' rows; 0: as their file says
+  double time_unit = 0.0;                ///< seconds in one unit of the curves' times; 0: as their file says
+  size_t most_targets = 64;              ///< morph targets a mesh
+  bool keeps_head = false;               ///< whether captured rotations of the head turn its nodes
   std::string solver = "own", level;
 };
 
 struct PlayFigures {
-  int frames = 0, resets = 0;
+  size_t frames = 0;
+  int resets = 0;
   double duration = 0.0;  ///< seconds
-  size_t components = 0;
-  double largest_error_mm = 0.0;
+  double start = 0.0;     ///< seconds: the curves' own time at the first frame
+  size_t components = 0;  ///< morph targets of the mesh that has most
+  size_t wanted = 0;      ///< how many would bring all within 0.1 mm; 0: more than are followed
+  size_t keys = 0;        ///< frames with weights, of the mesh that has most
+  double largest_error_mm = 0.0, largest_error_seconds = 0.0;
   double milliseconds_a_frame = 0.0;  ///< median of a step
   std::vector<std::string> matched, unmatched;
+  std::vector<std::filesystem::path> files;
 };
 
-/// Simulates the rig along the curves and writes the input's file with at most 64 morph targets (principal
-/// components of the motion), their weights over time, and the curves again as pointer channels.
+/// Simulates the rig along the curves, of any length, and writes what `output` asks for by its extension:
+/// .glb, the rig's file with morph targets (principal components of the motion, mesh by mesh), their weights
+/// over time and the curves again as pointer channels; .pc2 or .mdd, caches of every vertex in every frame,
+/// in the input file's axes and units. Throws fascia::Error for what cannot be read or written.
 PlayFigures play_file(const Common& common, const PlayRequest& request);
-
-/// Curves loaded from a file.
-class Curves {
- public:
-  explicit Curves(const std::filesystem::path& path);
-  double duration() const;
-  const std::vector<std::string>& names() const { return names_; }
-  /// Names that the face's rig has no channel or member for.
-  std::vector<std::string> unmatched(const Face& face) const;
-  void apply(double seconds, const Face& face) const;
-
- private:
-  struct Release {
-    void operator()(fascia_curves* curves) const { fascia_curves_release(curves); }
-  };
-  std::unique_ptr<fascia_curves, Release> curves_;
-  std::vector<std::string> names_;
-  double duration_ = 0.0;
-};
 
 }  // namespace fascia::cli

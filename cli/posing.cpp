@@ -43,7 +43,22 @@ Face::Face(const std::filesystem::path& rig, const Options& options) {
   const std::vector<uint8_t> bytes = formats::read_bytes(rig);
   fascia_asset* asset = nullptr;
   check(fascia_asset_load(bytes.data(), bytes.size(), &asset), "'" + rig.string() + "'");
-  asset_.reset(asset);
+  asset_.reset(asset, Release());
+  options_ = options;
+  create("'" + rig.string() + "'");
+}
+
+Face Face::sibling() const {
+  Face face;
+  face.asset_ = asset_;
+  face.options_ = options_;
+  face.create("rig");
+  return face;
+}
+
+void Face::create(const std::string& rig) {
+  fascia_asset* const asset = asset_.get();
+  const Options& options = options_;
   auto info = sized<fascia_asset_info>();
   check(fascia_asset_get_info(asset, &info), "rig");
   level_ = level_index(asset, info.level_count, options.level);
@@ -57,7 +72,11 @@ Face::Face(const std::filesystem::path& rig, const Options& options) {
   else if (options.solver != "own")
     throw Error("solver '" + options.solver + "' is unknown: use own, reference or bullet");
   fascia_face* face = nullptr;
-  check(fascia_face_create(asset, &face_options, &face), "'" + rig.string() + "'");
+  const fascia_result created = fascia_face_create(asset, &face_options, &face);
+  if (created == FASCIA_ERROR_MODULE)
+    throw Error("--solver " + options.solver +
+                " needs libfascia_bullet.so beside the library libfascia.so; --solver own needs nothing");
+  check(created, rig);
   face_.reset(face);
   if (level_ < 0) level_ = static_cast<int32_t>(info.level_count) - 1;
   for (uint32_t m = 0; m < info.mesh_count; ++m) {
@@ -79,6 +98,18 @@ Face::Face(const std::filesystem::path& rig, const Options& options) {
   }
 }
 
+std::vector<std::string> Face::set_names() const {
+  auto info = sized<fascia_asset_info>();
+  check(fascia_asset_get_info(asset_.get(), &info), "rig");
+  std::vector<std::string> names;
+  for (uint32_t s = 0; s < info.set_count; ++s) {
+    auto entry = sized<fascia_set_info>();
+    check(fascia_asset_get_set(asset_.get(), s, &entry), "set");
+    names.emplace_back(entry.name);
+  }
+  return names;
+}
+
 std::vector<std::string> Face::set_members(const std::string& set) const {
   auto info = sized<fascia_asset_info>();
   check(fascia_asset_get_info(asset_.get(), &info), "rig");
@@ -97,7 +128,12 @@ std::vector<std::string> Face::channel_names() const {
 }
 
 void Face::set(const std::string& name, double value) {
-  check(fascia_face_set(face_.get(), name.c_str(), static_cast<float>(value)), "'" + name + "'");
+  const fascia_result result = fascia_face_set(face_.get(), name.c_str(), static_cast<float>(value));
+  if (result == FASCIA_ERROR_NAME)
+    throw Error(
+        "the rig has no channel or shape '" + name +
+        "'; 'fascia info RIG --channels' lists them, 'fascia info --names' what other programs call them");
+  check(result, "'" + name + "'");
 }
 
 void Face::clear() {

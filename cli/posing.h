@@ -32,7 +32,11 @@ class Face {
 
   Face(const std::filesystem::path& rig, const Options& options);
 
+  /// Another face of the same rig and options, at rest.
+  Face sibling() const;
+
   const std::vector<FaceMesh>& meshes() const { return meshes_; }
+  std::vector<std::string> set_names() const;
   std::vector<std::string> set_members(const std::string& set) const;
   std::vector<std::string> channel_names() const;
 
@@ -67,7 +71,11 @@ class Face {
     void operator()(fascia_asset* asset) const { fascia_asset_release(asset); }
     void operator()(fascia_face* face) const { fascia_face_release(face); }
   };
-  std::unique_ptr<fascia_asset, Release> asset_;
+  Face() = default;
+  void create(const std::string& rig);
+
+  Options options_;
+  std::shared_ptr<fascia_asset> asset_;
   std::unique_ptr<fascia_face, Release> face_;
   std::vector<FaceMesh> meshes_;
   std::vector<std::vector<float>> rest_;

@@ -32,10 +32,4 @@ void add_anatomy_option(CLI::App& command, std::filesystem::path& directory);
 /// Reads the head, builds its rig and writes it. Throws fascia::Error.
 rigging::BuildReport build_file(const Common& common, const BuildRequest& request);
 
-/// Bakes `shapes` (arkit, muscles or visemes) into morph targets of the rig's original file; returns their
-/// names.
-std::vector<std::string> bake_file(const Common& common, const std::filesystem::path& rig,
-                                   const std::string& shapes, const std::filesystem::path& output,
-                                   const std::string& solver = "own", const std::string& level = "");
-
 }  // namespace fascia::cli

@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "formats/detail.h"
+#include "formats/partial.h"
 #include "geometry/error.h"
 
 namespace fascia::formats {

@@ -1,11 +1,19 @@
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
+#include <mutex>
 
 #include "runtime/crowd.h"
+#include "runtime/drivers/aliases.h"
 #include "runtime/drivers/curves.h"
 #include "runtime/face.h"
 
+using fascia::runtime::Asset;
+using fascia::runtime::Curve;
 using fascia::runtime::Curves;
+using fascia::runtime::Driven;
 using fascia::runtime::Face;
 using fascia::runtime::Failure;
 using fascia::runtime::guarded;
@@ -16,7 +24,25 @@ using fascia::runtime::Target;
 /// Behind the C handle.
 struct fascia_curves {
   Curves curves;
-  std::vector<const char*> names;
+  std::vector<const char*> names, notes;
+  std::array<const Curve*, 3> head = {};  ///< yaw, pitch, roll
+  std::array<float, 3> head_share = {};
+
+  /// What each curve drives in an asset; found once.
+  const std::vector<std::vector<Driven>>& driven(const Asset& asset) const {
+    const std::lock_guard lock(mutex_);
+    auto& found = driven_[asset.serial()];
+    if (!found) {
+      found = std::make_unique<std::vector<std::vector<Driven>>>();
+      for (const Curve& curve : curves.curves)
+        found->push_back(asset.resolve(curve.name));
+    }
+    return *found;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  mutable std::map<uint64_t, std::unique_ptr<std::vector<std::vector<Driven>>>> driven_;
 };
 
 namespace {
@@ -26,13 +52,36 @@ Face& checked(const fascia_face* face) {
   return *face->face;
 }
 
-Target named(const Face& face, const char* name) {
+std::vector<Driven> named(const Face& face, const char* name) {
   require(name != nullptr, "the name is null");
-  const auto target = face.asset().find(name);
-  if (!target)
+  std::vector<Driven> driven = face.asset().resolve(name);
+  if (driven.empty())
     throw Failure(FASCIA_ERROR_NAME, "the rig has no channel or member \"" + std::string(name) +
                                          "\"; fascia_asset_get_channels and fascia_asset_get_set list them");
-  return *target;
+  return driven;
+}
+
+/// Curves that turn the head, by the table of other programs' names.
+void find_head(fascia_curves& curves) {
+  for (const Curve& curve : curves.curves.curves) {
+    const auto* alias = fascia::runtime::find_alias(curve.name);
+    if (alias == nullptr || alias->measure != fascia::runtime::Measure::head) continue;
+    for (const auto& [axis, share] : alias->targets) {
+      const std::size_t place = axis == "yaw" ? 0 : axis == "pitch" ? 1 : 2;
+      curves.head[place] = &curve;
+      curves.head_share[place] = share;
+    }
+  }
+}
+
+/// Copies as much of the caller's structure as it has.
+template <class Struct>
+Struct taken(const Struct* given, Struct chosen) {
+  if (given == nullptr) return chosen;
+  require(given->struct_size >= 2 * sizeof(uint32_t),
+          "struct_size is not set: it must be sizeof the structure");
+  std::memcpy(&chosen, given, std::min<std::size_t>(given->struct_size, sizeof chosen));
+  return chosen;
 }
 
 /// The face, which has a mesh of that number.
@@ -62,13 +111,7 @@ fascia_result fascia_face_create(fascia_asset* asset, const fascia_face_options*
                                  fascia_face** face) {
   return guarded([&] {
     require(asset != nullptr && face != nullptr, "fascia_face_create: asset or face is null");
-    fascia_face_options chosen = fascia_default_face_options();
-    if (options != nullptr) {
-      require(options->struct_size >= 2 * sizeof(uint32_t),
-              "struct_size is not set: it must be sizeof the structure");
-      std::memcpy(&chosen, options, std::min<std::size_t>(options->struct_size, sizeof chosen));
-    }
-    auto made = std::make_unique<Face>(asset->asset, chosen);
+    auto made = std::make_unique<Face>(asset->asset, taken(options, fascia_default_face_options()));
     *face = new fascia_face{std::move(made)};
     return FASCIA_OK;
   });
@@ -90,7 +133,8 @@ fascia_result fascia_face_set(fascia_face* handle, const char* name, float value
   return guarded([&] {
     Face& face = checked(handle);
     require(std::isfinite(value), "the value is not a finite number");
-    face.set(named(face, name), value);
+    for (const Driven& driven : named(face, name))
+      face.set(driven.target, driven.share * value);
     return FASCIA_OK;
   });
 }
@@ -99,7 +143,8 @@ fascia_result fascia_face_get(const fascia_face* handle, const char* name, float
   return guarded([&] {
     const Face& face = checked(handle);
     require(value != nullptr, "the value to write is null");
-    *value = face.get(named(face, name));
+    const Driven driven = named(face, name).front();
+    *value = face.get(driven.target) / driven.share;
     return FASCIA_OK;
   });
 }
@@ -256,12 +301,25 @@ fascia_result fascia_face_jaw(const fascia_face* face, float matrix[16]) {
 }
 
 fascia_result fascia_curves_load(const void* bytes, size_t size, fascia_curves** curves) {
+  return fascia_curves_load_as(bytes, size, nullptr, curves);
+}
+
+fascia_result fascia_curves_load_as(const void* bytes, size_t size, const fascia_curves_options* options,
+                                    fascia_curves** curves) {
   return guarded([&] {
     require(bytes != nullptr && curves != nullptr, "fascia_curves_load: bytes or curves is null");
+    const fascia_curves_options chosen = taken(options, {sizeof(fascia_curves_options), 0, 0.0, 0.0});
+    require(chosen.frames_per_second >= 0.0 && chosen.time_unit >= 0.0 &&
+                std::isfinite(chosen.frames_per_second) && std::isfinite(chosen.time_unit),
+            "frames_per_second and time_unit must be 0 or more");
     auto loaded = std::make_unique<fascia_curves>();
-    loaded->curves = fascia::runtime::read_curves({static_cast<const uint8_t*>(bytes), size});
+    loaded->curves = fascia::runtime::read_curves({static_cast<const uint8_t*>(bytes), size},
+                                                  {chosen.frames_per_second, chosen.time_unit});
     for (const auto& curve : loaded->curves.curves)
       loaded->names.push_back(curve.name.c_str());
+    for (const std::string& note : loaded->curves.notes)
+      loaded->notes.push_back(note.c_str());
+    find_head(*loaded);
     *curves = loaded.release();
     return FASCIA_OK;
   });
@@ -275,7 +333,10 @@ fascia_result fascia_curves_get_info(const fascia_curves* curves, fascia_curves_
   return guarded([&] {
     require(curves != nullptr, "the curves are null");
     hand_out(fascia_curves_info{0, static_cast<uint32_t>(curves->names.size()), curves->names.data(),
-                                curves->curves.duration()},
+                                curves->curves.duration(), curves->curves.start,
+                                curves->curves.frames_per_second, static_cast<uint32_t>(curves->notes.size()),
+                                static_cast<uint32_t>(curves->head[0] || curves->head[1] || curves->head[2]),
+                                curves->notes.data()},
              info);
     return FASCIA_OK;
   });
@@ -286,8 +347,9 @@ fascia_result fascia_curves_match(const fascia_curves* curves, const fascia_asse
   return guarded([&] {
     require(curves != nullptr && asset != nullptr && count != nullptr, "the curves, asset or count is null");
     uint32_t known = 0;
+    const auto& driven = curves->driven(*asset->asset);
     for (std::size_t i = 0; i < curves->names.size(); ++i) {
-      const bool found = asset->asset->find(curves->names[i]).has_value();
+      const bool found = !driven[i].empty();
       known += found;
       if (matched != nullptr) matched[i] = found;
     }
@@ -302,8 +364,32 @@ fascia_result fascia_curves_apply(const fascia_curves* curves, double seconds, f
     require(curves != nullptr, "the curves are null");
     require(std::isfinite(seconds) && std::isfinite(weight), "the time or weight is not a finite number");
     Face& face = checked(handle);
-    for (const auto& curve : curves->curves.curves)
-      if (const auto target = face.asset().find(curve.name)) face.add(*target, curve.at(seconds), weight);
+    const auto& driven = curves->driven(face.asset());
+    for (std::size_t i = 0; i < driven.size(); ++i) {
+      if (driven[i].empty()) continue;
+      const float value = curves->curves.curves[i].at(seconds);
+      for (const Driven& entry : driven[i])
+        if (entry.overrides && entry.target.kind == Target::Kind::channel)
+          face.take_over(entry.target.index, entry.share * value, weight);
+        else
+          face.add(entry.target, entry.share * value, weight);
+    }
+    return FASCIA_OK;
+  });
+}
+
+fascia_result fascia_curves_head(const fascia_curves* curves, double seconds, float quaternion[4]) {
+  return guarded([&] {
+    require(curves != nullptr && quaternion != nullptr, "the curves or the quaternion is null");
+    require(std::isfinite(seconds), "the time is not a finite number");
+    float angles[3] = {};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (curves->head[axis] != nullptr)
+        angles[axis] = curves->head_share[axis] * curves->head[axis]->at(seconds);
+    const Eigen::Quaternionf turn(Eigen::AngleAxisf(angles[0], Eigen::Vector3f::UnitY()) *
+                                  Eigen::AngleAxisf(angles[1], Eigen::Vector3f::UnitX()) *
+                                  Eigen::AngleAxisf(angles[2], Eigen::Vector3f::UnitZ()));
+    Eigen::Map<Eigen::Vector4f>(quaternion, 4) = turn.coeffs();
     return FASCIA_OK;
   });
 }

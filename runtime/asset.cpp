@@ -2,6 +2,8 @@
 
 #include <charconv>
 
+#include "runtime/drivers/aliases.h"
+
 namespace fascia::runtime {
 namespace {
 
@@ -37,8 +39,12 @@ std::string lower_case(std::string_view text) {
 
 Asset::Asset(std::span<const uint8_t> bytes)
     : file_(rig::read(bytes)), models_(file_.rig.tissue.levels.size()), realtime_models_(models_.size()) {
+  static std::atomic<uint64_t> next{1};
+  serial_ = next++;
   index_channels();
   index_sets();
+  for (const auto& [name, target] : names_)
+    spellings_.emplace(spelled(name), target);
   find_jaw_muscles();
   if (const char* fault = sim::jaw_fault(sim::jaw_of(rig().skull.jaw)))
     throw Failure(FASCIA_ERROR_FORMAT, std::string("FASCIA_skull/jaw: ") + fault);
@@ -136,6 +142,24 @@ std::optional<Target> Asset::find(std::string_view name) const {
   const auto found = names_.find(lower_case(name));
   if (found == names_.end()) return std::nullopt;
   return found->second;
+}
+
+std::vector<Driven> Asset::resolve(std::string_view name) const {
+  if (const auto target = find(name)) return {{*target, 1.0F, false}};
+  std::vector<Driven> driven;
+  const Alias* alias = find_alias(name);
+  if (alias && alias->measure != Measure::head) {
+    for (const auto& [target_name, share] : alias->targets)
+      if (const auto target = find(target_name))
+        driven.push_back({*target, share, alias->measure == Measure::rotation});
+    return driven;
+  }
+  for (const std::string& reading : readings(name)) {
+    if (const auto target = find(reading)) return {{*target, 1.0F, false}};
+    const auto found = spellings_.find(spelled(reading));
+    if (found != spellings_.end()) return {{found->second, 1.0F, false}};
+  }
+  return driven;
 }
 
 const sim::FaceModel& Asset::model(std::size_t level) const {

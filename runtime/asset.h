@@ -26,6 +26,13 @@ struct Target {
   uint32_t index = 0;
 };
 
+/// One of the things that a name drives.
+struct Driven {
+  Target target;
+  float share = 1.0F;
+  bool overrides = false;  ///< takes the channel from all other names, where it speaks
+};
+
 /// A member of a named set as the channels it adds to.
 struct Member {
   std::vector<std::pair<uint32_t, float>> entries;  ///< channel, weight
@@ -53,6 +60,13 @@ class Asset {
   /// What `name` stands for, case-insensitive; nothing when no channel or member bears it. "#7" is channel 7.
   std::optional<Target> find(std::string_view name) const;
 
+  /// What `name` drives: as `find`, else in any spelling of a channel's or member's name, or by the table of
+  /// other programs' names (anatomy/data/aliases.json). Empty when it drives nothing.
+  std::vector<Driven> resolve(std::string_view name) const;
+
+  /// Tells this asset from every other of the process.
+  uint64_t serial() const { return serial_; }
+
   /// The model of a level, made on first use; any thread may ask. Throws Failure when the lattice is unsound.
   const sim::FaceModel& model(std::size_t level) const;
   /// The same, laid out for real time.
@@ -74,7 +88,9 @@ class Asset {
 
   rig::RigFile file_;
   std::vector<Member> members_;
-  std::map<std::string, Target, std::less<>> names_;  ///< in lower case
+  std::map<std::string, Target, std::less<>> names_;      ///< in lower case
+  std::map<std::string, Target, std::less<>> spellings_;  ///< as `spelled` gives them
+  uint64_t serial_ = 0;
   BoneChannels bones_;
   sim::JawMuscles jaw_muscles_;
   mutable std::mutex models_mutex_;

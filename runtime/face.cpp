@@ -34,6 +34,7 @@ Face::Face(std::shared_ptr<const Asset> asset, const fascia_face_options& option
   solver_ = make_solver(options, *asset_, level_);
   values_ = effective_ = asset_->channel_rest;
   curve_channels_.assign(channels, 0.0F);
+  taken_ = taken_weight_ = curve_channels_;
   members_.assign(asset_->members().size(), 0.0F);
   curve_members_ = members_;
   const rig::Rig& rig = asset_->rig();
@@ -68,6 +69,11 @@ void Face::add(const Target& target, float value, float weight) {
     curve_members_[target.index] += weight * value;
 }
 
+void Face::take_over(uint32_t channel, float value, float weight) {
+  taken_[channel] += weight * value;
+  taken_weight_[channel] += weight;
+}
+
 void Face::gather() {
   for (std::size_t c = 0; c < values_.size(); ++c)
     effective_[c] =
@@ -78,6 +84,13 @@ void Face::gather() {
     for (const auto& [channel, weight] : asset_->members()[m].entries)
       effective_[channel] += weight * value;
   }
+  for (std::size_t c = 0; c < effective_.size(); ++c) {
+    if (taken_weight_[c] <= 0.0F || !std::isfinite(taken_[c])) continue;
+    const float share = std::min(taken_weight_[c], 1.0F);
+    effective_[c] = (1.0F - share) * effective_[c] + taken_[c] * (share / taken_weight_[c]);
+  }
+  std::fill(taken_.begin(), taken_.end(), 0.0F);
+  std::fill(taken_weight_.begin(), taken_weight_.end(), 0.0F);
   for (std::size_t c = 0; c < effective_.size(); ++c)
     effective_[c] = std::clamp(effective_[c], asset_->channel_minimum[c], asset_->channel_maximum[c]);
   std::fill(curve_channels_.begin(), curve_channels_.end(), 0.0F);
@@ -103,7 +116,7 @@ sim::Controls Face::controls() const {
 void Face::follow() {
   solver_->displacements(displacements_);
   const BoneChannels& channels = asset_->bones();
-  bones_.jaw = sim::jaw_transform(model_->jaw(), jaw_);
+  bones_.jaw = sim::jaw_transform(model_->jaw(), shown_jaw_);
   for (std::size_t eye = 0; eye < 2; ++eye)
     bones_.eyes[eye] = eye_rotation(effective(channels.eye_yaw[eye]), effective(channels.eye_pitch[eye]));
   for (BoundMesh& mesh : meshes_)
@@ -164,14 +177,19 @@ void Face::pose() {
   gather();
   jaw_ = wanted_jaw();
   solver_->settle(controls());
+  shown_jaw_ = jaw_;
   follow();
 }
 
 bool Face::step(double seconds) {
   inertia_ = inertia(seconds);
   gather();
-  if (std::isfinite(seconds)) jaw_ = sim::approached(jaw_, wanted_jaw(), seconds);
+  if (std::isfinite(seconds)) {
+    seconds = std::min(seconds, solver_->longest_frame());  // what the solver loses is lost for the jaw too
+    jaw_ = sim::approached(jaw_, wanted_jaw(), seconds);
+  }
   const bool is_sound = solver_->step(seconds, controls()).status == sim::StepStatus::done;
+  shown_jaw_ = solver_->shown_jaw(jaw_);
   follow();
   return is_sound;
 }
@@ -182,6 +200,7 @@ void Face::reset() {
   gather();
   jaw_ = wanted_jaw();
   solver_->reset(controls());
+  shown_jaw_ = jaw_;
   follow();
 }
 

@@ -26,6 +26,8 @@ class Face {
   void clear();
   /// Adds to what the next pose or step uses.
   void add(const Target& target, float value, float weight);
+  /// The same for a channel that `value` has to itself, as far as `weight` (0..1) goes.
+  void take_over(uint32_t channel, float value, float weight);
   void set_acceleration(const sim::Vec3& acceleration) { acceleration_ = acceleration; }
 
   /// Where the head stands from the next step on; see fascia_face_move_head.
@@ -67,6 +69,7 @@ class Face {
   const sim::FaceModel* model_ = nullptr;
   std::unique_ptr<sim::Solver> solver_;
   std::vector<float> values_, members_, curve_channels_, curve_members_, effective_;
+  std::vector<float> taken_, taken_weight_;  ///< by channel: what has it to itself, and how far
   sim::Vec3 acceleration_ = sim::Vec3::Zero(), inertia_ = sim::Vec3::Zero();
   struct HeadMotion {
     Eigen::Matrix4d place = Eigen::Matrix4d::Identity();
@@ -82,7 +85,8 @@ class Face {
   std::vector<Vec3f> compression_;
   std::vector<Vec3f> displacements_, fibre_points_;
   BonePose bones_;
-  sim::JawPose jaw_;
+  sim::JawPose jaw_;        ///< where the frame's drive has it
+  sim::JawPose shown_jaw_;  ///< where the tissue shown has it: up to a substep before
   std::vector<BoundMesh> meshes_;
 };
 

@@ -158,9 +158,9 @@ StepResult Face::step(double seconds, const Controls& controls, const StepOption
 }
 
 void Face::displacements(std::span<Vec3f> out) const {
-  // The state stands at the last whole substep; what is left of the frame it coasts.
+  const double back = time_.back();
   for (size_t i = 0; i < out.size() && i < position_.size(); ++i)
-    out[i] = (position_[i] - model_->rest()[i] + time_.left_over() * velocity_[i]).cast<float>();
+    out[i] = (position_[i] - model_->rest()[i] + back * (previous_[i] - position_[i])).cast<float>();
 }
 
 void Face::positions(std::span<Vec3f> out) const {

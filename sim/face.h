@@ -77,10 +77,14 @@ class Face final : public Solver {
   MinimiseResult settle(const Controls& controls, const PoseOptions& options);
   MinimiseResult settle(const Controls& controls) override { return settle(controls, pose_options_); }
 
-  /// Where `step` has brought the nodes, coasting through what is left of the frame. #nodes.
+  /// Where `step` has brought the nodes, between the last two states where a frame ends there. #nodes.
   void positions(std::span<Vec3f> out) const;
   /// The same, minus rest: exactly zero at rest.
   void displacements(std::span<Vec3f> out) const override;
+  double longest_frame() const override {
+    return step_options_.largest_number_of_substeps * model_->options().substep;
+  }
+  JawPose shown_jaw(const JawPose&) const override { return time_.shown_jaw(); }
   /// Kinetic plus potential energy of the state, joules.
   double total_energy();
   std::span<const float> activations() const { return time_.activations(); }  ///< after their dynamics

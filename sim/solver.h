@@ -21,6 +21,10 @@ class Solver {
   virtual void reset(const Controls& controls) = 0;
   /// How far the nodes are from rest, metres, #nodes; at rest exactly zero.
   virtual void displacements(std::span<Vec3f> out) const = 0;
+  /// Seconds of which a longer frame loses the rest.
+  virtual double longest_frame() const = 0;
+  /// The jaw under `displacements`, where the last controls had `jaw`.
+  virtual JawPose shown_jaw(const JawPose& jaw) const { return jaw; }
 };
 
 /// What a solver library exports under the name in `solver_entry`: makes a solver on `model`, which outlives

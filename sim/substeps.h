@@ -6,6 +6,7 @@
 
 #include "sim/activation.h"
 #include "sim/face_model.h"
+#include "sim/frame_clock.h"
 #include "sim/quasi_newton.h"
 
 namespace fascia::sim {
@@ -23,9 +24,15 @@ struct StepResult {
   double move = 0.0;   ///< metres still wanted by the last substep's solver
 };
 
+/// The pose the share `share` (0..1) of the way from one to another; at 0 `from` itself.
+inline JawPose between(const JawPose& from, const JawPose& to, double share) {
+  const auto mix = [share](float a, float b) { return a + static_cast<float>(share) * (b - a); };
+  return {mix(from.open, to.open), mix(from.forward, to.forward), mix(from.lateral, to.lateral)};
+}
+
 /// Cuts frames of any length into substeps of one length, so that the frame rate hardly changes the motion,
 /// and keeps what must be known from frame to frame: activations between excitations and their dynamics, the
-/// controls at the last frame's end, and the time not yet simulated.
+/// controls at the last frame's end, and how far the state is ahead of the frame.
 class Substeps {
  public:
   /// `channels` is how many activations the face listens to.
@@ -38,7 +45,8 @@ class Substeps {
     std::fill(last_excitations_.begin(), last_excitations_.end(), 0.0F);
     last_jaw_ = clamped(controls.jaw);
     last_acceleration_.setZero();
-    left_over_ = 0.0;
+    jaw_before_ = jaw_now_ = last_jaw_;
+    clock_.reset();
   }
   /// As though `controls` had acted for ever.
   void settle(const Controls& controls) {
@@ -62,13 +70,13 @@ class Substeps {
       return result;
     }
     if (seconds <= 0.0) return result;
-    const double due = left_over_ + seconds;
-    const int substeps = static_cast<int>(std::min<double>(due / substep + 1e-9, most));
+    const int substeps = clock_.begin(seconds, substep, most);
     for (int k = 0; k < substeps; ++k) {
-      // The controls at this substep's own time: before it lie last frame's left-over and k whole substeps.
-      const double share = std::clamp(((k + 1) * substep - left_over_) / seconds, 0.0, 1.0);
+      const Controls now = at(clock_.share(k), controls, substep, dynamics);
+      jaw_before_ = jaw_now_;
+      jaw_now_ = now.jaw;
       MinimiseResult solved;
-      const bool is_sound = solve(at(share, controls, substep, dynamics), solved);
+      const bool is_sound = solve(now, solved);
       ++result.substeps;
       result.iterations += solved.iterations;
       result.move = solved.move;
@@ -77,7 +85,6 @@ class Substeps {
         return result;
       }
     }
-    left_over_ = std::clamp(due - substeps * substep, 0.0, substep);
     for (size_t c = 0; c < last_excitations_.size(); ++c)
       last_excitations_[c] = controls.activation(c);
     last_jaw_ = clamped(controls.jaw);
@@ -86,7 +93,10 @@ class Substeps {
   }
 
   std::span<const float> activations() const { return activations_; }  ///< after their dynamics
-  double left_over() const { return left_over_; }  ///< seconds of the last frame not yet simulated
+  /// What is to be shown lies this share of a substep, 0 to 1, before the state, towards the one before.
+  double back() const { return clock_.back(); }
+  /// The jaw there.
+  JawPose shown_jaw() const { return between(jaw_now_, jaw_before_, clock_.back()); }
   const JawPose& jaw() const { return last_jaw_; }
   const Vec3& acceleration() const { return last_acceleration_; }
   size_t bytes() const { return 3 * sizeof(float) * activations_.size(); }
@@ -101,19 +111,16 @@ class Substeps {
       excitations_[c] = last_excitations_[c] + part * (goal - last_excitations_[c]);
     }
     follow(dynamics, seconds, excitations_, activations_);
-    const auto mix = [part](float from, float to) { return from + part * (to - from); };
     const JawPose goal = clamped(controls.jaw);
-    return {activations_,
-            {mix(last_jaw_.open, goal.open), mix(last_jaw_.forward, goal.forward),
-             mix(last_jaw_.lateral, goal.lateral)},
-            last_acceleration_ + share * (controls.acceleration - last_acceleration_),
-            controls.touches};
+    return {activations_, share < 1.0 ? between(last_jaw_, goal, share) : goal,
+            last_acceleration_ + share * (controls.acceleration - last_acceleration_), controls.touches};
   }
 
   std::vector<float> excitations_, last_excitations_, activations_;
   JawPose last_jaw_;
   Vec3 last_acceleration_ = Vec3::Zero();
-  double left_over_ = 0.0;
+  FrameClock clock_;
+  JawPose jaw_before_, jaw_now_;  ///< of the last two states
 };
 
 }  // namespace fascia::sim

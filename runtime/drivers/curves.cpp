@@ -1,10 +1,10 @@
 #include "runtime/drivers/curves.h"
 
 #include <algorithm>
-#include <cctype>
 
 #include "geometry/error.h"
 #include "gltf/read/container.h"
+#include "runtime/drivers/text.h"
 
 namespace fascia::runtime {
 namespace {
@@ -47,15 +47,21 @@ double Curves::duration() const {
   return last;
 }
 
-Curves read_curves(std::span<const uint8_t> bytes) {
-  if (gltf::is_glb(bytes)) return read_gltf_curves(bytes);
-  std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  if (text.substr(0, 3) == "\xEF\xBB\xBF") text.remove_prefix(3);
-  std::size_t first = 0;
-  while (first < text.size() && std::isspace(static_cast<unsigned char>(text[first])))
-    ++first;
-  if (first == text.size()) throw Error("curves: the file is empty");
-  return text[first] == '{' ? read_json_curves(text) : read_csv_curves(text);
+Curves read_curves(std::span<const uint8_t> bytes, const ReadOptions& options) {
+  if (gltf::is_glb(bytes)) {
+    Curves curves = read_gltf_curves(bytes);
+    settle(curves);
+    return curves;
+  }
+  const std::string text = utf8_text(bytes);
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  if (first == std::string::npos) throw Error("curves: the file is empty");
+  if (text.find('\0') != std::string::npos)
+    throw Error("curves: neither text nor a .glb file: export the take as CSV, JSON or GLB");
+  const bool is_json = text[first] == '{' || text[first] == '[';
+  Curves curves = is_json ? read_json_curves(text, options) : read_csv_curves(text, options);
+  settle(curves);
+  return curves;
 }
 
 }  // namespace fascia::runtime

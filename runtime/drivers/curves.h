@@ -29,24 +29,42 @@ struct Curve {
 struct Curves {
   std::vector<Curve> curves;
 
+  double start = 0.0;              ///< the file's own time of its first key, seconds; here that is 0
+  double frames_per_second = 0.0;  ///< of the file's rows, where it says; 0 where it does not
+  std::vector<std::string> notes;  ///< what was taken how, and what was mended: a sentence each
+
   /// Time of the last key of all, seconds.
   double duration() const;
 };
 
-/// Reads curves from the bytes of a file, whose kind is found from its content: a GLB, JSON, Live Link Face
-/// CSV or CSV. Throws fascia::Error that says what is wrong and in which row or channel.
-Curves read_curves(std::span<const uint8_t> bytes);
+/// What the file does not say, or says wrongly.
+struct ReadOptions {
+  double frames_per_second = 0.0;  ///< of rows and frames, instead of the file's; 0: as the file says
+  double time_unit = 0.0;          ///< seconds in one unit of the file's times; 0: as the file says
+};
 
-/// CSV with a `time` column in seconds and one column a name; empty cells are left out. Live Link Face files
-/// (`Timecode` hh:mm:ss:ff.sub and `BlendShapeCount`) are known by their header: time counts from the first
-/// row, at 60 frames a second unless a higher frame number shows more.
-Curves read_csv_curves(std::string_view text);
+/// Reads curves from the bytes of a file, whose kind is found from its content: a GLB, JSON, or a table of
+/// text (CSV), in UTF-8 or UTF-16. Time counts from the first key of all. Values are shares of 1: percent and
+/// action units from 0 to 5 are scaled, which `notes` says. Throws fascia::Error that says what is wrong and
+/// in which row or channel.
+Curves read_curves(std::span<const uint8_t> bytes, const ReadOptions& options = {});
 
-/// {"fps": F, "channels": {NAME: [values]}} or {NAME: {"times": [], "values": [], "interpolation": ""}}.
-Curves read_json_curves(std::string_view text);
+/// A table with a column of times (`time`, `timestamp`, `time_ms`, ...) or timecodes (Live Link Face), or
+/// without one where `frames_per_second` is given, and one column a name. Empty cells and NaN are left out:
+/// the curve goes straight from the key before to the next.
+Curves read_csv_curves(std::string_view text, const ReadOptions& options = {});
 
-/// Animations of a GLB file whose channels point at /extensions/FASCIA_actuation/channels/N/value through
-/// KHR_animation_pointer. Names are those of the file's own FASCIA_actuation, or "#N" when it has none.
+/// {"fps": F, "channels": {NAME: [values]}}, {NAME: {"times": [], "values": [], "interpolation": ""}}, or
+/// what a capture program wrote (see `read_captured_json`).
+Curves read_json_curves(std::string_view text, const ReadOptions& options = {});
+
+/// Animations of a GLB file: channels that point at /extensions/FASCIA_actuation/channels/N/value through
+/// KHR_animation_pointer, named as in the file's own FASCIA_actuation, or "#N" when it has none; where there
+/// are none of them, the weights of meshes whose extras.targetNames name them.
 Curves read_gltf_curves(std::span<const uint8_t> bytes);
+
+/// Makes time count from the first key, scales percent and intensities to shares and leaves out what says
+/// nothing of the face. Throws fascia::Error when the curves last longer than any take.
+void settle(Curves& curves);
 
 }  // namespace fascia::runtime

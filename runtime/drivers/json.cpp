@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "geometry/error.h"
+#include "runtime/drivers/captured_json.h"
 #include "runtime/drivers/curves.h"
 
 namespace fascia::runtime {
@@ -63,20 +64,25 @@ Curve keyed_curve(const std::string& name, const Json& object) {
 
 }  // namespace
 
-Curves read_json_curves(std::string_view text) {
+Curves read_json_curves(std::string_view text, const ReadOptions& options) {
   Json root;
   try {
     root = Json::parse(text);
   } catch (const Json::exception& error) {
     throw Error(std::string("curves: malformed JSON: ") + error.what());
   }
-  if (!root.is_object()) throw Error("curves: the JSON is not an object");
+  if (root.is_object() && root.contains("asset"))
+    throw Error("curves: a .gltf file keeps its numbers beside itself: save it as .glb");
+  if (auto captured = read_captured_json(root, options)) return *captured;
+  if (!root.is_object()) throw Error("curves: the JSON holds no frames and no channels");
   Curves result;
   if (root.contains("channels")) {
-    const Json fps = root.value("fps", Json());
+    const Json fps =
+        options.frames_per_second > 0.0 ? Json(options.frames_per_second) : root.value("fps", Json());
     if (!fps.is_number() || !(fps.get<double>() > 0))
       throw Error("curves: \"fps\" is missing or not above 0");
     if (!root["channels"].is_object()) throw Error("curves: \"channels\" is not an object");
+    result.frames_per_second = fps.get<double>();
     for (const auto& [name, values] : root["channels"].items())
       result.curves.push_back(sampled_curve(name, values, fps.get<double>()));
   } else {

@@ -268,7 +268,7 @@ StepResult BulletFace::step(double seconds, const Controls& controls) {
     result.status = StepStatus::reset;
     return result;
   }
-  const double due = w.left_over + std::clamp(seconds, 0.0, 0.2);
+  const double due = w.left_over + std::clamp(seconds, 0.0, longest_frame());
   const int substeps = static_cast<int>(due / w.options.substep + 1e-9);
   for (int k = 0; k < substeps; ++k) {
     follow({}, w.options.substep, controls.activations, w.activations);

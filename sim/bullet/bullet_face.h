@@ -28,6 +28,7 @@ class BulletFace final : public Solver {
   MinimiseResult settle(const Controls& controls) override;
   void reset(const Controls& controls) override;
   void displacements(std::span<Vec3f> out) const override;
+  double longest_frame() const override { return 0.2; }
 
   /// Where Bullet's mandible stands: what its constraint made of the closed form.
   RigidTransform mandible() const;

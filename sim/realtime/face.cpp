@@ -17,6 +17,7 @@ Face::Face(const Model& model, size_t channels, const PoseOptions& pose, const S
       position_(model.places()),
       velocity_(model.places()),
       carried_(model.places()),
+      before_(model.places()),
       last_direction_(model.unknown_floats()),
       step_scale_(model.unknown_floats() / 4),
       facing_(model.face().contacts().facing_count()),
@@ -88,6 +89,7 @@ void Face::reset(const Controls& controls) {
   place(time_.jaw(), {}, *work, boundary);
   std::copy(work->carried.data(), work->carried.data() + model_->places(), position_.data());
   std::copy(work->carried.data(), work->carried.data() + model_->places(), carried_.data());
+  std::copy(work->carried.data(), work->carried.data() + model_->places(), before_.data());
   std::fill(velocity_.data(), velocity_.data() + velocity_.size(), 0.0F);
   std::fill(last_direction_.data(), last_direction_.data() + last_direction_.size(), 0.0F);
   std::fill(step_scale_.data(), step_scale_.data() + step_scale_.size(), 1.0F);
@@ -204,18 +206,22 @@ StepResult Face::step(double seconds, const Controls& controls, const StepOption
   };
   const StepResult result = time_.run(seconds, controls, model_->face().options().substep,
                                       options.largest_number_of_substeps, options.dynamics, solve);
-  if (work) model_->give_back(std::move(work));
+  if (work) {
+    std::copy(work->start.data(), work->start.data() + model_->places(), before_.data());
+    model_->give_back(std::move(work));
+  }
   if (result.status == StepStatus::reset) reset(controls);
   return result;
 }
 
 void Face::displacements(std::span<Vec3f> out) const {
-  const float *x = position_.data(), *velocity = velocity_.data(), *rest = model_->packed().rest,
-              coast = f(time_.left_over());
+  const float *x = position_.data(), *before = before_.data(), *rest = model_->packed().rest,
+              back = f(time_.back());
   for (size_t i = 0; i < out.size() && i < model_->face().rest().size(); ++i) {
     const auto at = static_cast<size_t>(model_->slot_of(i));
     for (size_t axis = 0; axis < 3; ++axis)
-      out[i][static_cast<int>(axis)] = x[at + axis] - rest[at + axis] + coast * velocity[at + axis];
+      out[i][static_cast<int>(axis)] =
+          x[at + axis] - rest[at + axis] + back * (before[at + axis] - x[at + axis]);
   }
 }
 
@@ -227,8 +233,8 @@ void Face::positions(std::span<Vec3f> out) const {
 
 size_t Face::memory() const {
   return sizeof *this +
-         sizeof(float) * (position_.size() + velocity_.size() + carried_.size() + last_direction_.size() +
-                          step_scale_.size() + pose_offset_.size()) +
+         sizeof(float) * (position_.size() + velocity_.size() + carried_.size() + before_.size() +
+                          last_direction_.size() + step_scale_.size() + pose_offset_.size()) +
          time_.bytes() + sizeof(FacingPair) * facing_.size() + sizeof(BoneReach) * reach_.size();
 }
 

@@ -42,6 +42,10 @@ class Face final : public Solver {
   MinimiseResult settle(const Controls& controls) override { return settle(controls, pose_options_); }
   void positions(std::span<Vec3f> out) const;
   void displacements(std::span<Vec3f> out) const override;
+  double longest_frame() const override {
+    return step_options_.largest_number_of_substeps * model_->face().options().substep;
+  }
+  JawPose shown_jaw(const JawPose&) const override { return time_.shown_jaw(); }
 
   /// Bytes this face keeps for itself.
   size_t memory() const;
@@ -71,7 +75,7 @@ class Face final : public Solver {
   const Model* model_;
   PoseOptions pose_options_;
   StepOptions step_options_;
-  Floats position_, velocity_, carried_, last_direction_, step_scale_, pose_offset_;
+  Floats position_, velocity_, carried_, before_, last_direction_, step_scale_, pose_offset_;
   std::vector<FacingPair> facing_;
   struct BoneReach {
     float place[3] = {0, 0, 0};  ///< in the bone's frame, where the distance was last looked up

@@ -80,8 +80,7 @@ TEST(Csv, ReadsLiveLinkFaceByItsHeader) {
 
 TEST(Csv, SaysWhereItIsWrong) {
   EXPECT_NE(message_of("time,a\n0,1\n1,x\n").find("row 3, column a"), std::string::npos);
-  EXPECT_NE(message_of("time,a\n0,nan\n").find("row 2, column a"), std::string::npos);
-  EXPECT_NE(message_of("time,a\n1,0\n0.5,0\n").find("rise"), std::string::npos);
+  EXPECT_NE(message_of("time,a\n0,nan\n").find("no column of values"), std::string::npos);
   EXPECT_NE(message_of("a,b\n1,0\n").find("time"), std::string::npos);
   EXPECT_NE(message_of("time,a\n").find("no rows"), std::string::npos);
   EXPECT_NE(message_of("Timecode,a\n12:00,0\n").find("hours"), std::string::npos);

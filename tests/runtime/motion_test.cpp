@@ -212,4 +212,51 @@ TEST_F(Moved, TheWatchdogPutsADivergedFaceBackAndSaysSo) {
   EXPECT_LT(apart(positions(torn), rest), 1e-5);
 }
 
+/// What a step moves at most, metres, in each of some steps of these lengths.
+std::vector<double> moves(fascia_face* face, const std::vector<float>& seconds) {
+  std::vector<double> most;
+  std::vector<float> before = positions(face);
+  for (const float step : seconds) {
+    EXPECT_EQ(fascia_face_step(face, step), FASCIA_OK) << fascia_last_message();
+    const std::vector<float> now = positions(face);
+    most.push_back(apart(now, before));
+    before = now;
+  }
+  return most;
+}
+
+TEST_F(Moved, TimeLostInALongFrameIsLost) {
+  for (const fascia_solver solver : {FASCIA_SOLVER_OWN, FASCIA_SOLVER_REFERENCE}) {
+    fascia_face *const steady = face(solver), *const paused = face(solver);
+    for (fascia_face* one : {steady, paused})
+      ASSERT_EQ(fascia_face_set(one, "jaw_open", 0.9F), FASCIA_OK);
+    const std::vector<double> even = moves(steady, std::vector<float>(30, frame));
+    const double largest = *std::max_element(even.begin(), even.end());
+    ASSERT_GT(largest, 1e-4);
+    // The pause itself counts as much time as the solver simulates of it, 16 substeps.
+    const std::vector<double> after = moves(paused, {0.5F, 1e-9F, 1e-4F, frame, frame, frame});
+    for (std::size_t i = 1; i < after.size(); ++i)
+      EXPECT_LE(after[i], 1.01 * largest) << i;
+    EXPECT_LE(after[1], 1e-6);
+  }
+}
+
+TEST_F(Moved, SlowMotionGoesInEqualSteps) {
+  for (const fascia_solver solver : {FASCIA_SOLVER_OWN, FASCIA_SOLVER_REFERENCE})
+    for (const int slowness : {5, 10, 7}) {
+      fascia_face* const slow = face(solver);
+      ASSERT_EQ(fascia_face_set(slow, "jaw_open", 0.9F), FASCIA_OK);
+      const std::vector<double> steps = moves(
+          slow,
+          std::vector<float>(static_cast<std::size_t>(10 * slowness), frame / static_cast<float>(slowness)));
+      fascia_face* const usual = face(solver);
+      ASSERT_EQ(fascia_face_set(usual, "jaw_open", 0.9F), FASCIA_OK);
+      const std::vector<double> frames = moves(usual, std::vector<float>(10, frame));
+      const double largest = *std::max_element(frames.begin(), frames.end());
+      // A step moves its share of the fastest frame and never a whole substep at once.
+      for (std::size_t i = 0; i < steps.size(); ++i)
+        EXPECT_LE(steps[i], 1.6 * largest / slowness) << slowness << ": step " << i;
+    }
+}
+
 }  // namespace

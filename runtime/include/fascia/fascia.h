@@ -216,7 +216,8 @@ FASCIA_API void fascia_face_release(fascia_face* face);
 FASCIA_API float* fascia_face_values(fascia_face* face);
 
 /* Sets a value by name, case-insensitive: a channel, "set:member" such as "arkit:jawOpen" or "au:12", or a
- * member's bare name when no channel and no earlier set has it. A member's value stays until it is set again,
+ * member's bare name when no channel and no earlier set has it; other spellings (mouthSmile_L) and other
+ * programs' names (viseme_PP, Joy) are known too. A member's value stays until it is set again,
  * and adds to the channels it maps onto. */
 FASCIA_API fascia_result fascia_face_set(fascia_face* face, const char* name, float value);
 
@@ -317,13 +318,26 @@ FASCIA_API fascia_result fascia_face_jaw(const fascia_face* face, float matrix[1
 /* --- Curves
  * ------------------------------------------------------------------------------------------------------ */
 
-/* Loads named values over time from the bytes of a file, whose kind is found from its content:
- *   CSV with a `time` column in seconds and one column a name;
- *   Live Link Face CSV (Timecode, BlendShapeCount, EyeBlinkLeft, ...), read by its header, 60 frames a
- * second; JSON {"fps": 60, "channels": {NAME: [...]}} or {NAME: {"times": [...], "values": [...],
- * "interpolation": "linear" | "step" | "cubic"}}; glTF binary whose animations point at FASCIA_actuation
- * channels (KHR_animation_pointer). */
+/* Loads named values over time from the bytes of a file, whose kind is found from its content (docs/curves.md
+ * lists them): tables of text with a column of times or timecodes (Live Link Face, OpenFace, Audio2Face, any
+ * CSV), JSON {"fps": 60, "channels": {NAME: [...]}} or {NAME: {"times": [...], "values": [...],
+ * "interpolation": "linear" | "step" | "cubic"}} or as capture programs write it, and glTF binary whose
+ * animations point at FASCIA_actuation channels (KHR_animation_pointer) or move named morph targets.
+ * Time counts from the first key. */
 FASCIA_API fascia_result fascia_curves_load(const void* bytes, size_t size, fascia_curves** curves);
+
+/* What a file of curves does not say, or says wrongly. */
+typedef struct fascia_curves_options {
+  uint32_t struct_size;
+  uint32_t reserved;
+  double
+      frames_per_second; /* of rows, frames and timecodes, instead of the file's own; 0: as the file says */
+  double time_unit;      /* seconds in one unit of the file's times; 0: as the file says */
+} fascia_curves_options;
+
+/* The same with options; NULL for none. */
+FASCIA_API fascia_result fascia_curves_load_as(const void* bytes, size_t size,
+                                               const fascia_curves_options* options, fascia_curves** curves);
 FASCIA_API void fascia_curves_release(fascia_curves* curves);
 
 typedef struct fascia_curves_info {
@@ -331,6 +345,11 @@ typedef struct fascia_curves_info {
   uint32_t count;           /* curves */
   const char* const* names; /* count */
   double duration;          /* seconds: time of the last key */
+  double start;             /* seconds: where the file's own time stood at its first key */
+  double frames_per_second; /* of the file's rows, where it says; else 0 */
+  uint32_t note_count;
+  uint32_t has_head;        /* 1 when curves turn the head, see fascia_curves_head */
+  const char* const* notes; /* note_count sentences: how the file was taken, and what was mended */
 } fascia_curves_info;
 FASCIA_API fascia_result fascia_curves_get_info(const fascia_curves* curves, fascia_curves_info* info);
 
@@ -339,8 +358,13 @@ FASCIA_API fascia_result fascia_curves_get_info(const fascia_curves* curves, fas
 FASCIA_API fascia_result fascia_curves_match(const fascia_curves* curves, const fascia_asset* asset,
                                              uint32_t* count, uint8_t* matched);
 
+/* How the head is turned at `seconds`, which is no channel of the rig: a quaternion (x, y, z, w) in the rig's
+ * axes, yaw about +Y, then pitch about +X, then roll about +Z. The identity where no curve turns it. */
+FASCIA_API fascia_result fascia_curves_head(const fascia_curves* curves, double seconds, float quaternion[4]);
+
 /* Adds the curves' values at `seconds`, times `weight`, to what the face's next pose or step uses. Several
- * curves may be applied to one frame: they add up, and the sum is clamped to each channel's range. Before the
+ * curves may be applied to one frame: they add up, and the sum is clamped to each channel's range; captured
+ * rotations of the eyes take their channels from everything else. Before the
  * first key and after the last their values hold. Curves the rig has no name for are left out. */
 FASCIA_API fascia_result fascia_curves_apply(const fascia_curves* curves, double seconds, float weight,
                                              fascia_face* face);

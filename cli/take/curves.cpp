@@ -1,0 +1,65 @@
+#include "cli/take/curves.h"
+
+#include <algorithm>
+
+#include "formats/scene.h"
+#include "geometry/error.h"
+
+namespace fascia::cli {
+
+Curves::Curves(const std::filesystem::path& path, double frames_per_second, double time_unit) {
+  const std::vector<uint8_t> bytes = formats::read_bytes(path);
+  const fascia_curves_options options = {sizeof options, 0, frames_per_second, time_unit};
+  fascia_curves* curves = nullptr;
+  check(fascia_curves_load_as(bytes.data(), bytes.size(), &options, &curves), "'" + path.string() + "'");
+  curves_.reset(curves);
+  info_.struct_size = sizeof info_;
+  check(fascia_curves_get_info(curves, &info_), "'" + path.string() + "'");
+  names_.assign(info_.names, info_.names + info_.count);
+}
+
+std::vector<std::string> Curves::unmatched(const Face& face) const {
+  std::vector<uint8_t> matched(names_.size());
+  uint32_t count = 0;
+  check(fascia_curves_match(curves_.get(), face.asset(), &count, matched.data()), "curves");
+  std::vector<std::string> names;
+  for (size_t i = 0; i < names_.size(); ++i)
+    if (!matched[i]) names.push_back(names_[i]);
+  return names;
+}
+
+void Curves::apply(double seconds, const Face& face) const {
+  check(fascia_curves_apply(curves_.get(), seconds, 1.0F, face.handle()), "curves");
+}
+
+std::array<float, 4> Curves::head(double seconds) const {
+  std::array<float, 4> quaternion = {};
+  check(fascia_curves_head(curves_.get(), seconds, quaternion.data()), "curves");
+  return quaternion;
+}
+
+MatchedNames match(const Common& common, const Curves& curves, const Face& face,
+                   const std::filesystem::path& path) {
+  MatchedNames names;
+  names.unmatched = curves.unmatched(face);
+  for (const std::string& name : curves.names())
+    if (std::find(names.unmatched.begin(), names.unmatched.end(), name) == names.unmatched.end())
+      names.matched.push_back(name);
+  for (const std::string& note : curves.notes())
+    common.warn("'" + path.filename().string() + "': " + note);
+  if (names.matched.empty())
+    throw Error("'" + path.string() + "': none of its " + std::to_string(curves.names().size()) +
+                " curves has a name that the rig knows; 'fascia info --channels' lists the rig's names, "
+                "'fascia info --names' those of other programs");
+  if (!names.unmatched.empty()) {
+    std::string list;
+    for (size_t i = 0; i < names.unmatched.size() && i < 6; ++i)
+      list += (i > 0 ? ", " : "") + names.unmatched[i];
+    if (names.unmatched.size() > 6) list += " and " + std::to_string(names.unmatched.size() - 6) + " more";
+    common.warn(std::to_string(names.unmatched.size()) + " of " + std::to_string(curves.names().size()) +
+                " curves drive nothing in the rig: " + list);
+  }
+  return names;
+}
+
+}  // namespace fascia::cli

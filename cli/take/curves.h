@@ -1,0 +1,49 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/common.h"
+#include "cli/posing.h"
+
+namespace fascia::cli {
+
+/// Curves loaded from a file.
+class Curves {
+ public:
+  /// `frames_per_second` and `time_unit` as in fascia_curves_options; 0 as the file says.
+  explicit Curves(const std::filesystem::path& path, double frames_per_second = 0.0, double time_unit = 0.0);
+
+  double duration() const { return info_.duration; }
+  double start() const { return info_.start; }
+  bool turns_head() const { return info_.has_head != 0; }
+  const std::vector<std::string>& names() const { return names_; }
+  /// How the file was taken and what was mended, a sentence each.
+  std::vector<std::string> notes() const { return {info_.notes, info_.notes + info_.note_count}; }
+  /// Names that the face's rig has nothing for.
+  std::vector<std::string> unmatched(const Face& face) const;
+  void apply(double seconds, const Face& face) const;
+  /// How the head is turned: a quaternion, x y z w.
+  std::array<float, 4> head(double seconds) const;
+
+ private:
+  struct Release {
+    void operator()(fascia_curves* curves) const { fascia_curves_release(curves); }
+  };
+  std::unique_ptr<fascia_curves, Release> curves_;
+  fascia_curves_info info_ = {};
+  std::vector<std::string> names_;
+};
+
+/// What of the curves' names the rig knows. Says on stderr how the file was taken, and sums up the names that
+/// drive nothing in one line. Throws fascia::Error when none drives anything.
+struct MatchedNames {
+  std::vector<std::string> matched, unmatched;
+};
+MatchedNames match(const Common& common, const Curves& curves, const Face& face,
+                   const std::filesystem::path& path);
+
+}  // namespace fascia::cli

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace fascia::cli {
+
+/// The motion of a mesh over a take of any length, kept as few directions and each frame's coefficients on
+/// them.
+///
+/// Frames come one after the other and are not kept. Each is projected on the directions known so far; where
+/// that leaves a vertex more than the tolerance off, what is left becomes a new direction (a greedy reduced
+/// basis; Haasdonk 2013, Convergence rates of the POD-greedy method). Both are done at a sample of the
+/// vertices only, on which the directions are orthonormal, and carried over to all: the skin follows a
+/// lattice with far fewer degrees of freedom than the sample has (gappy POD; Everson & Sirovich 1995). What
+/// that leaves at the other vertices is for the caller to measure.
+class MotionSpace {
+ public:
+  struct Options {
+    double tolerance = 0.0;          ///< at a sampled vertex, in the frames' unit
+    size_t sampled_vertices = 2500;  ///< about, of those that move
+    size_t most_bytes =
+        96 * 1000000;  ///< of directions; beyond, the least are given up and the tolerance grows
+    size_t most_directions = 256;
+  };
+
+  /// `vertices` of the mesh; frames have three numbers for each.
+  MotionSpace(size_t vertices, const Options& options);
+
+  /// Takes the next frame: displacements of all vertices from rest.
+  void add(std::span<const float> displacement);
+
+  /// Ends the take: every frame is in.
+  void finish();
+
+  size_t frames() const { return frames_; }
+  /// What the frames were followed to: the options' tolerance, or more.
+  double tolerance() const { return options_.tolerance; }
+  /// The vertices that move at all, in the order of `directions`.
+  const std::vector<uint32_t>& vertices() const { return moving_; }
+  /// #directions x #frames.
+  const Eigen::MatrixXf& coefficients() const { return coefficients_; }
+  /// 3 #sampled x #directions: the directions at the sampled vertices, with orthonormal columns.
+  const Eigen::MatrixXf& sampled_directions() const { return sampled_directions_; }
+  /// 3 #vertices() x #columns: the directions mixed by `mix` (#directions x #columns).
+  Eigen::MatrixXf mixed(const Eigen::MatrixXf& mix) const;
+
+ private:
+  void take_block();
+  void find_moving();
+  void extend(Eigen::Index column);
+  void give_up_the_least();
+  void copy_rows(Eigen::Index row, Eigen::Index count, Eigen::MatrixXf& to) const;
+  Eigen::VectorXf whole(std::span<const float> frame) const;
+
+  Options options_;
+  size_t vertex_count_ = 0, stride_ = 0, frames_ = 0;
+  std::vector<uint8_t> moves_;             ///< by vertex
+  std::vector<uint32_t> moving_;           ///< in the order they were seen to move
+  std::vector<uint32_t> sampled_;          ///< vertices
+  std::vector<std::vector<float>> block_;  ///< whole frames not yet taken in
+  size_t waiting_ = 0;
+  std::vector<Eigen::VectorXf> directions_;  ///< at moving vertices; short ones end in zeros
+  Eigen::MatrixXf sampled_directions_;
+  Eigen::MatrixXf coefficients_;  ///< room for more columns than frames while frames come
+  Eigen::MatrixXf sampled_frames_, sampled_left_;
+};
+
+}  // namespace fascia::cli

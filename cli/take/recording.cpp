@@ -1,0 +1,148 @@
+#include "cli/take/recording.h"
+
+#include <algorithm>
+#include <map>
+
+#include "cli/take/keyframes.h"
+
+namespace fascia::cli {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXf;
+
+// Of what the written motion may be off: the part that directions, components and linear weights may each
+// take. Together they stay below the whole, as they are hardly ever all at their worst in one place.
+constexpr double share_of_directions = 0.2, share_of_components = 0.75, share_of_keys = 0.2;
+
+/// Every n-th 3-vector of the shapes' rows, some `most` of them.
+MatrixXf sampled_rows(const MatrixXf& shapes, Index most) {
+  const Index vertices = shapes.rows() / 3, stride = std::max<Index>(1, vertices / most);
+  const Index count = (vertices + stride - 1) / stride;
+  MatrixXf rows(3 * count, shapes.cols());
+  for (Index v = 0; v < count; ++v)
+    rows.middleRows<3>(3 * v) = shapes.middleRows<3>(3 * v * stride);
+  return rows;
+}
+
+/// Measures one mesh, some frames at a time.
+class Measurement {
+ public:
+  explicit Measurement(MeshMotion& motion)
+      : motion_(motion),
+        weights_(between_keys(motion.components.weights, motion.keys)),
+        left_(motion.components.shapes.rows(), block_frames) {}
+
+  void add(const std::vector<float>& frame) {
+    for (size_t i = 0; i < motion_.vertices.size(); ++i)
+      for (size_t axis = 0; axis < 3; ++axis)
+        left_(static_cast<Index>(3 * i + axis), waiting_) = frame[3 * motion_.vertices[i] + axis];
+    if (++waiting_ == block_frames) finish();
+  }
+
+  void finish() {
+    auto left = left_.leftCols(waiting_);
+    left.noalias() -= motion_.components.shapes * weights_.middleCols(done_, waiting_);
+    for (Index f = 0; f < waiting_; ++f)
+      for (Index i = 0; i + 2 < left.rows(); i += 3) {
+        const auto length = static_cast<double>(left.col(f).segment<3>(i).norm());
+        if (length <= motion_.largest_error) continue;
+        motion_.largest_error = length;
+        motion_.largest_error_frame = static_cast<size_t>(done_ + f);
+      }
+    done_ += waiting_;
+    waiting_ = 0;
+  }
+
+ private:
+  static constexpr Index block_frames = 16;
+  MeshMotion& motion_;
+  MatrixXf weights_, left_;
+  Index waiting_ = 0, done_ = 0;
+};
+
+}  // namespace
+
+std::vector<MeshOfFile> meshes_of_file(const Face& face) {
+  std::map<uint32_t, MeshOfFile> by_mesh;
+  for (size_t m = 0; m < face.meshes().size(); ++m) {
+    MeshOfFile& mesh = by_mesh[face.meshes()[m].mesh];
+    mesh.mesh = face.meshes()[m].mesh;
+    mesh.parts.push_back(m);
+    mesh.firsts.push_back(mesh.vertices);
+    mesh.vertices += face.meshes()[m].vertex_count;
+  }
+  std::vector<MeshOfFile> meshes;
+  for (auto& [number, mesh] : by_mesh)
+    meshes.push_back(std::move(mesh));
+  return meshes;
+}
+
+void displacement(const Face& face, const MeshOfFile& mesh, std::vector<float>& to) {
+  to.resize(3 * mesh.vertices);
+  for (size_t p = 0; p < mesh.parts.size(); ++p) {
+    const std::span<const float> now = face.positions(mesh.parts[p]), rest = face.rest(mesh.parts[p]);
+    float* const out = to.data() + 3 * mesh.firsts[p];
+    for (size_t i = 0; i < now.size(); ++i)
+      out[i] = now[i] - rest[i];
+  }
+}
+
+Recording record(const Common& common, const Take& take, Face& face, const RecordingOptions& options) {
+  Recording recording;
+  const std::vector<MeshOfFile> meshes = meshes_of_file(face);
+  std::vector<MotionSpace> spaces;
+  for (const MeshOfFile& mesh : meshes) {
+    MotionSpace::Options space;
+    space.tolerance = share_of_directions * options.tolerance;
+    space.most_directions = std::max(space.most_directions, 2 * options.most_targets);
+    spaces.emplace_back(mesh.vertices, space);
+  }
+  const auto channels = static_cast<Index>(face.channel_names().size());
+  recording.values.resize(channels, static_cast<Index>(take.frames()));
+  std::vector<float> frame;
+  {
+    Progress progress(common, "playing frame", take.frames());
+    recording.figures = perform(take, face, progress, [&](size_t f) {
+      for (size_t m = 0; m < meshes.size(); ++m) {
+        displacement(face, meshes[m], frame);
+        spaces[m].add(frame);
+      }
+      recording.values.col(static_cast<Index>(f)) =
+          Eigen::Map<const Eigen::VectorXf>(fascia_face_effective_values(face.handle()), channels);
+    });
+  }
+  for (size_t m = 0; m < meshes.size(); ++m) {
+    spaces[m].finish();
+    if (spaces[m].vertices().empty()) continue;
+    common.progress("finding the principal components of mesh " + std::to_string(meshes[m].mesh));
+    MeshMotion motion;
+    motion.mesh = meshes[m];
+    motion.vertices = spaces[m].vertices();
+    motion.components = components(spaces[m], options.most_targets, share_of_components * options.tolerance);
+    motion.keys = keys_of_shapes(motion.components.weights, sampled_rows(motion.components.shapes, 600),
+                                 share_of_keys * options.tolerance);
+    recording.meshes.push_back(std::move(motion));
+  }
+  return recording;
+}
+
+void measure(const Common& common, const Take& take, Face& face, Recording& recording) {
+  std::vector<Measurement> measurements;
+  measurements.reserve(recording.meshes.size());
+  for (MeshMotion& motion : recording.meshes)
+    measurements.emplace_back(motion);
+  std::vector<float> frame;
+  Progress progress(common, "measuring frame", take.frames());
+  perform(take, face, progress, [&](size_t) {
+    for (size_t m = 0; m < measurements.size(); ++m) {
+      displacement(face, recording.meshes[m].mesh, frame);
+      measurements[m].add(frame);
+    }
+  });
+  for (Measurement& measurement : measurements)
+    measurement.finish();
+}
+
+}  // namespace fascia::cli

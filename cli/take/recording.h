@@ -1,0 +1,54 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/take/components.h"
+#include "cli/take/performance.h"
+
+namespace fascia::cli {
+
+/// A mesh of the file with all its primitives that the face moves.
+struct MeshOfFile {
+  uint32_t mesh = 0;
+  std::vector<size_t> parts;   ///< in Face::meshes
+  std::vector<size_t> firsts;  ///< of each part: number of its first vertex
+  size_t vertices = 0;
+};
+
+std::vector<MeshOfFile> meshes_of_file(const Face& face);
+
+/// Displacement of every vertex of the mesh from rest, three numbers each.
+void displacement(const Face& face, const MeshOfFile& mesh, std::vector<float>& to);
+
+/// The motion of one mesh of the file, ready to be written.
+struct MeshMotion {
+  MeshOfFile mesh;
+  std::vector<uint32_t> vertices;  ///< those that move, in the order of the shapes' rows
+  Components components;
+  std::vector<size_t> keys;    ///< frames that have weights; between them they are linear
+  double largest_error = 0.0;  ///< of what is written, at any vertex of any frame, in the mesh's unit
+  size_t largest_error_frame = 0;
+};
+
+/// What a first run through a take leaves.
+struct Recording {
+  std::vector<MeshMotion> meshes;  ///< those that move
+  Eigen::MatrixXf values;          ///< #channels x #frames
+  PerformanceFigures figures;
+};
+
+struct RecordingOptions {
+  size_t most_targets = 64;
+  double tolerance = 0.0;  ///< in the meshes' unit: what the written motion may be off
+};
+
+/// Runs through the take on a fresh face and keeps of it what can be written. Memory grows by the channels
+/// and the directions of motion, not by vertices times frames.
+Recording record(const Common& common, const Take& take, Face& face, const RecordingOptions& options);
+
+/// Runs through the take again on another fresh face and measures how far what is written is off, at every
+/// vertex of every frame.
+void measure(const Common& common, const Take& take, Face& face, Recording& recording);
+
+}  // namespace fascia::cli

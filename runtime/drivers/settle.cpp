@@ -1,0 +1,129 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "geometry/error.h"
+#include "runtime/drivers/aliases.h"
+#include "runtime/drivers/curves.h"
+
+namespace fascia::runtime {
+namespace {
+
+constexpr double longest_take = 6 * 3600.0;  // seconds
+
+std::string rounded(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+float peak(const Curve& curve) {
+  float most = 0.0F;
+  for (const float value : curve.values)
+    most = std::max(most, std::abs(value));
+  return most;
+}
+
+void scale(Curve& curve, float by) {
+  for (auto* list : {&curve.values, &curve.tangents_in, &curve.tangents_out})
+    for (float& value : *list)
+      value *= by;
+}
+
+/// The first of a few names, and how many more there are.
+std::string some(const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size() && i < 3; ++i)
+    text += (i > 0 ? ", " : "") + names[i];
+  return names.size() > 3 ? text + " and " + std::to_string(names.size() - 3) + " more" : text;
+}
+
+void start_at_zero(Curves& curves) {
+  double first = std::numeric_limits<double>::infinity(), last = -first;
+  for (const Curve& curve : curves.curves) {
+    if (curve.times.empty()) continue;
+    first = std::min(first, curve.times.front());
+    last = std::max(last, curve.times.back());
+  }
+  if (!std::isfinite(first)) return;
+  if (last - first > longest_take)
+    throw Error("curves: they last " + rounded((last - first) / 3600.0) +
+                " hours, and a take at most 6: if its times are not seconds, say what they are (`time_ms`)");
+  curves.start += first;
+  if (first != 0.0)
+    for (Curve& curve : curves.curves)
+      for (double& time : curve.times)
+        time -= first;
+}
+
+/// OpenFace gives action units as intensity and as presence: the first says more.
+void prefer_intensity(Curves& curves) {
+  std::map<std::string, bool> has_intensity;
+  for (const Curve& curve : curves.curves)
+    if (const Alias* alias = find_alias(curve.name); alias && alias->measure == Measure::intensity)
+      has_intensity[alias->targets[0].first] = true;
+  std::erase_if(curves.curves, [&](const Curve& curve) {
+    const Alias* alias = find_alias(curve.name);
+    return alias && alias->measure == Measure::presence && has_intensity[alias->targets[0].first];
+  });
+}
+
+/// Shares beyond 1: action units from 0 to 5, percent, or a value that will be clamped.
+void scale_to_shares(Curves& curves) {
+  std::vector<Curve*> shares, units;
+  for (Curve& curve : curves.curves) {
+    const Alias* alias = find_alias(curve.name);
+    const Measure measure = alias ? alias->measure : Measure::share;
+    if (measure == Measure::intensity) scale(curve, 0.2F);
+    if (measure == Measure::share) shares.push_back(&curve);
+    if (measure == Measure::action_unit) units.push_back(&curve);
+  }
+  const auto largest = [](const std::vector<Curve*>& list) {
+    float most = 0.0F;
+    for (const Curve* curve : list)
+      most = std::max(most, peak(*curve));
+    return most;
+  };
+  const float unit_peak = largest(units);
+  if (unit_peak > 1.5F && unit_peak <= 5.5F) {
+    curves.notes.push_back("action units reach " + rounded(unit_peak) + ": taken as intensities from 0 to 5");
+    for (Curve* curve : units)
+      scale(*curve, 0.2F);
+  } else {
+    shares.insert(shares.end(), units.begin(), units.end());
+  }
+  std::size_t beyond = 0, active = 0;
+  for (const Curve* curve : shares) {
+    active += peak(*curve) > 0.02F;
+    beyond += peak(*curve) > 1.5F;
+  }
+  const float most = largest(shares);
+  if (most > 2.0F && most <= 101.0F && 2 * beyond >= active) {
+    curves.notes.push_back("values reach " + rounded(most) + ": taken as percent");
+    for (Curve* curve : shares)
+      scale(*curve, 0.01F);
+    return;
+  }
+  std::vector<std::string> names;
+  for (const Curve* curve : shares)
+    if (peak(*curve) > 1.001F) names.push_back(curve->name);
+  if (!names.empty())
+    curves.notes.push_back("values beyond 1, up to " + rounded(most) +
+                           ", are cut off at the channels' ends: " + some(names));
+}
+
+}  // namespace
+
+void settle(Curves& curves) {
+  std::erase_if(curves.curves, [](const Curve& curve) {
+    const Alias* alias = find_alias(curve.name);
+    return curve.times.empty() || (alias && alias->measure == Measure::none);
+  });
+  if (curves.curves.empty()) throw Error("curves: the file has no column of values");
+  prefer_intensity(curves);
+  start_at_zero(curves);
+  scale_to_shares(curves);
+}
+
+}  // namespace fascia::runtime

@@ -1,0 +1,187 @@
+// A take of any length as few shapes: motions whose rank is known, curves whose corners are known.
+#include <gtest/gtest.h>
+
+#include <Eigen/SVD>
+#include <cmath>
+#include <random>
+
+#include "cli/take/components.h"
+#include "cli/take/keyframes.h"
+
+namespace fascia::cli {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXf;
+
+/// Frames of `rank` smooth shapes on a strip of vertices, of which the last quarter stands still; the shapes'
+/// strengths fall from 10 mm by halves.
+class Strip {
+ public:
+  Strip(Index vertices, Index rank) : shapes_(MatrixXf::Zero(3 * vertices, rank)) {
+    for (Index k = 0; k < rank; ++k)
+      for (Index v = 0; v < vertices - vertices / 4; ++v)
+        for (Index axis = 0; axis < 3; ++axis)
+          shapes_(3 * v + axis, k) = 0.01F * std::pow(0.5F, static_cast<float>(k)) *
+                                     std::cos(0.1F * static_cast<float>((k + 1) * v + 7 * axis * (k + 2)) /
+                                              std::sqrt(static_cast<float>(rank)));
+  }
+  Eigen::VectorXf frame(size_t f) const {
+    Eigen::VectorXf weights(shapes_.cols());
+    for (Index k = 0; k < weights.size(); ++k)
+      weights[k] = std::sin(0.013F * static_cast<float>(k + 1) * static_cast<float>(f));
+    return shapes_ * weights;
+  }
+
+ private:
+  MatrixXf shapes_;
+};
+
+MotionSpace space_of(const Strip& strip, size_t vertices, size_t frames, MotionSpace::Options options) {
+  MotionSpace space(vertices, options);
+  for (size_t f = 0; f < frames; ++f) {
+    const Eigen::VectorXf frame = strip.frame(f);
+    space.add({frame.data(), static_cast<size_t>(frame.size())});
+  }
+  space.finish();
+  return space;
+}
+
+/// The largest error of the components at any vertex of any frame.
+double error_of(const MotionSpace& space, const Components& parts, const Strip& strip, size_t frames) {
+  double largest = 0.0;
+  for (size_t f = 0; f < frames; ++f) {
+    const Eigen::VectorXf frame = strip.frame(f),
+                          made = parts.shapes * parts.weights.col(static_cast<Index>(f));
+    for (size_t i = 0; i < space.vertices().size(); ++i)
+      largest = std::max(largest, static_cast<double>((frame.segment<3>(3 * space.vertices()[i]) -
+                                                       made.segment<3>(static_cast<Index>(3 * i)))
+                                                          .norm()));
+  }
+  return largest;
+}
+
+TEST(Take, AMotionOfKnownRankIsFoundWhateverItsLength) {
+  for (const size_t frames : {1UL, 5UL, 40UL, 3000UL}) {
+    const Strip strip(400, 6);
+    MotionSpace::Options options;
+    options.tolerance = 1e-6;
+    options.sampled_vertices = 100;
+    const MotionSpace space = space_of(strip, 400, frames, options);
+    EXPECT_EQ(space.frames(), frames);
+    EXPECT_EQ(space.vertices().size(), frames > 1 ? 300U : 0U);  // the first frame is the rest
+    EXPECT_LE(space.coefficients().rows(), 8);
+    const Components parts = components(space, 64, 1e-5);
+    EXPECT_LE(parts.weights.rows(), 6);
+    EXPECT_LE(error_of(space, parts, strip, frames), 2e-5) << frames;
+    EXPECT_TRUE((parts.weights.array().abs() <= 1.0F + 1e-5F).all());
+  }
+}
+
+TEST(Take, VerticesThatBeginToMoveLateAreTakenIn) {
+  MotionSpace::Options options;
+  options.tolerance = 1e-6;
+  MotionSpace space(40, options);
+  std::vector<float> frame(120, 0.0F);
+  for (int f = 0; f < 100; ++f) {
+    frame[0] = 0.001F * static_cast<float>(f % 7);
+    if (f >= 70) frame[3 * 39 + 1] = 0.002F * static_cast<float>(f % 5);
+    space.add(frame);
+  }
+  space.finish();
+  ASSERT_EQ(space.vertices(), (std::vector<uint32_t>{0, 39}));
+  const Components parts = components(space, 64, 1e-6);
+  const MatrixXf made = parts.shapes * parts.weights;
+  EXPECT_NEAR(made(0, 75), 0.001F * (75 % 7), 2e-6);
+  EXPECT_NEAR(made(4, 74), 0.002F * (74 % 5), 2e-6);
+  EXPECT_NEAR(made(4, 69), 0.0F, 2e-6);
+}
+
+TEST(Take, TooFewComponentsAreChosenForTheLargestError) {
+  const Strip strip(400, 12);
+  MotionSpace::Options options;
+  options.tolerance = 1e-7;
+  const MotionSpace space = space_of(strip, 400, 900, options);
+  const Components all = components(space, 64, 5e-6);
+  EXPECT_EQ(all.wanted, static_cast<size_t>(all.weights.rows()));
+  double before = 1.0;
+  for (const size_t limit : {1UL, 2UL, 4UL, 6UL}) {
+    const Components parts = components(space, limit, 5e-6);
+    EXPECT_EQ(parts.weights.rows(), static_cast<Index>(limit));
+    EXPECT_EQ(parts.wanted, all.wanted);
+    // The plain principal components of the same number, for comparison.
+    const Eigen::JacobiSVD<MatrixXf> svd(space.coefficients(), Eigen::ComputeThinU);
+    const MatrixXf turn = svd.matrixU().leftCols(static_cast<Index>(limit));
+    Components plain;
+    plain.shapes = space.mixed(turn);
+    plain.weights = turn.transpose() * space.coefficients();
+    const double error = error_of(space, parts, strip, 900);
+    EXPECT_LE(error, 1.01 * error_of(space, plain, strip, 900)) << limit;
+    EXPECT_LT(error, before);
+    before = error;
+  }
+}
+
+TEST(Take, FewDirectionsAreKeptWhereMemoryIsShort) {
+  std::mt19937 random(7);
+  std::normal_distribution<float> normal;
+  MotionSpace::Options options;
+  options.tolerance = 1e-7;
+  options.most_directions = 128;
+  MotionSpace space(300, options);
+  MatrixXf basis = MatrixXf::NullaryExpr(
+      900, 160, [&](Index, Index k) { return normal(random) * std::pow(0.9F, static_cast<float>(k)); });
+  double lost = 0.0;
+  MatrixXf frames(900, 700);
+  for (Index f = 0; f < 700; ++f) {
+    frames.col(f) = basis * Eigen::VectorXf::NullaryExpr(160, [&](Index) { return normal(random); });
+    space.add({frames.col(f).data(), 900});
+  }
+  space.finish();
+  EXPECT_LE(space.coefficients().rows(), 128);
+  const MatrixXf made =
+      space.mixed(MatrixXf::Identity(space.coefficients().rows(), space.coefficients().rows())) *
+      space.coefficients();
+  for (size_t i = 0; i < space.vertices().size(); ++i)
+    lost =
+        std::max(lost, static_cast<double>((made.middleRows<3>(static_cast<Index>(3 * i)) -
+                                            frames.middleRows<3>(3 * static_cast<Index>(space.vertices()[i])))
+                                               .cwiseAbs()
+                                               .maxCoeff()));
+  EXPECT_LT(lost, 20.0 * std::pow(0.9, 96));  // what three quarters of the directions cannot hold
+}
+
+TEST(Keys, AreTheCornersOfStraightPieces) {
+  MatrixXf values(2, 101);
+  for (Index f = 0; f <= 100; ++f) {
+    const auto t = static_cast<float>(f);
+    values(0, f) = t < 30 ? t : t < 60 ? 30.0F : 90.0F - t;
+    values(1, f) = t < 80 ? 0.0F : t - 80;
+  }
+  const std::vector<float> tolerances = {1e-3F, 1e-3F};
+  EXPECT_EQ(keys_of(values, tolerances), (std::vector<size_t>{0, 30, 60, 80, 100}));
+  EXPECT_EQ(keys_of(values.leftCols(1), tolerances), (std::vector<size_t>{0}));
+  const std::vector<size_t> kept = keys_of(values, tolerances);
+  EXPECT_LE((between_keys(values, kept) - values).cwiseAbs().maxCoeff(), 1e-4F);
+}
+
+TEST(Keys, LeaveShapesWithinTheirTolerance) {
+  const Strip strip(100, 4);
+  MotionSpace::Options options;
+  options.tolerance = 1e-7;
+  const MotionSpace space = space_of(strip, 100, 1000, options);
+  const Components parts = components(space, 64, 1e-6);
+  size_t before = 1000;
+  for (const double tolerance : {1e-5, 1e-4, 1e-3}) {
+    const std::vector<size_t> kept = keys_of_shapes(parts.weights, parts.shapes, tolerance);
+    EXPECT_LT(kept.size(), before);
+    before = kept.size();
+    const MatrixXf off = parts.shapes * (between_keys(parts.weights, kept) - parts.weights);
+    for (Index f = 0; f < off.cols(); ++f)
+      for (Index i = 0; i < off.rows(); i += 3)
+        ASSERT_LE(off.col(f).segment<3>(i).norm(), 1.01 * tolerance);
+  }
+}
+
+}  // namespace
+}  // namespace fascia::cli
