@@ -5,6 +5,7 @@
 
 #include "builder/landmarks/generic_face.h"
 #include "builder/openings/apply.h"
+#include "builder/openings/closed_lids.h"
 #include "builder/openings/eyeball.h"
 #include "builder/openings/fused.h"
 #include "builder/openings/lid_lining.h"
@@ -49,30 +50,15 @@ MeetingLine lid_line(const prepare::PreparedHead& head, const Points& landmarks,
       *head.surface, a, b, face, [](double along) { return bow * (1.0 - along * along); }, search);
 }
 
-/// Whether an eyeball of the head's own stands before its skin where the lids would meet.
-bool shows(const prepare::Eyeball& ball, const spatial::SurfaceQuery& skin, const MeetingLine& line) {
-  const double before = 2.0 * line.half_width;
-  int before_skin = 0, asked = 0;
-  for (const double along : {-0.3, 0.0, 0.3})
-    for (const double up : {0.0, 0.1, 0.2}) {
-      const auto hit =
-          skin.first_hit(line.place(along, 2.0 * up * line.half_width, before), -line.axes.col(2));
-      ++asked;
-      before_skin += !hit || (hit->position - ball.centre).norm() < 0.98 * ball.radius ? 1 : 0;
-    }
-  return 2 * before_skin > asked;
-}
-
 bool has_all(const Points& landmarks, const std::vector<std::string>& names) {
   return std::all_of(names.begin(), names.end(),
                      [&](const std::string& name) { return landmarks.count(name) > 0; });
 }
 
-/// Cuts `head` along `line` when the surface goes on across it; nothing otherwise.
-std::optional<Cut> cut_if_fused(const prepare::PreparedHead& head, const MeetingLine& line, double end,
-                                const std::string& name, OpenedHead& opened) {
+/// Cuts `head` along `line`; nothing, and a warning, where there is no way to.
+std::optional<Cut> cut_head(const prepare::PreparedHead& head, const MeetingLine& line, double end,
+                            const std::string& name, OpenedHead& opened) {
   const Connectivity links = connectivity(head.skin);
-  if (!is_fused(head.skin, links, *head.surface, line)) return std::nullopt;
   Path path = trace(head.skin, links, *head.surface, line, end);
   if (path.nodes.size() < 3) {
     opened.warnings.push_back("the " + name +
@@ -104,6 +90,43 @@ std::vector<int> hole_at(const TriangleMesh& skin, const MeetingLine& line) {
   return {};
 }
 
+bool are_lips_closed(const prepare::PreparedHead& head, const MeetingLine& line, OpenedHead& opened) {
+  if (!is_fused(head.skin, connectivity(head.skin), *head.surface, line)) return false;
+  constexpr double least_bend = 0.15;  // radians in the mean: a furrow that can be seen
+  if (line.clearness > least_bend) return true;
+  opened.warnings.emplace_back(
+      "the mouth is closed and was not parted: there is no furrow where the lips would meet; give its "
+      "corners "
+      "and the stomion in --landmarks where they are elsewhere");
+  return false;
+}
+
+/// Whether both eyes of the head are closed. Lids are left alone when in doubt: who closes one eye only, or
+/// has eyes modelled open in one piece with their lids, keeps them.
+bool are_lids_closed(const prepare::PreparedHead& head, const Points& landmarks, const FaceAxes& face,
+                     OpenedHead& opened) {
+  const Connectivity links = connectivity(head.skin);
+  int fused = 0;
+  std::optional<std::string> doubt;
+  for (const bool left : {true, false}) {
+    const std::string side = left ? "_left" : "_right";
+    if (!has_all(landmarks, {"endocanthion" + side, "exocanthion" + side})) return false;
+    const MeetingLine line = lid_line(head, landmarks, face, left);
+    const std::optional<prepare::Eyeball>& own = left ? head.eye_left : head.eye_right;
+    if (own && eyeball_shows(*own, *head.surface, line)) continue;
+    if (!is_fused(head.skin, links, *head.surface, line)) continue;
+    ++fused;
+    const auto why = doubt_of_closed_lids(*head.surface, line, face);
+    if (why && !doubt) doubt = *why;
+  }
+  if (fused == 0) return false;
+  if (fused == 1 && !doubt) doubt = "only one eye is closed";
+  if (doubt)
+    opened.warnings.push_back("the lids may be closed and were not parted: " + *doubt +
+                              "; part them in the file if they should open");
+  return !doubt;
+}
+
 void open_mouth(prepare::PreparedHead& head, const Points& landmarks, const anatomy::GenericAnatomy& anatomy,
                 const FaceAxes& face, bool is_inside_out, const OpeningOptions& options, OpenedHead& opened) {
   if (!has_all(landmarks, {"cheilion_left", "cheilion_right", "stomion"})) return;
@@ -113,8 +136,9 @@ void open_mouth(prepare::PreparedHead& head, const Points& landmarks, const anat
                                        line, rim, cut.count());
     return apply(cut, lining, head, opened, is_inside_out);
   };
-  if (options.open == "auto")
-    if (const auto cut = cut_if_fused(head, line, lip_end, "mouth", opened)) {
+  const bool is_closed = options.open == "auto" && are_lips_closed(head, line, opened);
+  if (is_closed)
+    if (const auto cut = cut_head(head, line, lip_end, "mouth", opened)) {
       record(
           "mouth", line,
           cut->is_lined ? apply(*cut, {}, head, opened, is_inside_out) : lined(*cut, rim_of(head.skin, *cut)),
@@ -131,16 +155,14 @@ void open_mouth(prepare::PreparedHead& head, const Points& landmarks, const anat
 }
 
 void open_eye(prepare::PreparedHead& head, const Points& landmarks, const anatomy::GenericAnatomy& anatomy,
-              const FaceAxes& face, bool left, bool is_inside_out, const OpeningOptions& options,
-              OpenedHead& opened) {
+              const FaceAxes& face, bool left, bool are_closed, bool is_inside_out,
+              const OpeningOptions& options, OpenedHead& opened) {
   const std::string side = left ? "_left" : "_right", name = "eye" + side;
   if (!has_all(landmarks, {"endocanthion" + side, "exocanthion" + side})) return;
   const MeetingLine line = lid_line(head, landmarks, face, left);
   std::optional<prepare::Eyeball>& own = left ? head.eye_left : head.eye_right;
   const prepare::Eyeball globe = own ? *own : fit_globe(*head.surface, line, face);
-  const auto cut = options.open == "auto" && !(own && shows(*own, *head.surface, line))
-                       ? cut_if_fused(head, line, lid_end, name, opened)
-                       : std::nullopt;
+  const auto cut = are_closed ? cut_head(head, line, lid_end, name, opened) : std::nullopt;
   if (cut) {
     const Lining lining =
         cut->is_lined ? Lining() : lid_lining(rim_of(head.skin, *cut), cut->count(), line, globe);
@@ -197,8 +219,9 @@ OpenedHead open_head(const formats::Scene& scene, prepare::PreparedHead& head, c
     opened.extensions.push_back(formats::unchanged(mesh));
   const FaceAxes face = face_axes(anatomy, landmarks);
   open_mouth(head, landmarks, anatomy, face, is_inside_out, options, opened);
+  const bool are_closed = options.open == "auto" && are_lids_closed(head, landmarks, face, opened);
   for (const bool left : {true, false})
-    open_eye(head, landmarks, anatomy, face, left, is_inside_out, options, opened);
+    open_eye(head, landmarks, anatomy, face, left, are_closed, is_inside_out, options, opened);
   return opened;
 }
 
