@@ -84,6 +84,13 @@ Json report_json(const rigging::BuildReport& report) {
     json["input"]["parts"].push_back({{"mesh", part.mesh}, {"part", part.part}, {"vertices", part.vertices}});
   for (const auto& [side, eye] : {std::pair("left", &report.eye_left), std::pair("right", &report.eye_right)})
     if (*eye) json["input"]["eyes"][side] = eye_json(**eye);
+  json["openings"] = {
+      {"parted", Json::array()}, {"appended_vertices", report.appended_vertices}, {"added", report.added}};
+  for (const openings::Parted& parted : report.parted)
+    json["openings"]["parted"].push_back({{"name", parted.name},
+                                          {"vertices", parted.vertices},
+                                          {"width_mm", parted.width_mm},
+                                          {"clearness", parted.clearness}});
   json["stages"] = Json::array();
   for (const rigging::StageTime& stage : report.stages)
     json["stages"].push_back({{"name", stage.name}, {"seconds", stage.seconds}});
@@ -181,8 +188,8 @@ rigging::BuildReport build_file(const Common& common, const BuildRequest& reques
   options.progress = [&](const std::string& stage) { common.progress(stage); };
   rigging::BuildResult result = rigging::build_rig(scene, landmarks, anatomy, options);
   if (!request.anatomy.empty()) result.report.corrected = anatomy::corrected_files(request.anatomy);
-  const std::vector<uint8_t> bytes =
-      rig::write(rigging::gltf_source(scene, result.report.input_to_metres), result.rig);
+  const std::vector<uint8_t> bytes = rig::write(
+      rigging::gltf_source(result.opened.value_or(scene), result.report.input_to_metres), result.rig);
   formats::write_bytes(request.output, bytes.data(), bytes.size());
   Mat4 to_origin = Mat4::Identity();
   to_origin.topRightCorner<3, 1>() = -scene.offset;
@@ -225,6 +232,17 @@ void add_build(CLI::App& app, Common& common) {
                     "Open under the nose, the default, or not");
   command->add_option("--detail", request->options.detail, "Finest lattice")
       ->check(CLI::IsMember({"low", "medium", "high"}));
+  command
+      ->add_option("--open", request->options.openings.open,
+                   "Part lips and lids that are one closed surface: auto, the default, or never")
+      ->check(CLI::IsMember({"auto", "never"}));
+  command
+      ->add_option(
+          "--add", request->options.openings.add,
+          "Generic parts to fit to a head without: none, or any of mouth,teeth,tongue,eyes; auto, the "
+          "default: what lies behind parted lips and lids")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"auto", "none", "mouth", "teeth", "tongue", "eyes"}));
   command->add_option("--edits", request->edits,
                       "Your own landmarks, regions, strengths and muscles (.json), kept over every rebuild");
   command->add_option("--muscles", request->muscles,
