@@ -1,10 +1,12 @@
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <map>
 #include <memory>
 
 #include "builder/rigging/build_rig.h"
 #include "builder/rigging/gltf_source.h"
 #include "cli/common.h"
+#include "cli/quick_check.h"
 #include "cli/report.h"
 #include "cli/rig_build.h"
 #include "formats/scene.h"
@@ -84,6 +86,13 @@ Json report_json(const rigging::BuildReport& report) {
     json["input"]["parts"].push_back({{"mesh", part.mesh}, {"part", part.part}, {"vertices", part.vertices}});
   for (const auto& [side, eye] : {std::pair("left", &report.eye_left), std::pair("right", &report.eye_right)})
     if (*eye) json["input"]["eyes"][side] = eye_json(**eye);
+  json["openings"] = {
+      {"parted", Json::array()}, {"appended_vertices", report.appended_vertices}, {"added", report.added}};
+  for (const openings::Parted& parted : report.parted)
+    json["openings"]["parted"].push_back({{"name", parted.name},
+                                          {"vertices", parted.vertices},
+                                          {"width_mm", parted.width_mm},
+                                          {"clearness", parted.clearness}});
   json["stages"] = Json::array();
   for (const rigging::StageTime& stage : report.stages)
     json["stages"].push_back({{"name", stage.name}, {"seconds", stage.seconds}});
@@ -163,7 +172,7 @@ void add_anatomy_option(CLI::App& command, std::filesystem::path& directory) {
                      "ones, the default for all");
 }
 
-rigging::BuildReport build_file(const Common& common, const BuildRequest& request) {
+rigging::BuildReport build_file(const Common& common, const BuildRequest& request, int* failed_checks) {
   check_output(request.output, {request.head, request.landmarks, request.edits});
   if (request.output.extension() != ".glb")
     throw Error("'" + request.output.string() + "': a rig is a .glb file; give -o NAME.glb");
@@ -181,13 +190,22 @@ rigging::BuildReport build_file(const Common& common, const BuildRequest& reques
   options.progress = [&](const std::string& stage) { common.progress(stage); };
   rigging::BuildResult result = rigging::build_rig(scene, landmarks, anatomy, options);
   if (!request.anatomy.empty()) result.report.corrected = anatomy::corrected_files(request.anatomy);
-  const std::vector<uint8_t> bytes =
-      rig::write(rigging::gltf_source(scene, result.report.input_to_metres), result.rig);
+  const std::vector<uint8_t> bytes = rig::write(
+      rigging::gltf_source(result.opened.value_or(scene), result.report.input_to_metres), result.rig);
   formats::write_bytes(request.output, bytes.data(), bytes.size());
   Mat4 to_origin = Mat4::Identity();
   to_origin.topRightCorner<3, 1>() = -scene.offset;
   result.report.input_to_metres = result.report.input_to_metres * to_origin;
   result.report.warnings.insert(result.report.warnings.begin(), scene.warnings.begin(), scene.warnings.end());
+  common.progress("check");
+  const auto started = std::chrono::steady_clock::now();
+  const std::vector<std::string> failures =
+      quick_check(bytes, request.output.string(),
+                  request.anatomy.empty() ? anatomy::load_checks() : anatomy::load_checks(request.anatomy));
+  result.report.stages.push_back(
+      {"check", std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count()});
+  result.report.warnings.insert(result.report.warnings.end(), failures.begin(), failures.end());
+  if (failed_checks) *failed_checks = static_cast<int>(failures.size());
   if (!request.report.empty()) {
     common.progress("report");
     std::filesystem::create_directories(request.report);
@@ -225,6 +243,17 @@ void add_build(CLI::App& app, Common& common) {
                     "Open under the nose, the default, or not");
   command->add_option("--detail", request->options.detail, "Finest lattice")
       ->check(CLI::IsMember({"low", "medium", "high"}));
+  command
+      ->add_option("--open", request->options.openings.open,
+                   "Part lips and lids that are one closed surface: auto, the default, or never")
+      ->check(CLI::IsMember({"auto", "never"}));
+  command
+      ->add_option(
+          "--add", request->options.openings.add,
+          "Generic parts to fit to a head without: none, or any of mouth,teeth,tongue,eyes; auto, the "
+          "default: what lies behind parted lips and lids")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"auto", "none", "mouth", "teeth", "tongue", "eyes"}));
   command->add_option("--edits", request->edits,
                       "Your own landmarks, regions, strengths and muscles (.json), kept over every rebuild");
   command->add_option("--muscles", request->muscles,
@@ -240,8 +269,12 @@ void add_build(CLI::App& app, Common& common) {
                     "Open files that a glTF names outside its own folder (default: refused)");
   command->add_option("--report", request->report,
                       "Folder for report.html: one page with pictures of every stage and figures");
+  command->add_flag("--strict", request->is_strict,
+                    "Exit with 4 when the check at the end finds a fault; the rig is written all the same");
   command->callback([request, &common] {
-    const rigging::BuildReport report = build_file(common, *request);
+    int failed_checks = 0;
+    const rigging::BuildReport report = build_file(common, *request, &failed_checks);
+    if (request->is_strict && failed_checks > 0) common.exit = exit_check;
     if (common.json)
       common.report(report_json(report));
     else

@@ -61,6 +61,7 @@ int main(int argc, char** argv) {
   add_play(app, common);
   add_bake(app, common);
   add_render(app, common);
+  add_check(app, common);
   add_demo(app, common);
   add_to_come(app);
   add_manual(app);
@@ -76,5 +77,5 @@ int main(int argc, char** argv) {
   } catch (const std::exception& error) {
     return fail(common, std::string("internal error: ") + error.what() + "; please report it", exit_internal);
   }
-  return 0;
+  return common.exit;
 }

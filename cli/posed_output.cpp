@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "builder/rigging/gltf_source.h"
 #include "cli/gltf_edit.h"
@@ -52,19 +53,41 @@ std::string patched_obj(const std::vector<uint8_t>& bytes, const std::map<int, V
   return text.append(before.substr(copied));
 }
 
+/// The `v` line of each vertex of each mesh: as the rig's notes have it, else as the file is read.
+std::vector<std::vector<int>> source_vertices(const rig::SourceRecord& source, const formats::Scene& scene) {
+  std::vector<std::vector<int>> lines;
+  if (!source.json.empty()) {
+    const auto notes = nlohmann::json::parse(source.json, nullptr, false);
+    if (notes.is_object() && notes.contains("sourceVertices")) try {
+        return notes["sourceVertices"].get<std::vector<std::vector<int>>>();
+      } catch (const nlohmann::json::exception&) {
+        throw Error("the rig's record of its OBJ is damaged: build it again");
+      }
+  }
+  for (const formats::SceneMesh& mesh : scene.meshes)
+    lines.push_back(mesh.source_vertices);
+  return lines;
+}
+
 std::string obj_like_source(const rig::SourceRecord& source, const Face& face) {
   const formats::Scene scene = formats::read("source.obj", source.bytes);
-  std::map<int, Vec3> moved;
+  const std::vector<std::vector<int>> lines = source_vertices(source, scene);
+  std::map<int, Vec3> places, moved;
+  for (const formats::SceneMesh& mesh : scene.meshes)
+    for (size_t v = 0; v < mesh.positions.size(); ++v)
+      places[mesh.source_vertices[v]] = mesh.positions[v];
   for (size_t m = 0; m < face.meshes().size(); ++m) {
     const FaceMesh& mesh = face.meshes()[m];
-    if (mesh.mesh >= scene.meshes.size())
+    if (mesh.mesh >= lines.size())
       throw Error("the rig's record of its OBJ does not fit its meshes: build it again");
-    const formats::SceneMesh& original = scene.meshes[mesh.mesh];
+    const std::vector<int>& line_of = lines[mesh.mesh];
     const std::vector<Vec3> posed = points_of(face.positions(m), Vec3::Zero()),
                             rest = points_of(face.rest(m), Vec3::Zero());
-    for (size_t v = 0; v < std::min(posed.size(), original.positions.size()); ++v)
-      if (posed[v] != rest[v])
-        moved[original.source_vertices[v]] = original.positions[v] + scene.offset + posed[v] - rest[v];
+    for (size_t v = 0; v < std::min(posed.size(), line_of.size()); ++v) {
+      const auto original = places.find(line_of[v]);
+      if (posed[v] != rest[v] && original != places.end())
+        moved[line_of[v]] = original->second + scene.offset + posed[v] - rest[v];
+    }
   }
   return patched_obj(source.bytes, moved, decimals_for(scene));
 }

@@ -44,6 +44,7 @@ int vertex_of(const tinyobj::attrib_t& attributes, const tinyobj::index_t& corne
     const double* p = &attributes.vertices[3 * static_cast<size_t>(corner.vertex_index)];
     mesh.positions.emplace_back(p[0], p[1], p[2]);
     mesh.source_vertices.push_back(corner.vertex_index);
+    mesh.source_textures.push_back(corner.texcoord_index);
     if (!attributes.texcoords.empty()) {
       Vec2 uv(0, 0);
       const size_t t = 2 * static_cast<size_t>(std::max(0, corner.texcoord_index));

@@ -27,8 +27,10 @@ struct SceneMesh {
       positions;  ///< file's axes and units from `Scene::offset`, node transforms and default morphs applied
   std::vector<Triangle> triangles;
   std::vector<Vec2> uvs;                   ///< one a vertex, or none
+  std::vector<Vec3> colours;               ///< one a vertex, red, green, blue from 0 to 1, or none
   std::vector<std::vector<int>> polygons;  ///< OBJ and PLY faces before triangulation, by vertex
   std::vector<int> source_vertices;        ///< OBJ: index of each vertex among the file's `v` lines
+  std::vector<int> source_textures;        ///< OBJ: the same among its `vt` lines, -1 where it has none
 };
 
 /// A file as it was read.
@@ -38,6 +40,7 @@ struct Scene {
   std::vector<SceneMesh> meshes;  ///< in node order
   gltf::Document document;        ///< of GLB and glTF: self-contained, uncompressed, a mesh for each node
   std::vector<uint8_t> bytes;     ///< of OBJ, PLY and STL: the file itself
+  bool is_extended = false;       ///< vertices have been appended since it was read (formats/extend.h)
   /// Where the coordinates of `meshes` have their origin in the file's own. Not 0 for what lies far off (a
   /// scan in map coordinates): single precision would lose its shape.
   Vec3 offset = Vec3::Zero();

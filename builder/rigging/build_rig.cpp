@@ -122,9 +122,10 @@ BuildResult build_rig(const formats::Scene& scene, const formats::LandmarkFile& 
   BuildResult result;
   BuildReport& report = result.report;
   Stages stages(options, report);
-  const FoundLandmarks found =
+  openings::check(options.openings);
+  FoundLandmarks found =
       stages.run("landmarks", [&] { return find_landmarks(scene, by_hand, anatomy, options.prepare); });
-  const prepare::PreparedHead& head = found.head;
+  prepare::PreparedHead& head = found.head;
   const SkinLandmarks& all_landmarks = found.landmarks;
   // One stage of three parts: the head's place tells units and parts, which tell where the landmarks are.
   report.stages = {
@@ -133,13 +134,16 @@ BuildResult build_rig(const formats::Scene& scene, const formats::LandmarkFile& 
   report.input_to_metres = head.input_to_metres;
   report.warnings = head.warnings;
   report.warnings.insert(report.warnings.end(), found.warnings.begin(), found.warnings.end());
-  report_parts(head, report);
+  openings::OpenedHead opened =
+      stages.run("openings", [&] { return open_head(scene, found, anatomy, options); });
   report_landmarks(all_landmarks, anatomy, report);
   const std::map<std::string, Vec3> points = places(all_landmarks);
 
   const skull::FitResult skull =
       stages.run("skull", [&] { return fit_skull(anatomy, head, all_landmarks, options.tissue_scale); });
   report_skull(skull, report);
+  close_openings(opened, head, skull, options, report);
+  report_parts(head, report);
   report.warnings.insert(report.warnings.end(), skull.warnings.begin(), skull.warnings.end());
 
   const smas::Result smas = stages.run("smas", [&] {
@@ -162,9 +166,10 @@ BuildResult build_rig(const formats::Scene& scene, const formats::LandmarkFile& 
   result.rig.actuation = rig_actuation(anatomy, result.rig.muscles);
   result.rig.input_to_metres = head.input_to_metres.cast<float>();
   const tissue::TissueInputs inputs =
-      tissue_inputs(scene, head, skull, smas, points, anatomy.mechanics, result.rig);
+      tissue_inputs(opened.scene, head, skull, smas, points, anatomy.mechanics, result.rig);
   result.rig.tissue =
-      stages.run("tissue", [&] { return build_tissue(scene, head, inputs, options, report); });
+      stages.run("tissue", [&] { return build_tissue(opened.scene, head, inputs, options, report); });
+  if (opened.changed()) result.opened = std::move(opened.scene);
   return result;
 }
 

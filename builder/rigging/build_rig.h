@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "anatomy/anatomy.h"
+#include "builder/openings/openings.h"
 #include "builder/prepare/prepare.h"
 #include "builder/rigging/edits.h"
 #include "builder/smas/smas.h"
@@ -18,10 +19,11 @@ namespace fascia::rigging {
 
 struct BuildOptions {
   prepare::PrepareOptions prepare;
-  double tissue_scale = 1.0;      ///< scales every tissue depth: children, stylised heads
-  smas::Options smas;             ///< how far it reaches, how fine it is
-  std::string detail = "medium";  ///< finest level of the lattice: low, medium or high
-  Edits edits;                    ///< the user's changes to landmarks and muscles
+  openings::OpeningOptions openings;  ///< whether closed lips and lids are parted, which parts are added
+  double tissue_scale = 1.0;          ///< scales every tissue depth: children, stylised heads
+  smas::Options smas;                 ///< how far it reaches, how fine it is
+  std::string detail = "medium";      ///< finest level of the lattice: low, medium or high
+  Edits edits;                        ///< the user's changes to landmarks and muscles
   /// Called as each stage begins, with its name; may be empty.
   std::function<void(const std::string& stage)> progress;
 };
@@ -43,6 +45,9 @@ struct BuildReport {
   };
   std::vector<PartFigures> parts;                       ///< in the file's order of meshes
   std::optional<prepare::Eyeball> eye_left, eye_right;  ///< metres, rig frame
+  std::vector<openings::Parted> parted;                 ///< closed lips and lids that were opened
+  std::vector<std::string> added;                       ///< parts of the generic head given to this one
+  int appended_vertices = 0;  ///< of the input's own meshes, behind those that were there
   std::vector<StageTime> stages;
   int landmarks_given = 0, landmarks_found = 0;
   std::vector<std::string> low_confidence;
@@ -96,6 +101,9 @@ struct BuildReport {
 
 struct BuildResult {
   rig::Rig rig;
+  /// The file that the rig belongs to, where it is no longer the one that came: lips or lids were parted, or
+  /// parts added.
+  std::optional<formats::Scene> opened;
   BuildReport report;
 };
 

@@ -27,6 +27,8 @@ Json primitive_of(gltf::Appendix& data, const formats::SceneMesh& mesh) {
   attributes["NORMAL"] = add<Vec3, 3>(data, normals, false);
   if (mesh.uvs.size() == mesh.positions.size())
     attributes["TEXCOORD_0"] = add<Vec2, 2>(data, mesh.uvs, false);
+  if (mesh.colours.size() == mesh.positions.size())
+    attributes["COLOR_0"] = add<Vec3, 3>(data, mesh.colours, false);
   std::vector<uint32_t> corners;
   for (const Triangle& t : mesh.triangles)
     corners.insert(corners.end(), t.begin(), t.end());
@@ -38,13 +40,26 @@ const char* kind_name(formats::FileKind kind) {
   return names[static_cast<int>(kind)];
 }
 
+/// What the file itself does not tell: where its coordinates have their origin, and which `v` line each
+/// vertex came from where the vertices of an OBJ do not come in the order of its faces (its lips or lids have
+/// been parted).
+std::string notes_of(const formats::Scene& scene) {
+  Json notes;
+  if (!scene.offset.isZero(0)) notes["offset"] = {scene.offset[0], scene.offset[1], scene.offset[2]};
+  if (scene.kind == formats::FileKind::obj && scene.is_extended) {
+    notes["sourceVertices"] = Json::array();
+    for (const formats::SceneMesh& mesh : scene.meshes)
+      notes["sourceVertices"].push_back(mesh.source_vertices);
+  }
+  return notes.is_null() ? std::string() : notes.dump();
+}
+
 }  // namespace
 
 rig::GltfSource gltf_source(const formats::Scene& scene, const Mat4& input_to_metres) {
   rig::GltfSource source;
   source.record.format = kind_name(scene.kind);
-  if (!scene.offset.isZero(0))
-    source.record.json = Json{{"offset", {scene.offset[0], scene.offset[1], scene.offset[2]}}}.dump();
+  source.record.json = notes_of(scene);
   if (scene.kind == formats::FileKind::glb || scene.kind == formats::FileKind::gltf) {
     source.json = scene.document.json;
     source.bin = scene.document.bin;

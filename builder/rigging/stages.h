@@ -7,6 +7,7 @@
 #include "builder/landmarks/skin_landmark.h"
 #include "builder/prepare/prepare.h"
 #include "builder/rigging/build_rig.h"
+#include "builder/rigging/find_landmarks.h"
 #include "builder/skull/skull.h"
 #include "builder/smas/smas.h"
 #include "builder/tissue/inputs.h"
@@ -18,6 +19,15 @@ namespace fascia::rigging {
 
 using SkinLandmarks = std::map<std::string, landmarks::SkinLandmark>;
 using Points = std::map<std::string, Vec3>;
+
+/// Parts closed lips and lids of the head that `found` has, as `options` say, and brings it up to date.
+openings::OpenedHead open_head(const formats::Scene& scene, FoundLandmarks& found,
+                               const anatomy::GenericAnatomy& anatomy, const BuildOptions& options);
+
+/// Adds the fitted skull's teeth to a head without any where its lips were parted, or as `options` ask,
+/// writes the figures of what was parted and added, and lays out the file anew where anything changed.
+void close_openings(openings::OpenedHead& opened, prepare::PreparedHead& head, const skull::FitResult& skull,
+                    const BuildOptions& options, BuildReport& report);
 
 /// Fits the generic skull under the head's skin; teeth the head has serve as evidence.
 skull::FitResult fit_skull(const anatomy::GenericAnatomy& anatomy, const prepare::PreparedHead& head,

@@ -2,7 +2,11 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
+
+#include "builder/tissue/distance.h"
+#include "builder/tissue/margin.h"
 
 namespace fascia::tissue {
 namespace {
@@ -28,6 +32,7 @@ Fissure::Fissure(const TissueInputs& inputs, const FaceRegion& region, bool left
   right_elevation_ = elevation(a);
   left_elevation_ = elevation(b);
   find_gaps(region, left);
+  find_closed_lids(region, left);
 }
 
 double Fissure::elevation(const Vec3& p) const {
@@ -100,6 +105,58 @@ void Fissure::find_gaps(const FaceRegion& region, bool left) {
       next[k] = 0.25 * (gaps_[k - 1] + 2.0 * gaps_[k] + gaps_[k + 1]);
     gaps_ = std::move(next);
   }
+}
+
+void Fissure::find_closed_lids(const FaceRegion& region, bool left) {
+  const Opening opening = left ? Opening::eye_left : Opening::eye_right;
+  constexpr double closed = 0.05;  // radians: half a millimetre before a globe of 12 mm
+  std::vector<double> low(steps, 4.0), high(steps, -4.0);
+  for (const MarginPlace& margin : margin_places(region, opening)) {
+    const double x = place(margin.position);
+    if (x < 0.08 || x > 0.92) continue;
+    const auto k = static_cast<size_t>(std::lround(x * static_cast<double>(steps - 1)));
+    low[k] = std::min(low[k], elevation(margin.position));
+    high[k] = std::max(high[k], elevation(margin.position));
+  }
+  double widest = 0.0, sum = 0.0;
+  int known = 0;
+  for (size_t k = 0; k < steps; ++k)
+    if (high[k] >= low[k]) {
+      widest = std::max(widest, high[k] - low[k]);
+      sum += 0.5 * (low[k] + high[k]);
+      ++known;
+    }
+  // A slope within a step counts as little as the step is wide.
+  if (2 * known < static_cast<int>(steps) || widest > 3.0 * closed) return;
+  const double level = sum / known;
+  const auto& distance = region.opening_distance[static_cast<size_t>(opening)];
+  std::array<std::vector<DistanceSeed>, 2> seeds;
+  for (size_t v = 0; v < region.mesh.vertices.size(); ++v) {
+    const Vec3& p = region.mesh.vertices[v];
+    if (!region.outer[v] || !(distance[v] > 0.003) || distance[v] > 0.016) continue;
+    const double x = place(p), off = elevation(p) - level;
+    if (x > 0.15 && x < 0.85 && std::abs(off) > 0.25) seeds[off > 0.0].push_back({static_cast<int>(v)});
+  }
+  if (seeds[0].empty() || seeds[1].empty()) return;
+  const EdgeDistances below = surface_distances(region.mesh, seeds[0], 0.06),
+                      above = surface_distances(region.mesh, seeds[1], 0.06);
+  upper_share.assign(region.mesh.vertices.size(), 0.5);
+  for (size_t v = 0; v < upper_share.size(); ++v)
+    if (std::isfinite(above.distance[v] + below.distance[v]))
+      upper_share[v] = below.distance[v] / std::max(above.distance[v] + below.distance[v], 1e-9);
+    else if (std::isfinite(above.distance[v]) || std::isfinite(below.distance[v]))
+      upper_share[v] = std::isfinite(above.distance[v]) ? 1.0 : 0.0;
+  gaps_.assign(steps, 0.0);
+  edges_.clear();
+}
+
+bool Fissure::is_upper(const FaceRegion& region, const SurfacePoint& place, const Vec3& p) const {
+  if (!is_closed()) return is_upper(p);
+  const fascia::Triangle& corners = region.mesh.triangles[static_cast<size_t>(place.triangle)];
+  double share = 0.0;
+  for (size_t k = 0; k < 3; ++k)
+    share += place.barycentric[static_cast<int>(k)] * upper_share[static_cast<size_t>(corners[k])];
+  return share > 0.5;
 }
 
 double Fissure::gap(double place) const {

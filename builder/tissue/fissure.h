@@ -23,14 +23,22 @@ class Fissure {
   double place(const Vec3& p) const;
   /// Above the line between the canthi, which divides upper lid from lower.
   bool is_upper(const Vec3& p) const { return elevation(p) > middle(place(p)); }
+  /// The same of a place on the region's mesh, at `p`, of closed lids by the way along the surface.
+  bool is_upper(const FaceRegion& region, const SurfacePoint& place, const Vec3& p) const;
   /// How far the lids' edges stand apart at a place between the canthi, radians; 0 where they meet.
   double gap(double place) const;
+  /// The lids meet at rest, as in a head with closed eyes.
+  bool is_closed() const { return !upper_share.empty(); }
+  /// #region vertices, of closed lids alone: 1 the upper lid's side .. 0 the lower one's, by the way along
+  /// the surface, for where they meet no place tells them apart.
+  std::vector<double> upper_share;
   /// Places along both lids' edges, on the region's mesh, some millimetre apart.
   const std::vector<SurfacePoint>& edges() const { return edges_; }
 
  private:
   double middle(double place) const;
   void find_gaps(const FaceRegion& region, bool left);
+  void find_closed_lids(const FaceRegion& region, bool left);
 
   double right_ = 0.0, left_ = 0.0;                      ///< the canthi along `lateral`
   double right_elevation_ = 0.0, left_elevation_ = 0.0;  ///< the canthi

@@ -11,6 +11,9 @@ namespace {
 // Few columns give way to their neighbours more than many: what is added to the closing a metre of their
 // spacing over that of the medium level.
 constexpr double closing_of_spacing = 60.0, medium_spacing = 0.002;
+// Radians that the upper lid of a head with closed eyes is lifted: a fissure of some 9 mm before a globe of 12
+// (Farkas 1994).
+constexpr double open_height = 0.75;
 
 void carry(rig::TissueLevel& level, int channel, size_t node, const Fissure& f, const Vec3& axis,
            double angle, double stiffness, double reverse) {
@@ -66,6 +69,7 @@ void add_eye(const TissueInputs& inputs, const FaceRegion& region, const Columns
   const int draw_lower = channel_index(inputs.channels, "orbicularis_oculi_pretarsal_lower" + side);
   const int yaw = channel_index(inputs.channels, "eye_yaw" + side);
   const int pitch = channel_index(inputs.channels, "eye_pitch" + side);
+  const bool is_closed = f.is_closed();
   level.globe_centre.push_back(f.centre.cast<float>());
   level.globe_radius.push_back(static_cast<float>(f.radius));
   const double bulge = m.cornea_radius_share * f.radius, apex = apex_of(inputs, left, f);
@@ -78,7 +82,7 @@ void add_eye(const TissueInputs& inputs, const FaceRegion& region, const Columns
     if (!(opening[v] < m.reach) || c.rim[v]) continue;
     const Vec3& p = c.mesh.vertices[v];
     const double place = f.place(p), distance = opening[v];
-    const bool is_upper = f.is_upper(p);
+    const bool is_upper = f.is_upper(region, c.source[v], p);
     // The plate goes as one, full at the edge and in the lining; none beyond the canthi. Above it the skin
     // folds in at the crease, where the levator's aponeurosis holds it.
     const double across = m.canthal_fade.rise(place) * m.canthal_fade.rise(1.0 - place);
@@ -103,10 +107,14 @@ void add_eye(const TissueInputs& inputs, const FaceRegion& region, const Columns
         if (channel >= 0) carry(level, channel, node, f, axis, angle, stiffness, reverse);
       };
       const double coarse = std::max(0.0, std::sqrt(c.area[v]) - medium_spacing);
-      const double lid = (m.closing + closing_of_spacing * coarse) * gap +
-                         m.canthal_turn * std::max(0.0, (left ? -1.0 : 1.0) * (2.0 * place - 1.0));
+      const double lid = is_closed
+                             ? 0.0
+                             : (m.closing + closing_of_spacing * coarse) * gap +
+                                   m.canthal_turn * std::max(0.0, (left ? -1.0 : 1.0) * (2.0 * place - 1.0));
+      const double lift = is_closed ? open_height * std::sin(EIGEN_PI * std::clamp(place, 0.0, 1.0))
+                                    : m.opening * lid;
       if (is_upper)
-        turn(close, f.lateral, lid * unfolding, -m.opening * lid * fade);
+        turn(close, f.lateral, lid * unfolding, -lift * fade);
       else
         turn(raise, f.lateral, -m.raising * gap * fade, m.raising * gap * fade);
       const double follows = (is_upper ? m.upper_follows_pitch : m.lower_follows_pitch) * fade;

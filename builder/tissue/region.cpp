@@ -135,9 +135,13 @@ Opening opening_of_loop(const TissueInputs& inputs, const TriangleMesh& mesh, co
   return opening;
 }
 
-/// The outer vertices beyond which the skin goes on. Where it ends, as a mask does at the chin, nothing holds
-/// it but the bone beneath.
-std::vector<bool> rim_of(const TriangleMesh& skin, const FaceRegion& region) {
+/// The outer vertices beyond which the skin goes on, or ends at the neck or behind the ears. Where it ends
+/// within the face, as a mask does at the chin, nothing holds it but the bone beneath.
+std::vector<bool> rim_of(const TissueInputs& inputs, const TriangleMesh& skin, const FaceRegion& region) {
+  const Vec3 glabella = landmark(inputs, "glabella"), gnathion = landmark(inputs, "gnathion");
+  // The throat begins some way below the chin: a fifth of the face's height.
+  const double neck = gnathion.y() - 0.2 * (glabella.y() - gnathion.y());
+  const double ears = std::min(landmark(inputs, "tragion_left").z(), landmark(inputs, "tragion_right").z());
   std::vector<int> triangles(region.outer.size(), 0);
   for (const fascia::Triangle& t : skin.triangles)
     for (const int corner : t)
@@ -149,6 +153,12 @@ std::vector<bool> rim_of(const TriangleMesh& skin, const FaceRegion& region) {
   std::vector<bool> rim(region.outer.size());
   for (size_t v = 0; v < rim.size(); ++v)
     rim[v] = region.outer[v] && triangles[v] > 0;
+  for (const auto& loop : boundary_loops(region.mesh, connectivity(region.mesh)))
+    for (const int v : loop) {
+      const Vec3& p = region.mesh.vertices[static_cast<size_t>(v)];
+      if (region.outer[static_cast<size_t>(v)] && (p.y() < neck || p.z() < ears))
+        rim[static_cast<size_t>(v)] = true;
+    }
   return rim;
 }
 
@@ -300,7 +310,7 @@ FaceRegion find_region(const TissueInputs& inputs, const TissueOptions& options)
         edges_of[static_cast<size_t>(region.opening[beyond])].push_back({static_cast<int>(v)});
         break;
       }
-  region.rim = rim_of(skin, region);
+  region.rim = rim_of(inputs, skin, region);
   for (const auto& loop : boundary_loops(region.mesh, connectivity(region.mesh)))
     if (const Opening hole = opening_of_loop(inputs, region.mesh, loop); hole != Opening::none)
       for (const int v : loop) {

@@ -193,9 +193,6 @@ void check_map(const Mat4f& matrix, const std::string& path) {
 void check_ranges(const Rig& rig, const std::string& name) {
   const std::string tissue = name + ": " + tissue_extension;
   check_map(rig.input_to_metres, tissue + "/inputToMetres");
-  const JawJoint& jaw = rig.skull.jaw;
-  if (std::abs(jaw.open_angle) > 3.2F || std::abs(jaw.lateral_angle) > 3.2F)
-    throw Error(name + ": " + skull_extension + "/jaw: it opens by more than half a turn");
   for (std::size_t level = 0; level < rig.tissue.levels.size(); ++level) {
     const std::string path = tissue + "/levels/" + std::to_string(level);
     for (const Binding& binding : rig.tissue.bindings[level]) {

@@ -155,10 +155,10 @@ TEST_F(EmbeddedHead, TheFastSolverPosesAndMovesAsTheReference) {
       face->pose();
     }
     const std::vector<double> list = gaps(own, reference);
-    // A jaw opened as wide as it goes has two minima, which differ at the corners of the mouth.
-    const bool is_widest = name == "jaw_open";
-    EXPECT_LT(mean(list), is_widest ? 0.05 : 0.02) << name;
-    EXPECT_LT(list[list.size() * 99 / 100], is_widest ? 0.5 : 0.05) << name;
+    // A jaw opened wide has two minima, which differ at the corners of the mouth: a few nodes in a hundred.
+    const bool opens_wide = name == "jaw_open" || name == "surprise";
+    EXPECT_LT(mean(list), opens_wide ? 0.05 : 0.02) << name;
+    EXPECT_LT(list[list.size() * (opens_wide ? 95 : 99) / 100], opens_wide ? 0.1 : 0.05) << name;
   }
   for (cli::Face* face : {&own, &reference}) {
     face->clear();

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "formats/extend.h"
+
+/// One writer a format; `formats::rewrite` chooses among them.
+namespace fascia::formats::detail {
+
+void rewrite_gltf(Scene& scene, const std::vector<MeshExtension>& extensions);
+void rewrite_obj(Scene& scene, const std::vector<MeshExtension>& extensions);
+
+}  // namespace fascia::formats::detail
