@@ -7,6 +7,8 @@ namespace {
 // The valley of closed lids bends by 0.3 to 0.45 rad in the mean on scans; the step beside an eyeball, by 1
 // and more.
 constexpr double least_bend = 0.12, most_bend = 0.75;
+// The crease of a closed upper lid bends by less than this share of the valley where the lids meet.
+constexpr double crease_share = 0.7;
 
 /// The valley where an open eye's upper lid would end, a fissure's height (10 mm of 29, Farkas 1994) above
 /// `line`.
@@ -42,8 +44,8 @@ std::optional<std::string> doubt_of_closed_lids(const spatial::SurfaceQuery& ski
                                                 const FaceAxes& face) {
   if (line.clearness < least_bend) return "there is no furrow where the lids would meet";
   if (line.clearness > most_bend) return "the furrow is deeper than that of closed lids";
-  if (upper_valley(skin, line, face).clearness > line.clearness)
-    return "there is a second, deeper furrow as under the upper lid of an open eye";
+  if (upper_valley(skin, line, face).clearness > crease_share * line.clearness)
+    return "there is a second furrow above it, as under the upper lid of an open eye";
   return std::nullopt;
 }
 

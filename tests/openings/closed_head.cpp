@@ -109,6 +109,46 @@ ClosedHead closed_head(const anatomy::GenericAnatomy& anatomy, bool lids) {
   return head;
 }
 
+TriangleMesh eyes_in_one_piece(const anatomy::GenericAnatomy& anatomy) {
+  const landmarks::GenericFace face = landmarks::generic_face(anatomy);
+  std::vector<bool> keep(face.skin.triangles.size());
+  for (size_t t = 0; t < keep.size(); ++t)
+    keep[t] = face.region_names[static_cast<size_t>(face.region_of_triangle[t])].rfind("conjunctiva", 0) != 0;
+  std::vector<int> map;
+  TriangleMesh mesh = submesh(face.skin, keep, &map);
+  for (const auto& loop : boundary_loops(mesh, connectivity(mesh)))
+    for (const auto* eye : {&face.eye_left, &face.eye_right}) {
+      Vec3 middle = Vec3::Zero();
+      for (const int v : loop)
+        middle += mesh.vertices[static_cast<size_t>(v)] / static_cast<double>(loop.size());
+      if ((middle - eye->centre).norm() > 0.025) continue;
+      const auto add = [&](const Vec3& direction) {
+        mesh.vertices.push_back(eye->centre + eye->radius * direction.normalized());
+        return mesh.vertex_count() - 1;
+      };
+      const Vec3 ahead = middle - eye->centre;
+      const size_t n = loop.size();
+      std::vector<int> last = loop;
+      for (const double share : {0.06, 0.35, 0.68}) {
+        std::vector<int> next;
+        for (const int v : loop) {
+          const Vec3 direction = mesh.vertices[static_cast<size_t>(v)] - eye->centre;
+          next.push_back(add((1.0 - share) * direction + share * ahead));
+        }
+        for (size_t i = 0; i < n; ++i) {
+          const size_t j = (i + 1) % n;
+          mesh.triangles.push_back({last[j], last[i], next[i]});
+          mesh.triangles.push_back({last[j], next[i], next[j]});
+        }
+        last = next;
+      }
+      const int apex = add(ahead);
+      for (size_t i = 0; i < n; ++i)
+        mesh.triangles.push_back({last[(i + 1) % n], last[i], apex});
+    }
+  return mesh;
+}
+
 std::string obj_text(const TriangleMesh& mesh) {
   std::string text = "o head\n";
   char line[128];

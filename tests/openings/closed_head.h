@@ -19,6 +19,10 @@ struct ClosedHead {
 /// `lids`: the lids are drawn down over the eyes and stitched too; else the eyes stay as they are.
 ClosedHead closed_head(const anatomy::GenericAnatomy& anatomy, bool lids = true);
 
+/// The generic head, metres, with its eyes as statues and many scans have them: open, and one surface with
+/// the lids.
+TriangleMesh eyes_in_one_piece(const anatomy::GenericAnatomy& anatomy);
+
 /// As OBJ text in millimetres, with texture coordinates and one quad on the forehead's side.
 std::string obj_text(const TriangleMesh& mesh);
 

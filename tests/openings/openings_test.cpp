@@ -106,6 +106,14 @@ TEST(Openings, KeepsTheVerticesThatWereThere) {
     }
 }
 
+TEST(Openings, LeavesOpenEyesInOnePieceWithTheirLidsAlone) {
+  const Case c = open(eyes_in_one_piece(generic()), closed_head(generic()).landmarks);
+  EXPECT_TRUE(names(c.opened).empty());
+  EXPECT_TRUE(c.opened.added.empty());
+  ASSERT_EQ(c.opened.warnings.size(), 1U);
+  EXPECT_NE(c.opened.warnings[0].find("lids"), std::string::npos) << c.opened.warnings[0];
+}
+
 TEST(Openings, LeavesOpenHeadsAlone) {
   const anatomy::MeshObject* skin = generic().head_object("skin");
   const ClosedHead closed = closed_head(generic());
