@@ -5,8 +5,8 @@
 
 #include "builder/rigging/build_rig.h"
 #include "builder/rigging/gltf_source.h"
+#include "cli/check.h"
 #include "cli/common.h"
-#include "cli/quick_check.h"
 #include "cli/report.h"
 #include "cli/rig_build.h"
 #include "formats/scene.h"
@@ -274,12 +274,12 @@ void add_build(CLI::App& app, Common& common) {
   command->callback([request, &common] {
     int failed_checks = 0;
     const rigging::BuildReport report = build_file(common, *request, &failed_checks);
-    if (request->is_strict && failed_checks > 0) common.exit = exit_check;
     if (common.json)
       common.report(report_json(report));
     else
       say_report(common, report, request->output);
     if (!request->report.empty()) common.say("wrote " + (request->report / report_name).string());
+    if (request->is_strict && failed_checks > 0) throw CLI::RuntimeError(exit_check);
   });
 }
 

@@ -11,15 +11,11 @@ class App;
 
 namespace fascia::cli {
 
-/// Exit code of a check that found a fault, and of --strict.
-inline constexpr int exit_check = 4;
-
 /// What every command understands.
 struct Common {
   bool json = false;
   bool quiet = false;
   int threads = 0;  ///< 0: as many as the machine has
-  int exit = 0;     ///< what the tool ends with when nothing was thrown: 0, or exit_check
 
   /// Says that a stage begins; on stderr, when that is a terminal and nobody asked for quiet.
   void progress(const std::string& what) const;
@@ -42,7 +38,6 @@ void add_pose(CLI::App& app, Common& common);
 void add_play(CLI::App& app, Common& common);
 void add_bake(CLI::App& app, Common& common);
 void add_render(CLI::App& app, Common& common);
-void add_check(CLI::App& app, Common& common);
 void add_demo(CLI::App& app, Common& common);
 void add_manual(CLI::App& app);
 

@@ -7,6 +7,7 @@
 #include <memory>
 #include <new>
 
+#include "cli/check.h"
 #include "cli/common.h"
 #include "formats/partial.h"
 #include "geometry/error.h"
@@ -67,6 +68,8 @@ int main(int argc, char** argv) {
   add_manual(app);
   try {
     app.parse(argc, argv);
+  } catch (const CLI::RuntimeError& error) {
+    return error.get_exit_code();
   } catch (const CLI::ParseError& error) {
     const int code = app.exit(error);
     return code == 0 ? 0 : exit_usage;
@@ -77,5 +80,5 @@ int main(int argc, char** argv) {
   } catch (const std::exception& error) {
     return fail(common, std::string("internal error: ") + error.what() + "; please report it", exit_internal);
   }
-  return common.exit;
+  return 0;
 }
