@@ -1,9 +1,11 @@
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <map>
 #include <memory>
 
 #include "builder/rigging/build_rig.h"
 #include "builder/rigging/gltf_source.h"
+#include "cli/check.h"
 #include "cli/common.h"
 #include "cli/report.h"
 #include "cli/rig_build.h"
@@ -163,7 +165,7 @@ void add_anatomy_option(CLI::App& command, std::filesystem::path& directory) {
                      "ones, the default for all");
 }
 
-rigging::BuildReport build_file(const Common& common, const BuildRequest& request) {
+rigging::BuildReport build_file(const Common& common, const BuildRequest& request, int* failed_checks) {
   check_output(request.output, {request.head, request.landmarks, request.edits});
   if (request.output.extension() != ".glb")
     throw Error("'" + request.output.string() + "': a rig is a .glb file; give -o NAME.glb");
@@ -188,6 +190,15 @@ rigging::BuildReport build_file(const Common& common, const BuildRequest& reques
   to_origin.topRightCorner<3, 1>() = -scene.offset;
   result.report.input_to_metres = result.report.input_to_metres * to_origin;
   result.report.warnings.insert(result.report.warnings.begin(), scene.warnings.begin(), scene.warnings.end());
+  common.progress("check");
+  const auto started = std::chrono::steady_clock::now();
+  const std::vector<std::string> failures =
+      quick_check(bytes, request.output.string(),
+                  request.anatomy.empty() ? anatomy::load_checks() : anatomy::load_checks(request.anatomy));
+  result.report.stages.push_back(
+      {"check", std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count()});
+  result.report.warnings.insert(result.report.warnings.end(), failures.begin(), failures.end());
+  if (failed_checks) *failed_checks = static_cast<int>(failures.size());
   if (!request.report.empty()) {
     common.progress("report");
     std::filesystem::create_directories(request.report);
@@ -240,13 +251,17 @@ void add_build(CLI::App& app, Common& common) {
                     "Open files that a glTF names outside its own folder (default: refused)");
   command->add_option("--report", request->report,
                       "Folder for report.html: one page with pictures of every stage and figures");
+  command->add_flag("--strict", request->is_strict,
+                    "Exit with 4 when the check at the end finds a fault; the rig is written all the same");
   command->callback([request, &common] {
-    const rigging::BuildReport report = build_file(common, *request);
+    int failed_checks = 0;
+    const rigging::BuildReport report = build_file(common, *request, &failed_checks);
     if (common.json)
       common.report(report_json(report));
     else
       say_report(common, report, request->output);
     if (!request->report.empty()) common.say("wrote " + (request->report / report_name).string());
+    if (request->is_strict && failed_checks > 0) throw CLI::RuntimeError(exit_check);
   });
 }
 

@@ -7,6 +7,7 @@
 #include <memory>
 #include <new>
 
+#include "cli/check.h"
 #include "cli/common.h"
 #include "formats/partial.h"
 #include "geometry/error.h"
@@ -61,11 +62,14 @@ int main(int argc, char** argv) {
   add_play(app, common);
   add_bake(app, common);
   add_render(app, common);
+  add_check(app, common);
   add_demo(app, common);
   add_to_come(app);
   add_manual(app);
   try {
     app.parse(argc, argv);
+  } catch (const CLI::RuntimeError& error) {
+    return error.get_exit_code();
   } catch (const CLI::ParseError& error) {
     const int code = app.exit(error);
     return code == 0 ? 0 : exit_usage;

@@ -20,6 +20,7 @@ struct BuildRequest {
   std::filesystem::path anatomy;               ///< folder of corrected anatomy data; empty: all as built in
   std::filesystem::path report;                ///< folder of the page that shows the build; empty: none
   bool allow_outside = false;                  ///< files a glTF names may lie outside its folder
+  bool is_strict = false;                      ///< a check that fails ends the tool with exit_check
   rigging::BuildOptions options;
 };
 
@@ -29,8 +30,9 @@ anatomy::GenericAnatomy anatomy_for(const std::filesystem::path& directory);
 /// Adds `--anatomy DIR` to a command that builds.
 void add_anatomy_option(CLI::App& command, std::filesystem::path& directory);
 
-/// Reads the head, builds its rig and writes it. Throws fascia::Error.
-rigging::BuildReport build_file(const Common& common, const BuildRequest& request);
+/// Reads the head, builds its rig, writes it and checks it shortly; what the check finds is among the report's
+/// warnings, and how many rows failed in `failed_checks` when that is not null. Throws fascia::Error.
+rigging::BuildReport build_file(const Common& common, const BuildRequest& request, int* failed_checks = nullptr);
 
 /// Bakes `shapes` (arkit, muscles or visemes) into morph targets of the rig's original file; returns their
 /// names.

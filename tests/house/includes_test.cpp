@@ -21,8 +21,9 @@ const std::map<std::string, std::set<std::string>> rooms = {
     {"sim", {}},
     {"builder", {"geometry", "formats", "anatomy", "rig", "sim", "gltf"}},
     {"runtime", {"rig/model", "rig/read", "gltf/read", "sim", "geometry"}},
+    {"check", {"geometry", "anatomy", "rig/model", "rig/read", "builder/spatial"}},
     {"view", {"geometry", "rig"}},
-    {"cli", {"geometry", "gltf", "formats", "anatomy", "rig", "sim", "builder", "runtime", "view"}},
+    {"cli", {"geometry", "gltf", "formats", "anatomy", "rig", "sim", "builder", "check", "runtime", "view"}},
     {"samples", {}},
 };
 

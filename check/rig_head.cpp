@@ -1,0 +1,183 @@
+#include "check/rig_head.h"
+
+#include <fascia/fascia.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/error.h"
+#include "rig/read/read.h"
+
+namespace fascia::check {
+namespace {
+
+template <class T>
+T sized() {
+  T value = {};
+  value.struct_size = sizeof(T);
+  return value;
+}
+
+/// Where the vertices of a Part come from.
+struct Source {
+  uint32_t mesh = 0;               ///< as the runtime counts
+  std::vector<uint32_t> vertices;  ///< of it
+};
+
+std::optional<Eye> eye_of(const rig::Eye& eye) {
+  if (!(eye.radius > 0.0F)) return {};
+  return Eye{eye.centre.cast<double>(), static_cast<double>(eye.radius), eye.gaze.cast<double>()};
+}
+
+}  // namespace
+
+struct RigHead::State {
+  std::string name;
+  rig::RigFile file;
+  std::unique_ptr<fascia_asset, decltype(&fascia_asset_release)> asset{nullptr, fascia_asset_release};
+  std::unique_ptr<fascia_face, decltype(&fascia_face_release)> face{nullptr, fascia_face_release};
+  int32_t level = -1;
+  Head head;
+  std::vector<Source> sources;
+
+  void require(fascia_result result) const {
+    if (result != FASCIA_OK) throw Error(name + ": " + fascia_last_message());
+  }
+
+  std::vector<Vec3> positions(fascia_face* from, uint32_t mesh) const {
+    auto vectors = sized<fascia_vectors>();
+    require(fascia_face_positions(from, mesh, &vectors));
+    std::vector<Vec3> out(vectors.count);
+    for (size_t v = 0; v < out.size(); ++v)
+      out[v] = Vec3(static_cast<double>(vectors.data[3 * v]), static_cast<double>(vectors.data[3 * v + 1]),
+                    static_cast<double>(vectors.data[3 * v + 2]));
+    return out;
+  }
+
+  /// The triangles of a primitive whose vertices all satisfy `belongs`, as a part of their own.
+  template <class Belongs>
+  void add_part(const std::string& part_name, uint32_t mesh, const std::vector<Vec3>& rest,
+                const fascia_mesh_info& info, Belongs belongs) {
+    Part part{part_name, {}};
+    Source source{mesh, {}};
+    std::vector<int> map(rest.size(), -1);
+    for (uint32_t t = 0; t < info.triangle_count; ++t) {
+      const uint32_t* corner = info.triangles + size_t{3} * t;
+      if (!(belongs(corner[0]) && belongs(corner[1]) && belongs(corner[2]))) continue;
+      Triangle now;
+      for (size_t k = 0; k < 3; ++k) {
+        int& v = map[corner[k]];
+        if (v < 0) {
+          v = part.mesh.vertex_count();
+          part.mesh.vertices.push_back(rest[corner[k]]);
+          source.vertices.push_back(corner[k]);
+        }
+        now[k] = v;
+      }
+      part.mesh.triangles.push_back(now);
+    }
+    if (part.mesh.triangles.empty()) return;
+    head.parts.push_back(std::move(part));
+    sources.push_back(std::move(source));
+  }
+
+  void add_mesh(uint32_t index) {
+    auto info = sized<fascia_mesh_info>();
+    require(fascia_asset_get_mesh(asset.get(), index, &info));
+    const std::vector<Vec3> rest = positions(face.get(), index);
+    const rig::Binding* binding = nullptr;
+    const auto& bindings = file.rig.tissue.bindings[static_cast<size_t>(level)];
+    for (const rig::Binding& one : bindings)
+      if (one.mesh == info.mesh && one.primitive == info.primitive) binding = &one;
+    const auto eye = [&](uint32_t v) { return binding ? binding->eye[v] : uint8_t{0}; };
+    for (const uint8_t side : {uint8_t{1}, uint8_t{2}})
+      add_part(side == 1 ? "eye_left" : "eye_right", index, rest, info,
+               [&](uint32_t v) { return eye(v) == side; });
+    add_part(info.part, index, rest, info, [&](uint32_t v) { return eye(v) == 0; });
+  }
+};
+
+RigHead::RigHead(std::span<const uint8_t> bytes, const std::string& name, const std::string& level)
+    : state_(std::make_unique<State>()) {
+  State& state = *state_;
+  state.name = name;
+  state.file = rig::read(bytes, name);
+  fascia_asset* asset = nullptr;
+  state.require(fascia_asset_load(bytes.data(), bytes.size(), &asset));
+  state.asset.reset(asset);
+  const auto& levels = state.file.rig.tissue.levels;
+  state.level = static_cast<int32_t>(levels.size()) - 1;
+  for (size_t i = 0; i < levels.size(); ++i)
+    if (levels[i].name == level) state.level = static_cast<int32_t>(i);
+  if (!level.empty() && (levels.empty() || levels[static_cast<size_t>(state.level)].name != level))
+    throw Error(name + ": the rig has no level '" + level + "'; 'fascia info' lists those it has");
+  fascia_face_options options = fascia_default_face_options();
+  options.space = FASCIA_SPACE_METRES;
+  options.level = state.level;
+  fascia_face* face = nullptr;
+  state.require(fascia_face_create(asset, &options, &face));
+  state.face.reset(face);
+  auto info = sized<fascia_asset_info>();
+  state.require(fascia_asset_get_info(asset, &info));
+  for (uint32_t m = 0; m < info.mesh_count; ++m)
+    state.add_mesh(m);
+  for (const rig::Landmark& landmark : state.file.rig.skull.landmarks)
+    state.head.landmarks[landmark.name] = landmark.skin.cast<double>();
+  state.head.eyes = {eye_of(state.file.rig.skull.eye_left), eye_of(state.file.rig.skull.eye_right)};
+}
+
+RigHead::~RigHead() = default;
+
+const Head& RigHead::head() const {
+  return state_->head;
+}
+
+Player RigHead::player() {
+  return [this](const Weights& weights) -> std::optional<Shape> {
+    State& state = *state_;
+    state.require(fascia_face_clear(state.face.get()));
+    for (const auto& [name, value] : weights) {
+      const fascia_result result =
+          fascia_face_set(state.face.get(), ("arkit:" + name).c_str(), static_cast<float>(value));
+      if (result == FASCIA_ERROR_NAME) return std::nullopt;
+      state.require(result);
+    }
+    state.require(fascia_face_pose(state.face.get()));
+    Shape shape;
+    uint32_t mesh = UINT32_MAX;
+    std::vector<Vec3> whole;
+    for (const Source& source : state.sources) {
+      if (source.mesh != mesh) whole = state.positions(state.face.get(), mesh = source.mesh);
+      std::vector<Vec3>& vertices = shape.emplace_back();
+      vertices.reserve(source.vertices.size());
+      for (const uint32_t v : source.vertices)
+        vertices.push_back(whole[v]);
+    }
+    return shape;
+  };
+}
+
+double RigHead::rest_motion() const {
+  const State& state = *state_;
+  fascia_face_options options = fascia_default_face_options();
+  options.space = FASCIA_SPACE_MESH;
+  options.level = state.level;
+  fascia_face* made = nullptr;
+  state.require(fascia_face_create(state.asset.get(), &options, &made));
+  const std::unique_ptr<fascia_face, decltype(&fascia_face_release)> face{made, fascia_face_release};
+  state.require(fascia_face_pose(made));
+  double most = 0.0;
+  for (size_t p = 0; p < state.file.primitives.size(); ++p) {
+    const rig::Primitive& primitive = state.file.primitives[p];
+    double scale = 1.0;
+    for (const rig::Binding& binding : state.file.rig.tissue.bindings[static_cast<size_t>(state.level)])
+      if (binding.mesh == primitive.mesh && binding.primitive == primitive.primitive)
+        scale = std::cbrt(std::abs(static_cast<double>(binding.to_rig.topLeftCorner<3, 3>().determinant())));
+    const std::vector<Vec3> now = state.positions(made, static_cast<uint32_t>(p));
+    for (size_t v = 0; v < now.size() && v < primitive.positions.size(); ++v)
+      most = std::max(most, scale * (now[v] - primitive.positions[v].cast<double>()).norm());
+  }
+  return most;
+}
+
+}  // namespace fascia::check
