@@ -8,6 +8,7 @@
 #include <new>
 
 #include "cli/common.h"
+#include "cli/fit.h"
 #include "formats/partial.h"
 #include "geometry/error.h"
 
@@ -62,6 +63,7 @@ int main(int argc, char** argv) {
   add_bake(app, common);
   add_render(app, common);
   add_demo(app, common);
+  add_fit(app, common);
   add_to_come(app);
   add_manual(app);
   try {

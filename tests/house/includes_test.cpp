@@ -20,9 +20,10 @@ const std::map<std::string, std::set<std::string>> rooms = {
     {"rig", {"geometry", "gltf"}},
     {"sim", {}},
     {"builder", {"geometry", "formats", "anatomy", "rig", "sim", "gltf"}},
+    {"fit", {"geometry", "gltf", "rig", "sim"}},
     {"runtime", {"rig/model", "rig/read", "gltf/read", "sim", "geometry"}},
     {"view", {"geometry", "rig"}},
-    {"cli", {"geometry", "gltf", "formats", "anatomy", "rig", "sim", "builder", "runtime", "view"}},
+    {"cli", {"geometry", "gltf", "formats", "anatomy", "rig", "sim", "builder", "fit", "runtime", "view"}},
     {"samples", {}},
 };
 
