@@ -43,8 +43,7 @@ void check_output(const std::filesystem::path& path, const std::vector<std::file
 
 void add_to_come(CLI::App& app) {
   for (const auto& [name, what] :
-       {std::pair{"fit", "fitting activations to a target"}, std::pair{"batch", "building many heads"},
-        std::pair{"view", "the window"}}) {
+       {std::pair{"batch", "building many heads"}, std::pair{"view", "the window"}}) {
     CLI::App* command = app.add_subcommand(name, std::string(what) + " (to come)");
     const auto unread = std::make_shared<std::vector<std::string>>();
     command->add_option("ARGUMENTS", *unread, "Not read yet");

@@ -148,7 +148,7 @@ TEST_F(Tool, FaultyInputIsOneAndNamed) {
                      "landmarks.json");
   expect_input_error("render " + at("rig.glb") + " --layers liver -o " + at("x.png"), "liver");
   expect_input_error("render " + at("rig.glb") + " --view inside -o " + at("x.png"), "inside");
-  expect_input_error("fit " + at("rig.glb"), "yet to come");
+  expect_input_error("batch " + at("rig.glb"), "yet to come");
   EXPECT_FALSE(fs::exists(at("x.glb")));
   EXPECT_FALSE(fs::exists(at("x.png")));
 }

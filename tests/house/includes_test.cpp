@@ -20,10 +20,12 @@ const std::map<std::string, std::set<std::string>> rooms = {
     {"rig", {"geometry", "gltf"}},
     {"sim", {}},
     {"builder", {"geometry", "formats", "anatomy", "rig", "sim", "gltf"}},
+    {"fit", {"geometry", "gltf", "rig", "sim"}},
     {"runtime", {"rig/model", "rig/read", "gltf/read", "sim", "geometry"}},
     {"check", {"geometry", "anatomy", "rig/model", "rig/read", "builder/spatial"}},
     {"view", {"geometry", "rig"}},
-    {"cli", {"geometry", "gltf", "formats", "anatomy", "rig", "sim", "builder", "check", "runtime", "view"}},
+    {"cli",
+     {"geometry", "gltf", "formats", "anatomy", "rig", "sim", "builder", "check", "fit", "runtime", "view"}},
     {"samples", {}},
 };
 

@@ -1,0 +1,151 @@
+#include "cli/fit.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <memory>
+
+#include "cli/common.h"
+#include "cli/fit_output.h"
+#include "cli/fit_target.h"
+#include "fit/fit.h"
+#include "formats/scene.h"
+#include "geometry/error.h"
+
+namespace fascia::cli {
+
+namespace {
+
+struct Request {
+  std::filesystem::path rig, target, output, report;
+  std::string level, shape;
+  FitTargetOptions reading;
+  fit::FitOptions fitting;
+};
+
+/// Only the shape asked for, as one mesh.
+void choose_shape(const Request& request, FitTargets& targets) {
+  if (request.shape.empty()) return;
+  const auto at = std::find(targets.names.begin(), targets.names.end(), request.shape);
+  if (targets.kind != FitTargets::Kind::shapes || at == targets.names.end())
+    throw Error("'" + request.target.string() + "' has no morph target '" + request.shape + "' to fit");
+  const auto index = static_cast<size_t>(at - targets.names.begin());
+  targets.target = [all = targets.target, index](size_t) { return all(index); };
+  targets.names = {request.shape};
+  targets.kind = FitTargets::Kind::mesh;
+}
+
+nlohmann::ordered_json figures(const fit::Subject& subject, const fit::FitResult& result) {
+  nlohmann::ordered_json entry = {
+      {"share", result.share},           {"error_mm", result.error_mm},
+      {"rms_mm", result.rms_mm},         {"activations", fitted_activations(subject, result)},
+      {"iterations", result.iterations}, {"converged", result.converged}};
+  add_certainty(subject, result, entry);
+  return entry;
+}
+
+/// Share and mean error over all targets, by how much each moves.
+nlohmann::ordered_json summary(const std::vector<fit::FitResult>& results,
+                               const std::vector<double>& motion) {
+  double left = 0.0, whole = 0.0, error = 0.0;
+  int iterations = 0;
+  for (size_t i = 0; i < results.size(); ++i) {
+    left += (1.0 - results[i].share) * motion[i];
+    whole += motion[i];
+    error += results[i].error_mm / static_cast<double>(results.size());
+    iterations += results[i].iterations;
+  }
+  return {{"share", whole > 0.0 ? 1.0 - left / whole : 1.0}, {"error_mm", error}, {"iterations", iterations}};
+}
+
+void run(const Common& common, const Request& request) {
+  const auto started = std::chrono::steady_clock::now();
+  check_output(request.output, {request.rig, request.target});
+  fit::Subject subject(rig::read(formats::read_bytes(request.rig), request.rig.string()), request.level);
+  FitTargets targets = open_fit_targets(common, request.target, subject, request.reading);
+  choose_shape(request, targets);
+  check_fit_output(request.output, targets);
+  fit::Fitter fitter(subject, request.fitting);
+  std::vector<fit::FitResult> results;
+  std::vector<double> motion;
+  for (size_t i = 0; i < targets.names.size(); ++i) {
+    common.progress("fit " + targets.names[i]);
+    const fit::Target target = targets.target(i);
+    motion.push_back(target.displacements.squaredNorm());
+    results.push_back(targets.kind == FitTargets::Kind::take ? fitter.follow(target) : fitter.fit(target));
+    if (!results.back().converged)
+      common.warn(targets.names[i] + ": still falling after " + std::to_string(results.back().iterations) +
+                  " steps; what is found so far is written");
+  }
+  write_fit(request.output, subject, targets, results, request.reading.fps);
+  if (!request.report.empty()) write_fit_report(request.report, subject, targets, results);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+  nlohmann::ordered_json report = {{"output", request.output.string()}, {"level", subject.level_name()}};
+  if (results.size() == 1) {
+    report.update(figures(subject, results[0]));
+  } else {
+    report.update(summary(results, motion));
+    for (size_t i = 0; i < results.size(); ++i) {
+      nlohmann::ordered_json entry = {{"name", targets.names[i]}};
+      entry.update(figures(subject, results[i]));
+      report["targets"].push_back(entry);
+    }
+  }
+  report["seconds"] = seconds;
+  char line[200];
+  std::snprintf(line, sizeof line, "%zu fitted: share %.3f, error %.3f mm, %.2f s", results.size(),
+                report["share"].get<double>(), report["error_mm"].get<double>(), seconds);
+  common.say(line);
+  common.say("wrote " + request.output.string());
+  common.report(report);
+}
+
+}  // namespace
+
+void add_fit(CLI::App& app, Common& common) {
+  auto request = std::make_shared<Request>();
+  CLI::App* command = app.add_subcommand("fit", "Find the activations behind a posed mesh, shapes or a take");
+  command->add_option("RIG", request->rig, "Rig (.glb)")->required();
+  command
+      ->add_option(
+          "--target", request->target,
+          "Mesh of the rig's topology (.glb, .gltf, .obj, .ply, .stl), its morph targets or their animation, "
+          "a cache (.pc2, .mdd) or a folder of meshes, one a frame")
+      ->required();
+  command
+      ->add_option("-o,--output", request->output,
+                   "Activations (.json), a folder of them for several shapes, or curves (.csv, .json)")
+      ->required();
+  command->add_option("--report", request->report, "Folder for residual.png, residual.ply and report.md");
+  command->add_option("--level", request->level,
+                      "Level of detail: low, medium or high (default: the finest)");
+  command->add_option("--shape", request->shape, "Fit one morph target only");
+  command->add_option("--as", request->reading.as, "What to fit of a file with morph targets")
+      ->check(CLI::IsMember({"auto", "mesh", "shapes", "take"}))
+      ->capture_default_str();
+  command
+      ->add_option("--head-pose", request->reading.head_pose,
+                   "auto: the head's own motion is taken out where parts that cannot move have moved")
+      ->check(CLI::IsMember({"auto", "fixed"}))
+      ->capture_default_str();
+  command->add_option("--fps", request->reading.fps, "Frames a second of what holds no times")
+      ->check(CLI::Range(1.0, 1000.0))
+      ->capture_default_str();
+  const auto price = CLI::Range(0.0, 1e3);
+  command
+      ->add_option("--ridge", request->fitting.ridge,
+                   "Cost of squared activations, mm^2 of mean squared error")
+      ->check(price)
+      ->capture_default_str();
+  command->add_option("--sparsity", request->fitting.sparsity, "Cost of activations' sizes, mm^2")
+      ->check(price)
+      ->capture_default_str();
+  command
+      ->add_option("--smoothness", request->fitting.smoothness,
+                   "Cost of squared changes between frames, mm^2")
+      ->check(price)
+      ->capture_default_str();
+  command->callback([request, &common] { run(common, *request); });
+}
+
+}  // namespace fascia::cli

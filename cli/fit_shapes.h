@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "formats/scene.h"
+
+namespace fascia::cli {
+
+/// A morph target of one primitive: displacements in the primitive's own coordinates, #vertices.
+struct ShapePart {
+  int mesh = 0, primitive = 0;
+  std::vector<Vec3> displacements;
+};
+
+/// Morph targets of one name over all primitives of a file.
+struct Shape {
+  std::string name;
+  std::vector<ShapePart> parts;
+};
+
+/// When each shape weighs how much: of the file's first animation that moves weights.
+struct ShapeCurves {
+  std::vector<double> times;                 ///< seconds, rising
+  std::vector<std::vector<double>> weights;  ///< by time, one a shape: beyond the base mesh's
+};
+
+/// The morph targets of a glTF file, in the file's order, by `mesh.extras.targetNames`. Throws fascia::Error
+/// when an accessor is damaged or of a kind that is not read here.
+std::vector<Shape> morph_shapes(const formats::Scene& scene);
+
+/// Key frames of the weights of `shapes`; empty when nothing moves them. Throws as `morph_shapes`.
+ShapeCurves shape_curves(const formats::Scene& scene, const std::vector<Shape>& shapes);
+
+}  // namespace fascia::cli

@@ -1,0 +1,323 @@
+#include "fit/fit.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/error.h"
+
+namespace fascia::fit {
+namespace {
+
+constexpr double square_mm = 1e6;  // of a square metre
+
+/// How much more a channel costs than one that the expression tables use to the full: 1 to 4.
+std::vector<double> dearness_of(const rig::Actuation& actuation) {
+  std::vector<double> usage(actuation.channels.size(), 0.0);
+  for (const rig::NamedSet& set : actuation.sets)
+    for (size_t e = 0; e < set.weights.size(); ++e) {
+      double& most = usage[set.channel_indices[e]];
+      most = std::max(most, std::min(1.0, std::abs(static_cast<double>(set.weights[e]))));
+    }
+  for (double& value : usage)
+    value = 1.0 / (0.25 + 0.75 * value);
+  return usage;
+}
+
+using RowsByAxis = Eigen::Map<const Eigen::MatrixXd, 0, Eigen::Stride<Eigen::Dynamic, 3>>;
+
+/// Rows `axis`, `axis` + 3, ... of a matrix of stacked 3-vectors.
+RowsByAxis axis_rows(const Eigen::MatrixXd& matrix, int axis) {
+  return RowsByAxis(matrix.data() + axis, matrix.rows() / 3, matrix.cols(),
+                    Eigen::Stride<Eigen::Dynamic, 3>(matrix.rows(), 3));
+}
+
+/// The point that half a quadratic, slope y + curvature y^2 / 2 + price |value + y| / 2, is least at, within
+/// limits.
+double best_move(double slope, double curvature, double price, double value, double least, double most) {
+  if (!(curvature > 0.0)) return 0.0;
+  const double free = value - slope / curvature, threshold = 0.5 * price / curvature;
+  const double shrunk = free > threshold ? free - threshold : free < -threshold ? free + threshold : 0.0;
+  return std::clamp(shrunk, least, most) - value;
+}
+
+}  // namespace
+
+Fitter::Fitter(Subject& subject, const FitOptions& options)
+    : subject_(&subject),
+      options_(options),
+      sensitivity_(subject.model()),
+      dearness_(dearness_of(subject.file().rig.actuation)) {
+  for (uint32_t c = 0; c < subject.channels().size(); ++c)
+    if (subject.channels()[c].group != "eye" && subject.channels()[c].group != "jaw" &&
+        sensitivity_.listens(c))
+      driven_.push_back(c);
+  fitted_ = driven_;
+  for (const char* name : {"jaw_open", "jaw_forward", "jaw_lateral"}) {
+    const int32_t at = subject.channel(name);
+    if (at < 0) throw Error(std::string("the rig has no channel '") + name + "': build it again");
+    fitted_.push_back(static_cast<uint32_t>(at));
+  }
+}
+
+FitResult Fitter::fit(const Target& target) {
+  is_sequence_ = false;
+  return solve(target, false);
+}
+
+FitResult Fitter::follow(const Target& target) {
+  const bool is_next = is_sequence_;
+  is_sequence_ = true;
+  return solve(target, is_next);
+}
+
+double Fitter::cost(const std::vector<float>& values) const {
+  double sum = 0.0;
+  for (const uint32_t c : fitted_) {
+    const double value = values[c];
+    sum += dearness_[c] * (options_.ridge * value * value + options_.sparsity * std::abs(value));
+    if (!last_.empty()) sum += options_.smoothness * std::pow(value - static_cast<double>(last_[c]), 2);
+  }
+  return sum;
+}
+
+double Fitter::objective(const Target& target, const std::vector<float>& values, bool warm,
+                         Eigen::VectorXd& difference) {
+  subject_->pose(values, warm);
+  difference = subject_->displacements(values) - target.displacements;
+  double sum = 0.0;
+  for (Eigen::Index v = 0; v < vertex_weights_.size(); ++v)
+    if (vertex_weights_[v] > 0.0) sum += vertex_weights_[v] * difference.segment<3>(3 * v).squaredNorm();
+  return square_mm * sum + cost(values);
+}
+
+bool Fitter::linearise(const std::vector<float>& values) {
+  if (!sensitivity_.linearise(subject_->controls(values), subject_->nodes())) return false;
+  linear_at_ = values;
+  const Eigen::MatrixXd own = sensitivity_.columns(driven_);
+  node_columns_.resize(own.rows(), own.cols() + 3);
+  node_columns_ << own, sensitivity_.jaw_columns();
+  jaw_slopes_ = subject_->jaw_slopes(values);
+  const auto& weights = subject_->weights();
+  const Eigen::SparseMatrix<double> trusted = weights.transpose() * vertex_weights_.asDiagonal();
+  const Eigen::SparseMatrix<double> between = trusted * weights;
+  const auto count = node_columns_.cols();
+  hessian_.setZero(count, count);
+  for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::MatrixXd columns = axis_rows(node_columns_, axis), jaw = axis_rows(jaw_slopes_, axis);
+    const Eigen::MatrixXd gathered = between * columns;
+    hessian_.noalias() += columns.transpose() * gathered;
+    const Eigen::MatrixXd across = columns.transpose() * (trusted * jaw);
+    hessian_.rightCols<3>() += across;
+    hessian_.bottomRows<3>() += across.transpose();
+    hessian_.bottomRightCorner<3, 3>() += jaw.transpose() * vertex_weights_.asDiagonal() * jaw;
+  }
+  hessian_ *= square_mm;
+  return true;
+}
+
+/// Turns each eye as its vertices turn, by the rotation of least squares about its centre (Kabsch 1976).
+void Fitter::find_eyes(const Target& target, std::vector<float>& values) const {
+  const rig::Skull& skull = subject_->file().rig.skull;
+  for (const uint8_t eye : {uint8_t{1}, uint8_t{2}}) {
+    const Vec3 centre = (eye == 1 ? skull.eye_left : skull.eye_right).centre.cast<double>();
+    Mat3 sum = Mat3::Zero();
+    double most = 0.0;
+    for (size_t v = 0; v < subject_->vertex_count(); ++v) {
+      if (subject_->eyes()[v] != eye || target.trust[v] <= 0.0) continue;
+      const auto at = static_cast<Eigen::Index>(3 * v);
+      const Vec3 arm = subject_->rest().segment<3>(at) - centre, moved = target.displacements.segment<3>(at);
+      sum += (arm + moved) * arm.transpose();
+      most = std::max(most, moved.norm());
+    }
+    if (most < 1e-5) continue;
+    const Eigen::JacobiSVD<Mat3> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    Mat3 turn = svd.matrixU() * svd.matrixV().transpose();
+    if (turn.determinant() < 0.0) {
+      Mat3 flip = Mat3::Identity();
+      flip(2, 2) = -1.0;
+      turn = svd.matrixU() * flip * svd.matrixV().transpose();
+    }
+    const Vec3 gaze = turn.col(2);
+    const std::string side = eye == 1 ? "left" : "right";
+    for (const auto& [name, angle] : {std::pair{"eye_yaw_", std::atan2(gaze.x(), gaze.z())},
+                                      std::pair{"eye_pitch_", std::asin(std::clamp(gaze.y(), -1.0, 1.0))}}) {
+      const int32_t at = subject_->channel(name + side);
+      if (at < 0) continue;
+      const rig::Channel& channel = subject_->channels()[static_cast<size_t>(at)];
+      values[static_cast<size_t>(at)] =
+          std::clamp(static_cast<float>(angle), channel.minimum, channel.maximum);
+    }
+  }
+}
+
+/// The step of least half-objective in the channels' ranges, by coordinate descent: `slope` is half the
+/// objective's gradient without the price of sizes.
+Eigen::VectorXd Fitter::step(const Eigen::VectorXd& slope, const std::vector<float>& values,
+                             double damping) const {
+  const auto count = static_cast<Eigen::Index>(fitted_.size());
+  Eigen::MatrixXd curvature = hessian_;
+  for (Eigen::Index i = 0; i < count; ++i)
+    curvature(i, i) += damping * hessian_(i, i) +
+                       options_.ridge * dearness_[fitted_[static_cast<size_t>(i)]] +
+                       (last_.empty() ? 0.0 : options_.smoothness) + 1e-12;
+  Eigen::VectorXd move = Eigen::VectorXd::Zero(count), pull = slope;  // pull = slope + curvature move
+  for (int sweep = 0; sweep < 400; ++sweep) {
+    double largest = 0.0;
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const uint32_t c = fitted_[static_cast<size_t>(i)];
+      const rig::Channel& channel = subject_->channels()[c];
+      const double value = values[c];
+      const double next =
+          best_move(pull[i] - curvature(i, i) * move[i], curvature(i, i), options_.sparsity * dearness_[c],
+                    value, channel.minimum, channel.maximum);
+      const double change = next - move[i];
+      if (change == 0.0) continue;
+      pull += change * curvature.col(i);
+      move[i] = next;
+      largest = std::max(largest, std::abs(change));
+    }
+    if (largest < 1e-6) break;
+  }
+  return move;
+}
+
+FitResult Fitter::solve(const Target& target, bool is_next) {
+  Eigen::VectorXd weights = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(subject_->vertex_count()));
+  for (size_t v = 0; v < subject_->vertex_count(); ++v)
+    if (subject_->follows(v)) weights[static_cast<Eigen::Index>(v)] = target.trust[v];
+  if (!(weights.sum() > 0.0)) throw Error("the target tells nothing of the parts of the face that move");
+  weights /= weights.sum();
+  if (vertex_weights_.size() != weights.size() || vertex_weights_ != weights) linear_at_.clear();
+  vertex_weights_ = weights;
+
+  std::vector<float> values;
+  for (const rig::Channel& channel : subject_->channels())
+    values.push_back(channel.rest);
+  if (is_next)
+    values = last_;
+  else
+    last_.clear();
+  find_eyes(target, values);
+  FitResult result;
+  Eigen::VectorXd difference;
+  double value = objective(target, values, is_next, difference), damping = 0.0;
+  for (; result.iterations < options_.iterations; ++result.iterations) {
+    // Columns serve until the face has gone some way from where they were taken; the adjoint stays exact.
+    double away = linear_at_.empty() ? 1.0 : 0.0;
+    for (size_t c = 0; c < linear_at_.size(); ++c)
+      away = std::max(away, static_cast<double>(std::abs(linear_at_[c] - values[c])));
+    const bool is_fresh = away > (is_next ? 0.15 : 0.25);
+    const bool is_linear =
+        is_fresh ? linearise(values)
+                 : is_next || sensitivity_.linearise(subject_->controls(values), subject_->nodes(), true);
+    if (!is_linear) break;
+    Eigen::MatrixXd pulls(vertex_weights_.size(), 3);
+    for (Eigen::Index v = 0; v < pulls.rows(); ++v)
+      pulls.row(v) = square_mm * vertex_weights_[v] * difference.segment<3>(3 * v).transpose();
+    const Eigen::MatrixXd by_node = subject_->weights().transpose() * pulls;
+    Eigen::VectorXd slope_by_node(node_columns_.rows());
+    for (Eigen::Index n = 0; n < by_node.rows(); ++n)
+      slope_by_node.segment<3>(3 * n) = by_node.row(n).transpose();
+    Eigen::VectorXd slope = is_next ? Eigen::VectorXd(node_columns_.transpose() * slope_by_node)
+                                    : sensitivity_.adjoint(slope_by_node, driven_);
+    for (int axis = 0; axis < 3; ++axis)
+      slope.tail<3>() += axis_rows(jaw_slopes_, axis).transpose() * pulls.col(axis);
+    for (Eigen::Index i = 0; i < slope.size(); ++i) {
+      const uint32_t c = fitted_[static_cast<size_t>(i)];
+      slope[i] += options_.ridge * dearness_[c] * static_cast<double>(values[c]);
+      if (!last_.empty()) slope[i] += options_.smoothness * static_cast<double>(values[c] - last_[c]);
+    }
+    bool fell = false;
+    double moved = 0.0, gain = 0.0;
+    for (int attempt = 0; attempt < 6 && !fell; ++attempt) {
+      const Eigen::VectorXd move = step(slope, values, damping);
+      moved = move.cwiseAbs().maxCoeff();
+      if (moved < 1e-4) break;
+      std::vector<float> trial = values;
+      for (Eigen::Index i = 0; i < move.size(); ++i)
+        trial[fitted_[static_cast<size_t>(i)]] += static_cast<float>(move[i]);
+      Eigen::VectorXd trial_difference;
+      const double trial_value = objective(target, trial, true, trial_difference);
+      if (trial_value < value) {
+        fell = true;
+        gain = value - trial_value;
+        values = trial;
+        value = trial_value;
+        difference = trial_difference;
+        damping = attempt == 0 ? 0.25 * damping : damping;
+      } else {
+        damping = std::max(0.05, 4.0 * damping);  // Levenberg and Marquardt
+      }
+    }
+    if (!fell) {
+      subject_->pose(values, true);
+      if (!is_fresh && away > 0.0 && moved >= 1e-4) {  // columns of elsewhere mislead
+        linear_at_.clear();
+        damping = 0.0;
+        continue;
+      }
+      result.converged = true;  // nothing near is better
+      break;
+    }
+    if (moved < 2e-3 || gain < 1e-4 * value + 1e-7) {
+      ++result.iterations;
+      result.converged = true;
+      break;
+    }
+  }
+  result.activations = values;
+  if (is_sequence_) last_ = values;
+  finish(target, result);
+  return result;
+}
+
+void Fitter::finish(const Target& target, FitResult& result) {
+  if (!is_sequence_) subject_->pose(result.activations, false);
+  result.displacements = subject_->displacements(result.activations);
+  double left = 0.0, whole = 0.0, trust = 0.0, miss = 0.0, miss_moved = 0.0;
+  size_t count = 0, count_moved = 0;
+  for (size_t v = 0; v < subject_->vertex_count(); ++v) {
+    if (target.trust[v] <= 0.0) continue;
+    const auto at = static_cast<Eigen::Index>(3 * v);
+    const Vec3 wanted = target.displacements.segment<3>(at),
+               gap = result.displacements.segment<3>(at) - wanted;
+    left += target.trust[v] * gap.squaredNorm();
+    whole += target.trust[v] * wanted.squaredNorm();
+    trust += target.trust[v];
+    miss += gap.norm();
+    ++count;
+    if (wanted.norm() > 5e-4) {
+      miss_moved += gap.norm();
+      ++count_moved;
+    }
+  }
+  result.share = whole > 0.0 ? 1.0 - left / whole : left > 0.0 ? 0.0 : 1.0;
+  result.rms_mm = 1e3 * std::sqrt(left / trust);
+  result.error_mm = 1e3 * (count_moved > 0 ? miss_moved / static_cast<double>(count_moved)
+                                           : miss / static_cast<double>(count));
+  result.spread.assign(result.activations.size(), 0.0);
+  if (hessian_.size() == 0) return;
+  Eigen::MatrixXd curvature = hessian_;
+  for (Eigen::Index i = 0; i < curvature.rows(); ++i)
+    curvature(i, i) += options_.ridge * dearness_[fitted_[static_cast<size_t>(i)]] + 1e-12;
+  const Eigen::MatrixXd inverse =
+      curvature.ldlt().solve(Eigen::MatrixXd::Identity(curvature.rows(), curvature.cols()));
+  constexpr double rise_mm = 0.05;
+  for (Eigen::Index i = 0; i < inverse.rows(); ++i) {
+    const rig::Channel& channel = subject_->channels()[fitted_[static_cast<size_t>(i)]];
+    result.spread[fitted_[static_cast<size_t>(i)]] =
+        std::min(static_cast<double>(channel.maximum - channel.minimum),
+                 rise_mm * std::sqrt(std::max(0.0, inverse(i, i))));
+    for (Eigen::Index j = 0; j < i; ++j) {
+      const uint32_t a = fitted_[static_cast<size_t>(j)], b = fitted_[static_cast<size_t>(i)];
+      const bool in_use = std::max(std::abs(result.activations[a]), std::abs(result.activations[b])) > 0.02F;
+      if (in_use && std::abs(inverse(i, j)) > 0.9 * std::sqrt(inverse(i, i) * inverse(j, j)))
+        result.alike.emplace_back(a, b);
+    }
+  }
+}
+
+}  // namespace fascia::fit

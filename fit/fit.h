@@ -1,0 +1,86 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fit/subject.h"
+#include "sim/sensitivity.h"
+
+namespace fascia::fit {
+
+/// What a face should look like: where each vertex should go, and how far it is to be trusted.
+struct Target {
+  Eigen::VectorXd displacements;  ///< 3 x #vertices of the subject, metres from rest
+  std::vector<double> trust;      ///< #vertices, 0 where nothing is known of a vertex
+};
+
+struct FitOptions {
+  /// What activations cost, in square millimetres of mean squared error: their squares, and their sizes.
+  /// Channels that the rig's expression tables seldom use cost more.
+  double ridge = 2e-4;
+  double sparsity = 2e-4;
+  /// The same for the square of a change from one frame to the next.
+  double smoothness = 2e-3;
+  int iterations = 30;  ///< Gauss-Newton steps at most
+};
+
+struct FitResult {
+  std::vector<float> activations;  ///< one a channel of the rig
+  double share = 0.0;              ///< 1 - sum |u - v|^2 / sum |v|^2 over trusted vertices
+  double error_mm = 0.0;  ///< mean distance left where the target moves more than 0.5 mm; else over all
+  double rms_mm = 0.0;    ///< root mean square distance left over trusted vertices
+  int iterations = 0;
+  bool converged = false;
+  Eigen::VectorXd
+      displacements;  ///< 3 x #vertices, metres: the fitted pose, solved from rest as `pose` would
+  /// By channel: how far the activation may go, all others following as suits best, before the root mean
+  /// square error has risen by 0.05 mm (from the Hessian of the fit); 0 for channels that are not fitted.
+  std::vector<double> spread;
+  /// Pairs of channels in use that the target hardly tells apart: correlation beyond 0.9 in that Hessian's
+  /// inverse.
+  std::vector<std::pair<uint32_t, uint32_t>> alike;
+};
+
+/// Finds the activations whose static pose comes nearest to targets: Gauss-Newton steps on the full
+/// simulation, with contact, in the channels' ranges (Sifakis, Neverov & Fedkiw 2005, "Automatic
+/// determination of facial muscle activations from sparse motion capture marker data", section 4), gradients
+/// by the adjoint of the equilibrium.
+///
+/// Channels that only move the mandible, as its own three do, stay at rest, so that the answer is one; the
+/// eyes turn as their meshes do.
+class Fitter {
+ public:
+  explicit Fitter(Subject& subject, const FitOptions& options = {});
+
+  /// Throws fascia::Error when the target trusts no vertex that the rig moves.
+  FitResult fit(const Target& target);
+  /// The next frame of a take: begins at the last result and keeps near it.
+  FitResult follow(const Target& target);
+
+ private:
+  FitResult solve(const Target& target, bool is_next);
+  /// Mean squared error and cost of `values`; poses the subject.
+  double objective(const Target& target, const std::vector<float>& values, bool warm,
+                   Eigen::VectorXd& difference);
+  double cost(const std::vector<float>& values) const;
+  bool linearise(const std::vector<float>& values);
+  void find_eyes(const Target& target, std::vector<float>& values) const;
+  Eigen::VectorXd step(const Eigen::VectorXd& slope, const std::vector<float>& values, double damping) const;
+  void finish(const Target& target, FitResult& result);
+
+  Subject* subject_;
+  FitOptions options_;
+  sim::Sensitivity sensitivity_;
+  std::vector<uint32_t> driven_;    ///< channels fitted that tissue listens to
+  std::vector<uint32_t> fitted_;    ///< those, then the jaw's
+  std::vector<double> dearness_;    ///< by channel: cost beside that of a common one
+  std::vector<float> last_;         ///< the last frame's activations
+  std::vector<float> linear_at_;    ///< where the columns below were taken
+  Eigen::MatrixXd node_columns_;    ///< 3 #nodes x #fitted
+  Eigen::MatrixXd jaw_slopes_;      ///< 3 #vertices x 3
+  Eigen::MatrixXd hessian_;         ///< #fitted square: of the mean squared error in mm^2, halved
+  Eigen::VectorXd vertex_weights_;  ///< #vertices: trust over its sum
+  bool is_sequence_ = false;
+};
+
+}  // namespace fascia::fit
