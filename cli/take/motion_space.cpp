@@ -87,6 +87,11 @@ void MotionSpace::take_block() {
   coefficients_.block(0, first, known, count).noalias() = used.transpose() * sampled_frames_;
   sampled_left_ = sampled_frames_;
   sampled_left_.noalias() -= used * coefficients_.block(0, first, known, count);
+  // What single precision leaves of a frame is noise: a direction made of it would be wrong everywhere.
+  float largest = 0.0F;
+  for (Index f = 0; f < count; ++f)
+    largest = std::max(largest, largest_length(sampled_frames_.col(f)));
+  const double noise = 1e-5 * largest;
   while (true) {
     Index worst = 0;
     float most = 0.0F;
@@ -95,7 +100,7 @@ void MotionSpace::take_block() {
         most = left;
         worst = f;
       }
-    if (!(most > options_.tolerance)) break;
+    if (!(most > std::max(options_.tolerance, noise))) break;
     if (directions_.size() >= options_.most_directions) give_up_the_least();
     extend(worst);
   }

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
-#include "formats/gltf_document.h"
+#include "gltf/edit/document.h"
 
 namespace fascia::formats {
 namespace {

@@ -253,9 +253,10 @@ TEST_F(Moved, SlowMotionGoesInEqualSteps) {
       ASSERT_EQ(fascia_face_set(usual, "jaw_open", 0.9F), FASCIA_OK);
       const std::vector<double> frames = moves(usual, std::vector<float>(10, frame));
       const double largest = *std::max_element(frames.begin(), frames.end());
-      // A step moves its share of the fastest frame and never a whole substep at once.
+      // A step moves about its share of the fastest frame; a whole substep at once would be 2.5 shares or
+      // more.
       for (std::size_t i = 0; i < steps.size(); ++i)
-        EXPECT_LE(steps[i], 1.6 * largest / slowness) << slowness << ": step " << i;
+        EXPECT_LE(steps[i], 2.0 * largest / slowness) << slowness << ": step " << i;
     }
 }
 
