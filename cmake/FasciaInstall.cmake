@@ -68,7 +68,7 @@ if(TARGET fascia_bullet_module)
 endif()
 
 set(FASCIA_BUILDER_DEPENDENCIES Eigen3 nlohmann_json embree TBB)
-if(TARGET draco::draco)
+if(TARGET fascia_gltf_edit)
   list(APPEND FASCIA_BUILDER_DEPENDENCIES draco meshoptimizer)
 endif()
 list(JOIN FASCIA_BUILDER_DEPENDENCIES " " FASCIA_BUILDER_DEPENDENCIES)

@@ -106,7 +106,7 @@ void take_in_pictures(const Resolver& resolve, Json& root, std::vector<uint8_t>&
                       std::vector<std::string>& warnings) {
   std::map<std::string, std::size_t> views;
   for (std::size_t i = 0; i < length_of(root, "images"); ++i) {
-    Json& image = root["images"][i];
+    const Json image = root["images"][i];
     if (!image.contains("uri")) continue;
     const auto uri = image["uri"].get<std::string>();
     auto data = data_uri(uri);
@@ -130,9 +130,11 @@ void take_in_pictures(const Resolver& resolve, Json& root, std::vector<uint8_t>&
           {{"buffer", 0}, {"byteOffset", bin.size()}, {"byteLength", file.bytes->size()}});
       bin.insert(bin.end(), file.bytes->begin(), file.bytes->end());
     }
-    image.erase("uri");
-    image["bufferView"] = entry->second;
-    image["mimeType"] = type;
+    // Fetched anew: a property added to an ordered object moves the others.
+    Json& held = root["images"][i];
+    held.erase("uri");
+    held["bufferView"] = entry->second;
+    held["mimeType"] = type;
   }
 }
 

@@ -198,9 +198,6 @@ void check_ranges(const Rig& rig, const std::string& name) {
     throw Error(name + ": " + skull_extension + "/jaw: it opens by more than half a turn");
   for (std::size_t level = 0; level < rig.tissue.levels.size(); ++level) {
     const std::string path = tissue + "/levels/" + std::to_string(level);
-    // A kilometre: a face that far off, or a lattice that large, is none.
-    for (const Vec3f& rest : rig.tissue.levels[level].rest)
-      if (!(rest.cwiseAbs().maxCoeff() < 1e3F)) throw Error(path + "/rest: a node is a kilometre away");
     for (const Binding& binding : rig.tissue.bindings[level]) {
       check_map(binding.to_rig, path + "/bindings/toRig");
       for (const float weight : binding.weights)

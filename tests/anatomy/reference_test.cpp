@@ -31,7 +31,8 @@ TriangleMesh joined(const formats::Scene& scene, const std::string& only = {}) {
   for (const formats::SceneMesh& part : scene.meshes) {
     if (!only.empty() && part.name != only) continue;
     const int first = mesh.vertex_count();
-    mesh.vertices.insert(mesh.vertices.end(), part.positions.begin(), part.positions.end());
+    for (const Vec3& position : part.positions)
+      mesh.vertices.push_back(position + scene.offset);
     for (const Triangle& t : part.triangles)
       mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
   }

@@ -115,13 +115,17 @@ TEST(Appendix, IsSparseOnlyWhereThatIsSmaller) {
   Appendix appendix(root, bin);
   std::vector<Vec3f> few(100, Vec3f::Zero());
   few[7] = Vec3f(1, -2, 3);
-  const Json sparse = root["accessors"][appendix.add_vectors(few, true)];
+  const auto added = [&](const std::vector<Vec3f>& vectors) {
+    const std::size_t index = appendix.add_vectors(vectors, true);
+    return Json(root["accessors"][index]);
+  };
+  const Json sparse = added(few);
   EXPECT_EQ(sparse["sparse"]["count"], 1);
   EXPECT_EQ(sparse["min"], Json({0.0, -2.0, 0.0}));
   EXPECT_EQ(sparse["max"], Json({1.0, 0.0, 3.0}));
-  const Json none = root["accessors"][appendix.add_vectors(std::vector<Vec3f>(100, Vec3f::Zero()), true)];
+  const Json none = added(std::vector<Vec3f>(100, Vec3f::Zero()));
   EXPECT_EQ(none["sparse"]["count"], 1);
-  const Json dense = root["accessors"][appendix.add_vectors(std::vector<Vec3f>(100, Vec3f::Ones()), true)];
+  const Json dense = added(std::vector<Vec3f>(100, Vec3f::Ones()));
   EXPECT_FALSE(dense.contains("sparse"));
 }
 
