@@ -1,5 +1,6 @@
 #include <set>
 
+#include "builder/rigging/shared_vertices.h"
 #include "builder/rigging/stages.h"
 #include "builder/tissue/build.h"
 #include "geometry/error.h"
@@ -140,8 +141,10 @@ rig::Tissue build_tissue(const formats::Scene& scene, const prepare::PreparedHea
                                 " turned prisms at rest");
   }
   const std::vector<MeshPart> parts = take_apart(scene, head);
-  for (std::vector<rig::Binding>& bindings : built.tissue.bindings)
+  for (std::vector<rig::Binding>& bindings : built.tissue.bindings) {
     bindings = put_together(scene, head, parts, bindings);
+    share_vertices(scene, bindings);
+  }
   return std::move(built.tissue);
 }
 
