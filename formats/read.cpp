@@ -81,7 +81,9 @@ void take_offset_out(Scene& scene) {
   for (SceneMesh& mesh : scene.meshes) {
     for (Vec3& p : mesh.positions)
       p -= scene.offset;
-    mesh.to_file.topRightCorner<3, 1>() -= scene.offset;
+    // The coordinates of a glTF's primitives stay as they are; those of other formats are what `positions`
+    // says.
+    if (scene.bytes.empty()) mesh.to_file.topRightCorner<3, 1>() -= scene.offset;
   }
 }
 

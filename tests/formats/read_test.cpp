@@ -155,6 +155,7 @@ TEST(Read, TakesAFarOriginOff) {
       read("far.obj", bytes_of("v 500000 4649776.25 0\nv 500001.25 4649776.25 0\nv 500000 4649777.25 0\n"
                                "f 1 2 3\n"));
   EXPECT_TRUE(near.offset.isZero(0));
+  EXPECT_EQ(far.meshes[0].to_file, Mat4(Mat4::Identity()));
   for (size_t v = 0; v < 3; ++v) {
     EXPECT_LT(far.meshes[0].positions[v].norm(), 10);
     EXPECT_EQ(Vec3(far.meshes[0].positions[v] + far.offset),
@@ -296,6 +297,13 @@ TEST(ReadGltf, WarnsOfARequiredExtensionNobodyKnows) {
   const Scene scene = read("x.gltf", bytes_of(text));
   ASSERT_EQ(scene.warnings.size(), 1u);
   EXPECT_NE(scene.warnings[0].find("ACME_shapes"), std::string::npos);
+}
+
+TEST(ReadGltf, FarNodesComeNearAndTheirPrimitivesStay) {
+  const Scene scene = read("far.gltf", bytes_of(gltf_with(R"([{"mesh":0,"translation":[100000,0,-7000]}])")));
+  EXPECT_GT(scene.offset.norm(), 9e4);
+  EXPECT_LT(scene.meshes[0].positions[1].norm(), 10);
+  EXPECT_EQ(transform_point(scene.meshes[0].to_file, Vec3(1, 0, 0)), scene.meshes[0].positions[1]);
 }
 
 TEST(ReadGltf, ChainsOfNodesMayBeLong) {
