@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "gltf/edit/document.h"
+#include "gltf/read/container.h"
 
 namespace fascia::formats {
 namespace {
@@ -34,7 +35,7 @@ class Maker {
   std::vector<uint8_t> glb() {
     binary.resize((binary.size() + 3) / 4 * 4);
     json["buffers"] = Json::array({{{"byteLength", binary.size()}}});
-    return glb_bytes({json.dump(), binary});
+    return gltf::glb_bytes(json.dump(), binary);
   }
   Json json = {{"asset", {{"version", "2.0"}}}, {"scene", 0}, {"scenes", Json::array({{{"nodes", {0}}}})}};
   std::vector<uint8_t> binary;
@@ -89,7 +90,7 @@ std::vector<double> numbers(const Scene& scene, const Json& json, size_t index, 
   for (size_t i = 0; i < accessor["count"].get<size_t>(); ++i)
     for (size_t k = 0; k < width; ++k) {
       T value;
-      std::memcpy(&value, &scene.document.binary[begin + i * stride + k * sizeof(T)], sizeof value);
+      std::memcpy(&value, &scene.document.bin[begin + i * stride + k * sizeof(T)], sizeof value);
       values.push_back(static_cast<double>(value));
     }
   return values;
@@ -98,13 +99,13 @@ std::vector<double> numbers(const Scene& scene, const Json& json, size_t index, 
 TEST(Extend, CarriesAllAttributesOfGltf) {
   Scene scene = read("square.glb", square());
   const Json before = Json::parse(scene.document.json);
-  const std::vector<uint8_t> bytes = scene.document.binary;
+  const std::vector<uint8_t> bytes = scene.document.bin;
   const MeshExtension extension = split(scene);
   rewrite(scene, {extension});
   const Json json = Json::parse(scene.document.json);
   const Json& primitive = json["meshes"][0]["primitives"][0];
   EXPECT_TRUE(primitive["extras"]["kept"].get<bool>());
-  EXPECT_TRUE(std::equal(bytes.begin(), bytes.end(), scene.document.binary.begin()));
+  EXPECT_TRUE(std::equal(bytes.begin(), bytes.end(), scene.document.bin.begin()));
   const auto of = [&](const char* name) { return primitive["attributes"][name].get<size_t>(); };
   const auto positions = numbers<float>(scene, json, of("POSITION"), 3);
   ASSERT_EQ(positions.size(), 15U);
@@ -124,7 +125,7 @@ TEST(Extend, CarriesAllAttributesOfGltf) {
   ASSERT_TRUE(target.contains("sparse"));
   EXPECT_EQ(target["sparse"]["count"], 2);
   // As any reader sees it.
-  const Scene again = read("square.glb", glb_bytes(scene.document));
+  const Scene again = read("square.glb", gltf::glb_bytes(scene.document.json, scene.document.bin));
   ASSERT_EQ(again.meshes[0].positions.size(), 5U);
   EXPECT_LT((again.meshes[0].positions[4] - scene.meshes[0].positions[4]).norm(), 1e-6);
   EXPECT_EQ(again.meshes[0].triangles, scene.meshes[0].triangles);
@@ -140,7 +141,7 @@ TEST(Extend, AddsAMeshWithANodeOfItsOwn) {
   const std::vector<MeshExtension> extensions = {unchanged(scene.meshes[0])};
   scene.meshes.push_back(ball);
   rewrite(scene, extensions);
-  const Scene again = read("square.glb", glb_bytes(scene.document));
+  const Scene again = read("square.glb", gltf::glb_bytes(scene.document.json, scene.document.bin));
   ASSERT_EQ(again.meshes.size(), 2U);
   EXPECT_EQ(again.meshes[1].name, "ball");
   for (size_t v = 0; v < ball.positions.size(); ++v)
