@@ -92,7 +92,7 @@ std::optional<RoundPart> round_part(const std::vector<Vec3>& points, const Vec3&
   RoundPart part;
   part.ball = fit_sphere(points, &rms);
   const Eyeball& ball = part.ball;
-  if (!(rms < 0.12 * ball.radius) || ball.radius < 0.2 * width || ball.radius > 0.85 * width ||
+  if (!(rms < 0.12 * ball.radius) || ball.radius < 0.2 * width || ball.radius > 1.1 * width ||
       (ball.centre - lids).norm() > width || ball.centre.z() > lids.z() + 0.3 * ball.radius)
     return std::nullopt;
   std::bitset<24> covered;

@@ -19,7 +19,7 @@ struct RoundPart {
 };
 
 /// Fits a ball to `points` (rig frame, metres) of a connected part; nothing when they are not round, not of
-/// the size of an eyeball behind a palpebral fissure `width` metres wide (0.2 to 0.85 of it in radius), not
+/// the size of an eyeball behind a palpebral fissure `width` metres wide (0.2 to 1.1 of it in radius), not
 /// within its width of the middle `lids` between the corners of the eye, or round about a place before the
 /// lids, as eyes that are painted on a hollow are.
 std::optional<RoundPart> round_part(const std::vector<Vec3>& points, const Vec3& lids, double width = 0.030);

@@ -101,10 +101,12 @@ struct Placed {
 std::optional<Placed> in_mouth(const Component& component, const std::map<std::string, Vec3>& landmarks) {
   const auto left = landmark(landmarks, "cheilion_left"), right = landmark(landmarks, "cheilion_right");
   if (!left || !right) return std::nullopt;
-  const Vec3 mouth = 0.5 * (*left + *right), from = component.box.centre() - mouth,
-             size = component.box.size();
+  const Vec3 mouth = 0.5 * (*left + *right);
+  // Lengths are an adult's; the mouths of stylised heads are wider, and what is in them larger.
+  const double scale = std::clamp((*left - *right).norm() / 0.052, 1.0, 2.5);
+  const Vec3 from = (component.box.centre() - mouth) / scale, size = component.box.size() / scale;
   const bool is_inside = std::abs(from[0]) < 0.04 && from[1] > -0.045 && from[1] < 0.035 && from[2] > -0.07 &&
-                         component.box.upper[2] < mouth[2] + 0.02;
+                         component.box.upper[2] < mouth[2] + 0.02 * scale;
   if (!is_inside) return std::nullopt;
   const bool is_tongue = std::abs(from[0]) < 0.004 && size[0] > 0.02 && size[0] < 0.06 && size[1] < 0.048 &&
                          size[2] > 0.03 && from[1] < 0.003 && from[2] < -0.02 && !is_arch(component);
