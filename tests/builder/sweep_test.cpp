@@ -84,9 +84,9 @@ TEST(Lids, AFullBlinkShutsTheEyesAndGoesNoFarther) {
       EXPECT_LE(seen_of_the_eye(face, skull.eye_right), 3) << names[0];
       const SweptFace::State state = face.state(1e-3);
       for (const size_t eye : {1, 2}) {
-        // Edges may overlap by 0.3 mm, and the contact is a penalty: driven together they lap over by a
-        // millimetre.
-        EXPECT_LT(state.lattice[eye].depth, names.size() == 2 ? 7e-4 : 1.3e-3) << names[0];
+        // Edges may overlap by 0.3 mm, and the contact is a penalty: driven together they lap over by one
+        // or two millimetres.
+        EXPECT_LT(state.lattice[eye].depth, names.size() == 2 ? 7e-4 : 2e-3) << names[0];
         EXPECT_LE(state.rendered[eye].count, 4) << names[0];  // at the outer canthus
       }
     }
