@@ -57,10 +57,11 @@ void measure(const testing::MeasuredHead& head, const anatomy::GenericAnatomy& a
       }
     }
     std::printf(
-        "%-48s mean %5.2f max %5.2f mm (%s), least confidence %.2f, %s, %.2f s (head %.2f prepare %.2f "
+        "%-48s likeness %.2f mean %5.2f max %5.2f mm (%s), least confidence %.2f, %s, %.2f s (head %.2f "
+        "prepare %.2f "
         "landmarks %.2f)\n",
-        head.name.c_str(), sum / static_cast<double>(head.truth.size()), most, worst.c_str(), least,
-        found.head.units.c_str(), time, found.seconds[0], found.seconds[1], found.seconds[2]);
+        head.name.c_str(), found.likeness, sum / static_cast<double>(head.truth.size()), most, worst.c_str(),
+        least, found.head.units.c_str(), time, found.seconds[0], found.seconds[1], found.seconds[2]);
   } catch (const std::exception& error) {
     std::printf("%-48s FAILED: %s\n", head.name.c_str(), error.what());
   }

@@ -51,11 +51,11 @@ constexpr double far_off = 0.012;
 /// turned, moved or made of other triangles gives the same landmarks.
 Placement settled(const GenericFace& face, const Samples& samples, Placement placement,
                   const std::vector<Anchor>& anchors) {
-  RegistrationOptions stiff;
-  stiff.stages = {{10, 4, 3}, {3, 4, 2}};
-  stiff.last_reach = 0.015;
-  for (int round = 0; round < 4; ++round)
-    placement = similarity_of(face, register_face(face, samples, placement, anchors, stiff));
+  RegistrationOptions supple;  // a stiffer fit slides along chin and lips
+  supple.stages = {{10, 3, 1}, {3, 3, 1}, {1, 3, 2}, {0.3, 3, 2}};
+  supple.last_reach = 0.012;
+  for (int round = 0; round < 2; ++round)
+    placement = similarity_of(face, register_face(face, samples, placement, anchors, supple));
   return placement;
 }
 

@@ -1,5 +1,6 @@
 #include "builder/landmarks/find_head.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -52,6 +53,23 @@ Ball vault_of(const GenericFace& face, const Placement& placement) {
   return {placement(face.vault.centre), face.vault.radius * placement.scale};
 }
 
+/// A step aside from a placement: radians of nod, growth, metres of the generic head upward.
+struct Beside {
+  double nod, growth, up;
+};
+constexpr Beside places_beside[] = {{0.2, 1, 0},   {-0.2, 1, 0},   {0, 1.12, 0},    {0, 0.89, 0},
+                                    {0, 1, 0.012}, {0, 1, -0.012}, {0.12, 1, 0.01}, {-0.12, 1, -0.01}};
+
+/// `placement` a step aside, about the middle of the face.
+Placement moved_beside(const Placement& placement, const Beside& beside) {
+  const Vec3 middle(0, 0, 0.09);
+  Placement moved = placement;
+  moved.scale *= beside.growth;
+  moved.rotation = placement.rotation * Eigen::AngleAxisd(beside.nod, Vec3::UnitX()).toRotationMatrix();
+  moved.shift = placement(middle + Vec3(0, beside.up, 0)) - moved.scale * (moved.rotation * middle);
+  return moved;
+}
+
 /// Looks for one head in one surface.
 class Search {
  public:
@@ -74,6 +92,26 @@ class Search {
   void by_eyes() {
     const Ball all = surface_.all();
     try_all(guess_by_eyes(face_, surface_.mesh(), surface_.about(all), 24), all, 8);
+  }
+  /// From beside the best place: nodding, larger and smaller, higher and lower. A fit may rest with lips on
+  /// chin or nose on lips, and what is next to it is better; that the same head ends in the same place
+  /// however it is turned depends on this too.
+  void about_best() {
+    for (int round = 0; round < 2 && !best_.fit.used.empty(); ++round) {
+      if (has_face(sure_score)) return;
+      const Candidate from = best_;
+      for (const Beside& beside : places_beside) {
+        Candidate candidate = from;
+        candidate.placement = moved_beside(from.placement, beside);
+        candidate.placement = refine_placement(face_, surface_.about(vault_of(face_, candidate.placement)),
+                                               candidate.placement, 6, 3, nullptr, hints_.given);
+        bend(candidate);
+        Candidate unrefined = from;
+        unrefined.placement = moved_beside(from.placement, beside);
+        bend(unrefined);
+      }
+      if (best_.likeness.score() < 1.02 * from.likeness.score()) return;
+    }
   }
   void by_nose() {
     const Ball all = surface_.all();
@@ -174,14 +212,17 @@ FoundHead find_head(const GenericFace& face, std::span<const TriangleMesh> surfa
     looked.push_back({std::move(surface), std::move(search), s});
     if (is_told) {
       looked.back().search->by_anchors();
+      looked.back().search->about_best();
     } else {
       looked.back().search->by_lumps();
+      if (looked.back().search->has_face(0.5 * least_score)) looked.back().search->about_best();
       if (!looked.back().search->has_face(plain_score)) looked.back().search->by_eyes();
     }
     is_plain = judge(looked.back());
   }
   for (size_t s = 0; s < std::min(looked.size(), surfaces_for_noses) && !is_plain && !is_told; ++s) {
     looked[s].search->by_nose();
+    if (looked[s].search->has_face(0.5 * least_score)) looked[s].search->about_best();
     is_plain = judge(looked[s]);
   }
   if (!best || (!is_told && !best->search->has_face(least_score))) refuse(path, surfaces.size());
