@@ -8,7 +8,7 @@ namespace {
 // and more.
 constexpr double least_bend = 0.12, most_bend = 0.75;
 // The crease of a closed upper lid bends by less than this share of the valley where the lids meet.
-constexpr double crease_share = 0.7;
+constexpr double crease_share = 0.3;
 
 /// The valley where an open eye's upper lid would end, a fissure's height (10 mm of 29, Farkas 1994) above
 /// `line`.
