@@ -131,7 +131,7 @@ TEST_F(FilesOfTheTool, AHeadFarFromTheOriginWithOldLineEndsIsPosedLikeTheOther) 
   // Millimetres. A head moved a little is cut into slightly other elements, as one near the origin is too.
   std::sort(apart.begin(), apart.end());
   EXPECT_LT(std::accumulate(apart.begin(), apart.end(), 0.0) / static_cast<double>(apart.size()), 0.05);
-  EXPECT_LT(apart[apart.size() * 95 / 100], 0.1);
+  EXPECT_LT(apart[apart.size() * 95 / 100], 0.25);
   // All but digits of vertices is as it came, line ends too.
   const std::string text = text_of(at("far.posed.obj"));
   EXPECT_EQ(text.find('\n'), std::string::npos);
