@@ -9,7 +9,7 @@ globalThis.self = globalThis;
 globalThis.Image = class {
   set src(_) {
     this.height = 1;
-    this.onload?.();
+    queueMicrotask(() => this.onload?.());
   }
 };
 globalThis.createImageBitmap = async () => ({width: 1, height: 1, close() {}});
