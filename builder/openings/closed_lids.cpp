@@ -4,10 +4,11 @@ namespace fascia::openings {
 
 namespace {
 
-// The valley of closed lids bends by 0.3 to 0.45 rad in the mean on scans; the step beside an eyeball, by 1
-// and more.
-constexpr double least_bend = 0.12, most_bend = 0.75;
-// The crease of a closed upper lid bends by less than this share of the valley where the lids meet.
+// Radians, in the mean along the line: less cannot be seen. Over an eyeball of the head's own closed lids lie
+// smooth; the step beside an open one bends by 1 and more.
+constexpr double least_bend = 0.12, most_bend_over_eyeball = 0.75;
+// The crease of a closed upper lid over the valley where the lids meet: 0.22 with the generic head's lids
+// drawn down; 0.5 to 1.6 under the upper lid of open eyes in one piece with their lids (scans, statues).
 constexpr double crease_share = 0.3;
 
 /// The valley where an open eye's upper lid would end, a fissure's height (10 mm of 29, Farkas 1994) above
@@ -41,9 +42,10 @@ bool eyeball_shows(const prepare::Eyeball& ball, const spatial::SurfaceQuery& sk
 }
 
 std::optional<std::string> doubt_of_closed_lids(const spatial::SurfaceQuery& skin, const MeetingLine& line,
-                                                const FaceAxes& face) {
+                                                const FaceAxes& face, bool has_eyeball) {
   if (line.clearness < least_bend) return "there is no furrow where the lids would meet";
-  if (line.clearness > most_bend) return "the furrow is deeper than that of closed lids";
+  if (has_eyeball && line.clearness > most_bend_over_eyeball)
+    return "the furrow is deeper than that of closed lids";
   if (upper_valley(skin, line, face).clearness > crease_share * line.clearness)
     return "there is a second furrow above it, as under the upper lid of an open eye";
   return std::nullopt;

@@ -14,9 +14,10 @@ bool eyeball_shows(const prepare::Eyeball& ball, const spatial::SurfaceQuery& sk
 /// Why the lids along `line`, whose surface goes on across it, may not be closed ones all the same; nothing
 /// when they look closed.
 ///
-/// Closed lids meet in one shallow valley. An eye that is modelled open in one piece with its lids has a deep
-/// step under its upper lid besides.
+/// Closed lids meet in one valley, a shallow one where `has_eyeball` says that they lie on an eyeball of the
+/// head's own. An eye that is modelled open in one piece with its lids has a step under its upper lid
+/// besides.
 std::optional<std::string> doubt_of_closed_lids(const spatial::SurfaceQuery& skin, const MeetingLine& line,
-                                                const FaceAxes& face);
+                                                const FaceAxes& face, bool has_eyeball);
 
 }  // namespace fascia::openings

@@ -17,7 +17,7 @@ struct Cut {
   std::map<int, std::vector<Triangle>> triangles;  ///< what takes the place of a triangle of the mesh
   Vec3 apart = Vec3::Zero();  ///< from an upper place to its lower one, metres: so little that nobody sees
                               ///< it, and enough that no later reader welds the two
-  bool is_lined = false;  ///< more surface hangs on the edges already: lips or lids that had been welded
+  bool is_lined = false;      ///< more surface hangs on the edges already: lips or lids that had been welded
 
   /// The node that a new vertex stands at.
   const PathNode& node_of(int vertex) const {

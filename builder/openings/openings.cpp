@@ -116,7 +116,7 @@ bool are_lids_closed(const prepare::PreparedHead& head, const Points& landmarks,
     if (own && eyeball_shows(*own, *head.surface, line)) continue;
     if (!is_fused(head.skin, links, *head.surface, line)) continue;
     ++fused;
-    const auto why = doubt_of_closed_lids(*head.surface, line, face);
+    const auto why = doubt_of_closed_lids(*head.surface, line, face, own.has_value());
     if (why && !doubt) doubt = *why;
   }
   if (fused == 0) return false;

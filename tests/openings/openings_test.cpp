@@ -73,7 +73,7 @@ TEST(Openings, PartsClosedLipsAndLids) {
   const Case c = open(closed.skin, closed.landmarks);
   EXPECT_EQ(names(c.opened), (std::vector<std::string>{"mouth", "eye_left", "eye_right"}));
   EXPECT_EQ(c.opened.added, (std::vector<std::string>{"eye_left", "eye_right"}));
-  EXPECT_TRUE(c.opened.warnings.empty());
+  EXPECT_TRUE(c.opened.warnings.empty()) << c.opened.warnings[0];
   // A surface as whole as before: no crack beside the cut, no edge of three triangles, lining sewn on.
   EXPECT_EQ(open_edges(c.head.skin), open_edges(c.before.skin));
   EXPECT_EQ(connectivity(c.head.skin).irregular_edges, connectivity(c.before.skin).irregular_edges);
