@@ -30,8 +30,10 @@ anatomy::GenericAnatomy anatomy_for(const std::filesystem::path& directory);
 /// Adds `--anatomy DIR` to a command that builds.
 void add_anatomy_option(CLI::App& command, std::filesystem::path& directory);
 
-/// Reads the head, builds its rig, writes it and checks it shortly; what the check finds is among the report's
-/// warnings, and how many rows failed in `failed_checks` when that is not null. Throws fascia::Error.
-rigging::BuildReport build_file(const Common& common, const BuildRequest& request, int* failed_checks = nullptr);
+/// Reads the head, builds its rig, writes it and checks it shortly; what the check finds is among the
+/// report's warnings, and how many rows failed in `failed_checks` when that is not null. Throws
+/// fascia::Error.
+rigging::BuildReport build_file(const Common& common, const BuildRequest& request,
+                                int* failed_checks = nullptr);
 
 }  // namespace fascia::cli

@@ -19,7 +19,7 @@ struct FoundLandmarks {
   prepare::PreparedHead head;
   std::map<std::string, landmarks::SkinLandmark> landmarks;  ///< metres, rig frame
   std::optional<landmarks::FaceRegions>
-      regions;            ///< of the vertices of `head.skin`; nothing when nothing was searched
+      regions;                      ///< of the vertices of `head.skin`; nothing when nothing was searched
   double likeness = 1.0;            ///< how face-like what was found is, 0 to 1; 1 when nothing was searched
   bool is_inside_out = false;       ///< the file's triangles face inward; those of `head` were turned
   std::array<double, 3> seconds{};  ///< for finding the head, preparing it, placing the landmarks

@@ -19,7 +19,6 @@
 namespace fascia::skull {
 namespace {
 
-
 void check_scale(double scale, const std::string& what) {
   if (!(scale >= 0.05 && scale <= 10))
     throw Error("skull: " + what + " " + std::to_string(scale) + " is outside 0.05 to 10; 1 is an adult");

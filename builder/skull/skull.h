@@ -69,7 +69,7 @@ struct FitOptions {
   const TriangleMesh* teeth_lower = nullptr;
   double teeth_deviation = 0.0005;  ///< of the bone from those teeth, m; above 0.001 they bend the jaws
                                     ///< towards them instead of replacing the generic ones
-  bool trim_uncovered = true;  ///< leave out what would lie under skin that the head does not have
+  bool trim_uncovered = true;       ///< leave out what would lie under skin that the head does not have
 };
 
 struct FittedLandmark {

@@ -11,8 +11,8 @@ namespace {
 // Few columns give way to their neighbours more than many: what is added to the closing a metre of their
 // spacing over that of the medium level.
 constexpr double closing_of_spacing = 60.0, medium_spacing = 0.002;
-// Radians that the upper lid of a head with closed eyes is lifted: a fissure of some 9 mm before a globe of 12
-// (Farkas 1994).
+// Radians that the upper lid of a head with closed eyes is lifted: a fissure of some 9 mm before a globe of
+// 12 (Farkas 1994).
 constexpr double open_height = 0.75;
 
 void carry(rig::TissueLevel& level, int channel, size_t node, const Fissure& f, const Vec3& axis,
@@ -111,8 +111,8 @@ void add_eye(const TissueInputs& inputs, const FaceRegion& region, const Columns
                              ? 0.0
                              : (m.closing + closing_of_spacing * coarse) * gap +
                                    m.canthal_turn * std::max(0.0, (left ? -1.0 : 1.0) * (2.0 * place - 1.0));
-      const double lift = is_closed ? open_height * std::sin(EIGEN_PI * std::clamp(place, 0.0, 1.0))
-                                    : m.opening * lid;
+      const double lift =
+          is_closed ? open_height * std::sin(EIGEN_PI * std::clamp(place, 0.0, 1.0)) : m.opening * lid;
       if (is_upper)
         turn(close, f.lateral, lid * unfolding, -lift * fade);
       else

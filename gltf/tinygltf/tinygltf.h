@@ -5,6 +5,7 @@
 #pragma GCC system_header
 #endif
 
-// Under a name of our own: Debian's libdraco exports a tinygltf of another make, and a linker would mix the two.
+// Under a name of our own: Debian's libdraco exports a tinygltf of another make, and a linker would mix the
+// two.
 #define tinygltf fascia_tinygltf
 #include <tiny_gltf.h>

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "geometry/error.h"
-#include "rig/model/fields.h"
 #include "gltf/read/container.h"
+#include "rig/model/fields.h"
 #include "rig/read/read.h"
 #include "rig/write/write.h"
 #include "tests/rig/tiny_rig.h"

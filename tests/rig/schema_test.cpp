@@ -10,8 +10,8 @@
 #include <valijson/schema_parser.hpp>
 #include <valijson/validator.hpp>
 
-#include "rig/model/extensions.h"
 #include "gltf/read/container.h"
+#include "rig/model/extensions.h"
 #include "tests/rig/tiny_rig.h"
 
 namespace fascia {
