@@ -94,11 +94,18 @@ class TargetMaker {
 
   /// A vertex that should stand at `place`, in the input's axes and units.
   void put(fit::Target& target, size_t vertex, const Vec3& place) const {
-    const auto at = static_cast<Eigen::Index>(3 * vertex);
-    if (!place.allFinite()) return;
-    target.displacements.segment<3>(at) =
-        transform_point(to_metres_, place - offset_) - Vec3(subject_.rest().segment<3>(at));
-    target.trust[vertex] = 1.0;
+    put_metres(target, vertex, transform_point(to_metres_, place - offset_));
+  }
+
+  /// From a scene's axes and units to the rig's. A glTF that was written for a head of another format stands
+  /// in the rig's own, by the node that was made for it.
+  Mat4 to_metres(const formats::Scene& scene) const {
+    const bool is_gltf = scene.kind == formats::FileKind::glb || scene.kind == formats::FileKind::gltf;
+    const std::string& source = subject_.file().source.format;
+    if (is_gltf && (source == "obj" || source == "ply" || source == "stl")) return Mat4::Identity();
+    Mat4 map = to_metres_;
+    map.topRightCorner<3, 1>() += to_metres_.topLeftCorner<3, 3>() * (scene.offset - offset_);
+    return map;
   }
 
   /// Takes the head's own motion out, as vertices tell that nothing in the face moves (Kabsch 1976).
@@ -141,17 +148,24 @@ class TargetMaker {
 
   fit::Target of_scene(const formats::Scene& scene) const {
     fit::Target target = none();
+    const Mat4 map = to_metres(scene);
     for (const Match& match : matches(scene, subject_))
       for (size_t v = 0; v < match.point.size(); ++v)
-        put(target, subject_.first_vertex(match.primitive) + v,
-            scene.meshes[match.mesh].positions[match.point[v]] + scene.offset);
+        put_metres(target, subject_.first_vertex(match.primitive) + v,
+                   transform_point(map, scene.meshes[match.mesh].positions[match.point[v]]));
     return finished(std::move(target));
   }
 
   const fit::Subject& subject() const { return subject_; }
-  const Mat4& to_metres() const { return to_metres_; }
 
  private:
+  void put_metres(fit::Target& target, size_t vertex, const Vec3& place) const {
+    const auto at = static_cast<Eigen::Index>(3 * vertex);
+    if (!place.allFinite()) return;
+    target.displacements.segment<3>(at) = place - Vec3(subject_.rest().segment<3>(at));
+    target.trust[vertex] = 1.0;
+  }
+
   const fit::Subject& subject_;
   bool takes_out_head_;
   Vec3 offset_;  ///< of the rig's input, in its units
@@ -326,7 +340,8 @@ struct MorphTargets {
           if (part.displacements.size() != mesh.positions.size())
             throw Error("'" + scene.path.string() + "': the morph target '" + shape.name +
                         "' has another number of vertices than its mesh");
-          const Mat3 linear = maker.to_metres().topLeftCorner<3, 3>() * mesh.to_file.topLeftCorner<3, 3>();
+          const Mat3 linear =
+              maker.to_metres(scene).topLeftCorner<3, 3>() * mesh.to_file.topLeftCorner<3, 3>();
           for (size_t v = 0; v < match.point.size(); ++v)
             target.displacements.segment<3>(
                 static_cast<Eigen::Index>(3 * (subject.first_vertex(match.primitive) + v))) =
