@@ -150,7 +150,11 @@ void Examination::pose(const anatomy::CheckPose& pose, const Shape& shape) {
 void Examination::lids(const std::string& pose, const std::vector<Vec3>& skin, const Shape& shape) {
   if (pose != "blink" && pose != "wink") return;
   for (size_t k = 0; k < 2; ++k) {
-    if (!lid_looks_[k] || lid_seams_[k].empty()) continue;
+    if (!lid_looks_[k] || lid_seams_[k].empty()) {
+      // Both lids are seen nowhere, so nothing says that they close: a failure, not a row left out.
+      if (pose == "blink") add("blink.lid_gap", side_names[k], std::nan(""), pose);
+      continue;
+    }
     const LidState state = lid_looks_[k]->look(skin, shape);
     if (pose == "wink" && k == 1) {  // the right eye stays open
       const double at_rest = lids_at_rest_[k].widest;

@@ -191,6 +191,15 @@ TEST(Check, AMouthThatStaysShutIsFound) {
   expect_holds(rows, "smile.corner_up_left");
 }
 
+TEST(Check, LidsThatAreNotFoundFail) {
+  RigHead rig(built().bytes(built().result.rig), "embedded");
+  Head elsewhere = rig.head();
+  for (const char* name :
+       {"palpebrale_superius_left", "palpebrale_inferius_left", "exocanthion_left", "endocanthion_left"})
+    elsewhere.landmarks.erase(name);
+  expect_fails(run(elsewhere, rig.player(), checks()), "blink.lid_gap_left");
+}
+
 TEST(Check, NumbersThatAreNoneFail) {
   RigHead rig(built().bytes(built().result.rig), "embedded");
   const Player sound = rig.player();
