@@ -12,6 +12,7 @@
 
 #include "builder/rigging/gltf_source.h"
 #include "cli/fit_shapes.h"
+#include "formats/obj_lines.h"
 #include "formats/scene.h"
 #include "geometry/error.h"
 
@@ -255,9 +256,27 @@ std::vector<CachePart> cache_parts(const fit::Subject& subject) {
   return list;
 }
 
-/// What a cache of `points` points holds: one object, or all of them one after the other.
+/// The rig's vertices among all `v` lines of its OBJ source, where there are `points` of them; else none.
+std::vector<Match> obj_matches(size_t points, const fit::Subject& subject) {
+  const rig::RigFile& file = subject.file();
+  if (file.source.format != "obj") return {};
+  const std::string text(file.source.bytes.begin(), file.source.bytes.end());
+  if (formats::obj_vertices(text).size() != points) return {};
+  const formats::Scene source = formats::read("source.obj", file.source.bytes);
+  std::vector<Match> found;
+  for (size_t p = 0; p < file.primitives.size(); ++p) {
+    const size_t mesh = file.primitives[p].mesh, count = file.primitives[p].positions.size();
+    if (mesh >= source.meshes.size() || source.meshes[mesh].source_vertices.size() < count) continue;
+    const std::vector<int>& lines = source.meshes[mesh].source_vertices;
+    found.push_back({p, mesh, {lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(count)}});
+  }
+  return found;
+}
+
+/// What a cache of `points` points holds: the whole OBJ, one object, or all of them one after the other.
 std::vector<Match> cache_matches(const std::filesystem::path& path, size_t points,
                                  const fit::Subject& subject) {
+  if (std::vector<Match> whole = obj_matches(points, subject); !whole.empty()) return whole;
   const std::vector<CachePart> parts = cache_parts(subject);
   std::vector<Match> all;
   size_t sum = 0;

@@ -196,8 +196,8 @@ TEST_F(Fit, ToolFitsShapesAndTakes) {
   EXPECT_EQ(run("play " + at("rig.glb") + " --curves " + at("take.csv") + " -o " + at("again.glb")).code, 0);
 
   ASSERT_EQ(run("bake " + at("rig.glb") + " --shapes visemes -o " + at("shapes.glb")).code, 0);
-  const cli::Outcome one = run("fit " + at("rig.glb") + " --target " + at("shapes.glb") + " --shape aa -o " +
-                               at("aa.json") + " --json");
+  const cli::Outcome one = run("fit " + at("rig.glb") + " --target " + at("shapes.glb") +
+                               " --shape viseme_aa -o " + at("aa.json") + " --json");
   ASSERT_EQ(one.code, 0) << one.err;
   EXPECT_GT(json::parse(one.out)["share"].get<double>(), 0.98);
 }
