@@ -17,10 +17,15 @@ struct GenericLining {
   Vec3 end = Vec3::Zero();
 };
 
+// Of vertices as far to the side the lower one counts, on both sides alike.
+constexpr double lower_first = 1e-3;
+
 /// `ring` (closed, in order) begun at its rightmost vertex, upper side first.
 std::vector<Vec3> in_order(const std::vector<Vec3>& ring) {
   const size_t count = ring.size();
-  const auto by_x = [](const Vec3& a, const Vec3& b) { return a.x() < b.x(); };
+  const auto by_x = [](const Vec3& a, const Vec3& b) {
+    return a.x() + lower_first * a.y() < b.x() + lower_first * b.y();
+  };
   const auto first = static_cast<size_t>(std::min_element(ring.begin(), ring.end(), by_x) - ring.begin());
   double side[2] = {0.0, 0.0};
   for (size_t i = 1; i < count / 2; ++i) {
@@ -31,6 +36,14 @@ std::vector<Vec3> in_order(const std::vector<Vec3>& ring) {
   for (size_t i = 0; i < count; ++i)
     ordered.push_back(ring[side[0] >= side[1] ? (first + i) % count : (first + count - i) % count]);
   return ordered;
+}
+
+/// Where a ring that begins at its rightmost vertex has its leftmost one.
+size_t leftmost(const std::vector<Vec3>& ring) {
+  const auto by_x = [](const Vec3& a, const Vec3& b) {
+    return a.x() - lower_first * a.y() < b.x() - lower_first * b.y();
+  };
+  return static_cast<size_t>(std::max_element(ring.begin(), ring.end(), by_x) - ring.begin());
 }
 
 GenericLining generic_lining(const landmarks::GenericFace& face) {
@@ -67,9 +80,10 @@ GenericLining generic_lining(const landmarks::GenericFace& face) {
   return lining;
 }
 
-/// A place on a closed ring, `around` from 0 to 2 in even steps of its vertices.
+/// A place on a closed ring, `around` from 0 to 2 in even steps of the vertices of its upper and lower side.
 Vec3 place_on(const std::vector<Vec3>& ring, double around) {
-  const double x = 0.5 * around * static_cast<double>(ring.size());
+  const auto left = static_cast<double>(leftmost(ring)), all = static_cast<double>(ring.size());
+  const double x = around < 1.0 ? around * left : left + (around - 1.0) * (all - left);
   const auto i = static_cast<size_t>(x);
   const double t = x - static_cast<double>(i);
   return (1.0 - t) * ring[i % ring.size()] + t * ring[(i + 1) % ring.size()];
@@ -79,7 +93,7 @@ Vec3 place_on(const std::vector<Vec3>& ring, double around) {
 splines::Warp warp_onto(const GenericLining& generic, const anatomy::GenericAnatomy& anatomy,
                         const Points& landmarks, const Rim& rim) {
   const std::vector<Vec3>& contact = generic.rings[0];
-  const size_t half = contact.size() / 2;
+  const size_t half = leftmost(contact);
   std::vector<Vec3> from = contact, to;
   std::vector<double> lengths(contact.size() + 1, 0.0);
   for (size_t i = 0; i < contact.size(); ++i)
