@@ -94,16 +94,39 @@ class TargetMaker {
 
   /// A vertex that should stand at `place`, in the input's axes and units.
   void put(fit::Target& target, size_t vertex, const Vec3& place) const {
+    put_metres(target, vertex, transform_point(to_metres_, place - offset_));
+  }
+
+  void put_metres(fit::Target& target, size_t vertex, const Vec3& place) const {
     const auto at = static_cast<Eigen::Index>(3 * vertex);
     if (!place.allFinite()) return;
-    target.displacements.segment<3>(at) =
-        transform_point(to_metres_, place - offset_) - Vec3(subject_.rest().segment<3>(at));
+    target.displacements.segment<3>(at) = place - Vec3(subject_.rest().segment<3>(at));
     target.trust[vertex] = 1.0;
   }
 
-  /// Takes the head's own motion out, as vertices tell that nothing in the face moves (Kabsch 1976).
+  /// The target with the head's own motion taken out where asked for. Throws fascia::Error when it is another
+  /// place or size than the rig's head.
   fit::Target finished(fit::Target target) const {
-    if (!takes_out_head_) return target;
+    if (takes_out_head_) target = without_head(std::move(target));
+    double sum = 0.0;
+    size_t count = 0;
+    for (size_t v = 0; v < subject_.vertex_count(); ++v) {
+      if (target.trust[v] <= 0.0) continue;
+      sum += target.displacements.segment<3>(static_cast<Eigen::Index>(3 * v)).norm();
+      ++count;
+    }
+    constexpr double farthest = 0.05;  // metres: no face moves so far on average
+    if (count > 0 && sum > farthest * static_cast<double>(count))
+      throw Error("the target lies " + std::to_string(std::lround(1e3 * sum / static_cast<double>(count))) +
+                  " mm from the rig's head on average: give it in the axes and units of the file the rig was "
+                  "built from");
+    return target;
+  }
+
+  const fit::Subject& subject() const { return subject_; }
+
+  /// Takes the motion out of those vertices that nothing in the face moves (Kabsch 1976).
+  fit::Target without_head(fit::Target target) const {
     std::vector<Eigen::Index> still;
     Vec3 from = Vec3::Zero(), to = Vec3::Zero();
     double moved = 0.0;
@@ -143,13 +166,19 @@ class TargetMaker {
     fit::Target target = none();
     for (const Match& match : matches(scene, subject_))
       for (size_t v = 0; v < match.point.size(); ++v)
-        put(target, subject_.first_vertex(match.primitive) + v,
-            scene.meshes[match.mesh].positions[match.point[v]] + scene.offset);
+        put_metres(target, subject_.first_vertex(match.primitive) + v,
+                   transform_point(to_metres(scene), scene.meshes[match.mesh].positions[match.point[v]] +
+                                                         scene.offset - offset_));
     return finished(std::move(target));
   }
 
-  const fit::Subject& subject() const { return subject_; }
-  const Mat4& to_metres() const { return to_metres_; }
+  /// From a scene's coordinates. A glTF that Fascia made of an OBJ, PLY or STL stands in metres.
+  Mat4 to_metres(const formats::Scene& scene) const {
+    const bool is_gltf = scene.kind == formats::FileKind::glb || scene.kind == formats::FileKind::gltf;
+    const std::string& source = subject_.file().source.format;
+    const bool is_made = source == "obj" || source == "ply" || source == "stl";
+    return is_gltf && is_made ? Mat4(Mat4::Identity()) : to_metres_;
+  }
 
  private:
   const fit::Subject& subject_;
@@ -326,7 +355,8 @@ struct MorphTargets {
           if (part.displacements.size() != mesh.positions.size())
             throw Error("'" + scene.path.string() + "': the morph target '" + shape.name +
                         "' has another number of vertices than its mesh");
-          const Mat3 linear = maker.to_metres().topLeftCorner<3, 3>() * mesh.to_file.topLeftCorner<3, 3>();
+          const Mat3 linear =
+              maker.to_metres(scene).topLeftCorner<3, 3>() * mesh.to_file.topLeftCorner<3, 3>();
           for (size_t v = 0; v < match.point.size(); ++v)
             target.displacements.segment<3>(
                 static_cast<Eigen::Index>(3 * (subject.first_vertex(match.primitive) + v))) =

@@ -1,5 +1,6 @@
 // Activations found again from what they make, on the embedded head at low detail.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -20,7 +21,7 @@ using nlohmann::json;
 class Fit : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    folder = new fs::path(fs::temp_directory_path() / "fascia_fit_test");
+    folder = new fs::path(fs::temp_directory_path() / ("fascia_fit_test_" + std::to_string(getpid())));
     fs::remove_all(*folder);
     fs::create_directories(*folder);
     cli::write_embedded_head(*folder / "head.obj", *folder / "landmarks.json");
@@ -65,6 +66,7 @@ TEST_F(Fit, DerivativesAreThoseOfThePose) {
   std::vector<float> values = rest();
   set(values, "zygomaticus_major_superior_left", 0.5F);
   set(values, "frontalis_medial_right", 0.4F);
+  set(values, "depressor_anguli_oris_left", 0.3F);
   set(values, "jaw_open", 0.2F);
   sim::Sensitivity sensitivity(subject->model());
   subject->pose(values, false);
@@ -72,7 +74,7 @@ TEST_F(Fit, DerivativesAreThoseOfThePose) {
   const size_t nodes = subject->nodes().size();
   Eigen::VectorXd slope(static_cast<Eigen::Index>(3 * nodes));
   for (Eigen::Index i = 0; i < slope.size(); ++i)
-    slope[i] = std::sin(0.37 * static_cast<double>(i));
+    slope[i] = i % 3 == 0 ? 0.2 : i % 3 == 1 ? 1.0 : 0.5;
   const std::vector<uint32_t> channels = {
       static_cast<uint32_t>(subject->channel("zygomaticus_major_superior_left")),
       static_cast<uint32_t>(subject->channel("frontalis_medial_right")),
@@ -93,9 +95,9 @@ TEST_F(Fit, DerivativesAreThoseOfThePose) {
     high[channel] = values[channel] + 0.03F;
     const double expected = (loss(high) - loss(low)) / static_cast<double>(high[channel] - low[channel]);
     const auto index = static_cast<Eigen::Index>(k);
-    EXPECT_NEAR(exact[index], expected, 0.05 * std::abs(expected) + 2e-5) << k;
+    EXPECT_NEAR(exact[index], expected, 0.05 * std::abs(expected) + 5e-3) << k;
     const double standin = slope.dot(k < 3 ? columns.col(index) : jaw.col(0));
-    EXPECT_NEAR(standin, expected, 0.3 * std::abs(expected) + 1e-4) << k;
+    EXPECT_NEAR(standin, expected, 0.3 * std::abs(expected) + 2e-2) << k;
   }
 }
 
@@ -115,12 +117,15 @@ TEST_F(Fit, FindsRandomActivationsAgain) {
     const FitResult result = fitter.fit(target_of(values));
     EXPECT_LT(result.rms_mm, 0.05) << pose;
     EXPECT_GT(result.share, 0.99) << pose;
+    double square = 0.0;
     for (size_t c = 0; c < values.size(); ++c) {
+      square += std::pow(static_cast<double>(result.activations[c] - values[c]), 2);
       EXPECT_GE(result.activations[c], subject->channels()[c].minimum);
       EXPECT_LE(result.activations[c], subject->channels()[c].maximum);
-      EXPECT_NEAR(result.activations[c], values[c], std::max(0.03, 1.5 * result.spread[c]))
+      EXPECT_NEAR(result.activations[c], values[c], std::max(0.03, result.spread[c]))
           << pose << " " << subject->channels()[c].name;
     }
+    EXPECT_LT(std::sqrt(square / static_cast<double>(muscles.size())), 0.03) << pose;
   }
 }
 
