@@ -109,9 +109,29 @@ class TargetMaker {
     return map;
   }
 
-  /// Takes the head's own motion out, as vertices tell that nothing in the face moves (Kabsch 1976).
+  /// The target with the head's own motion taken out where asked for. Throws fascia::Error when it is another
+  /// place or size than the rig's head.
   fit::Target finished(fit::Target target) const {
-    if (!takes_out_head_) return target;
+    if (takes_out_head_) target = without_head(std::move(target));
+    double sum = 0.0;
+    size_t count = 0;
+    for (size_t v = 0; v < subject_.vertex_count(); ++v) {
+      if (target.trust[v] <= 0.0) continue;
+      sum += target.displacements.segment<3>(static_cast<Eigen::Index>(3 * v)).norm();
+      ++count;
+    }
+    constexpr double farthest = 0.05;  // metres: no face moves so far on average
+    if (count > 0 && sum > farthest * static_cast<double>(count))
+      throw Error("the target lies " + std::to_string(std::lround(1e3 * sum / static_cast<double>(count))) +
+                  " mm from the rig's head on average: give it in the axes and units of the file the rig was "
+                  "built from");
+    return target;
+  }
+
+  const fit::Subject& subject() const { return subject_; }
+
+  /// Takes the motion out of those vertices that nothing in the face moves (Kabsch 1976).
+  fit::Target without_head(fit::Target target) const {
     std::vector<Eigen::Index> still;
     Vec3 from = Vec3::Zero(), to = Vec3::Zero();
     double moved = 0.0;
@@ -156,8 +176,6 @@ class TargetMaker {
                    transform_point(map, scene.meshes[match.mesh].positions[match.point[v]]));
     return finished(std::move(target));
   }
-
-  const fit::Subject& subject() const { return subject_; }
 
  private:
   void put_metres(fit::Target& target, size_t vertex, const Vec3& place) const {

@@ -1,5 +1,6 @@
 // Activations found again from what they make, on the embedded head at low detail.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -20,7 +21,7 @@ using nlohmann::json;
 class Fit : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    folder = new fs::path(fs::temp_directory_path() / "fascia_fit_test");
+    folder = new fs::path(fs::temp_directory_path() / ("fascia_fit_test_" + std::to_string(getpid())));
     fs::remove_all(*folder);
     fs::create_directories(*folder);
     cli::write_embedded_head(*folder / "head.obj", *folder / "landmarks.json");
