@@ -114,6 +114,27 @@ std::vector<std::pair<std::string, Vec3>> lid_landmarks(const GenericFace& face,
   return found;
 }
 
+/// A nose much longer than the generic one ends before the fit has its tip: what stands out farthest is
+/// sought, step by step along the middle of the face. Nothing where that is where the fit has it.
+std::optional<Anchor> nose_anchor(const GenericFace& face, const Registration& fit, const Samples& samples) {
+  const double step = 0.012 * fit.placement.scale, aside = 0.008 * fit.placement.scale,
+               least = 0.004 * fit.placement.scale;
+  const Vec3 across = fit.placement.rotation.col(0), forward = fit.placement.rotation.col(2),
+             start = fit(face.nose_tip);
+  Vec3 tip = start;
+  for (int round = 0; round < 3; ++round) {
+    const Vec3 from = tip;
+    for (size_t i = 0; i < samples.size(); ++i) {
+      const Vec3& p = samples.points[i];
+      const bool is_near =
+          (p - from).squaredNorm() < step * step && std::abs((p - start).dot(across)) < aside;
+      if (is_near && (p - tip).dot(forward) > 0.0) tip = p;
+    }
+  }
+  if ((tip - start).dot(forward) < least) return std::nullopt;
+  return Anchor{face.nose_tip, tip, 20.0};
+}
+
 std::vector<Anchor> anchors_of(const std::map<std::string, Vec3>& points,
                                const anatomy::GenericAnatomy& anatomy, double weight) {
   std::vector<Anchor> anchors;
@@ -157,8 +178,11 @@ FoundFace find(const GenericFace& face, const anatomy::GenericAnatomy& anatomy,
   first.stages = {{10, 4, 1}, {3, 4, 1}, {1, 3, 2}, {0.3, 3, 2}, {0.1, 2, 2}};
   first.last_reach = 0.012;
   found.fit = register_face(face, samples, placement, anchors, first);
-  if (const std::vector<Anchor> of_eyes = eye_anchors(face, found.fit, eyes); !of_eyes.empty()) {
-    anchors.insert(anchors.end(), of_eyes.begin(), of_eyes.end());
+  std::vector<Anchor> drawn = eye_anchors(face, found.fit, eyes);
+  if (!known.count("pronasale"))
+    if (const std::optional<Anchor> nose = nose_anchor(face, found.fit, samples)) drawn.push_back(*nose);
+  if (!drawn.empty()) {
+    anchors.insert(anchors.end(), drawn.begin(), drawn.end());
     found.fit = register_face(face, samples, placement, anchors, first);
   }
   std::map<std::string, Vec3> seen;
