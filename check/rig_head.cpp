@@ -2,6 +2,8 @@
 
 #include <fascia/fascia.h>
 
+#include <Eigen/LU>
+
 #include <algorithm>
 #include <cmath>
 

@@ -1,5 +1,6 @@
 #include "cli/check_sheet.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "cli/picture.h"

@@ -1,6 +1,7 @@
 #include "bench/heads/variants.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <random>

@@ -2,6 +2,7 @@
 // fault must fail the row that is there for it.
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <filesystem>
 #include <set>
 
