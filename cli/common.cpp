@@ -1,26 +1,26 @@
 #include "cli/common.h"
 
-#include <unistd.h>
-
 #include <cstdio>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "cli/progress.h"
 #include "geometry/error.h"
 
 namespace fascia::cli {
 
-void Common::progress(const std::string& what) const {
-  if (!quiet && isatty(fileno(stderr))) std::fprintf(stderr, "  %s\n", what.c_str());
-}
-
 void Common::say(const std::string& line) const {
-  if (!quiet && !json) std::printf("%s\n", line.c_str());
+  if (quiet || json) return;
+  if (running) running->wipe();
+  std::printf("%s\n", line.c_str());
+  std::fflush(stdout);
 }
 
 void Common::warn(const std::string& line) const {
-  if (!quiet) std::fprintf(stderr, "warning: %s\n", line.c_str());
+  if (quiet) return;
+  if (running) running->wipe();
+  std::fprintf(stderr, "warning: %s\n", line.c_str());
 }
 
 void Common::report(const nlohmann::ordered_json& object) const {

@@ -8,6 +8,7 @@
 #include "cli/common.h"
 #include "cli/fit_output.h"
 #include "cli/fit_target.h"
+#include "cli/progress.h"
 #include "fit/fit.h"
 #include "formats/scene.h"
 #include "geometry/error.h"
@@ -69,8 +70,9 @@ void run(const Common& common, const Request& request) {
   fit::Fitter fitter(subject, request.fitting);
   std::vector<fit::FitResult> results;
   std::vector<double> motion;
+  Progress progress(common, "fit", targets.names.size());
   for (size_t i = 0; i < targets.names.size(); ++i) {
-    common.progress("fit " + targets.names[i]);
+    progress.step();
     const fit::Target target = targets.target(i);
     motion.push_back(target.displacements.squaredNorm());
     results.push_back(targets.kind == FitTargets::Kind::take ? fitter.follow(target) : fitter.fit(target));

@@ -103,7 +103,7 @@ Recording record(const Common& common, const Take& take, Face& face, const Recor
   recording.values.resize(channels, static_cast<Index>(take.frames()));
   std::vector<float> frame;
   {
-    Progress progress(common, "playing frame", take.frames());
+    Progress progress(common, "frame", take.frames());
     recording.figures = perform(take, face, progress, [&](size_t f) {
       for (size_t m = 0; m < meshes.size(); ++m) {
         displacement(face, meshes[m], frame);
@@ -116,7 +116,6 @@ Recording record(const Common& common, const Take& take, Face& face, const Recor
   for (size_t m = 0; m < meshes.size(); ++m) {
     spaces[m].finish();
     if (spaces[m].vertices().empty()) continue;
-    common.progress("finding the principal components of mesh " + std::to_string(meshes[m].mesh));
     MeshMotion motion;
     motion.mesh = meshes[m];
     motion.vertices = spaces[m].vertices();
@@ -134,7 +133,7 @@ void measure(const Common& common, const Take& take, Face& face, Recording& reco
   for (MeshMotion& motion : recording.meshes)
     measurements.emplace_back(motion);
   std::vector<float> frame;
-  Progress progress(common, "measuring frame", take.frames());
+  Progress progress(common, "measure frame", take.frames());
   perform(take, face, progress, [&](size_t) {
     for (size_t m = 0; m < measurements.size(); ++m) {
       displacement(face, recording.meshes[m].mesh, frame);
