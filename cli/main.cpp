@@ -9,6 +9,7 @@
 
 #include "cli/check.h"
 #include "cli/common.h"
+#include "cli/face.h"
 #include "cli/fit.h"
 #include "formats/partial.h"
 #include "geometry/error.h"
@@ -65,6 +66,7 @@ int main(int argc, char** argv) {
   add_render(app, common);
   add_check(app, common);
   add_demo(app, common);
+  add_face(app, common);
   add_fit(app, common);
   add_to_come(app);
   add_manual(app);
