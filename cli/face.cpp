@@ -1,9 +1,9 @@
 #include "cli/face.h"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "builder/reconstruction/reconstruction.h"
 #include "cli/reconstructed_head.h"
@@ -133,6 +133,7 @@ void run(const Common& common, const Request& request) {
     build.anatomy = request.anatomy;
     build.options.tissue_scale = request.tissue_scale;
     build_file(common, build);
+    common.say("wrote " + request.rig.string());
   }
   common.say("bone within " + std::to_string(1e3 * result.bone_residual).substr(0, 4) +
              " mm of the generic skull's; depths of '" + options.table + "'");
@@ -148,36 +149,43 @@ void run(const Common& common, const Request& request) {
 
 }  // namespace
 
-void add_face(CLI::App& app, Common& common) {
+void add_face(const Command& tool, Common& common) {
   auto request = std::make_shared<Request>();
-  CLI::App* command = app.add_subcommand(
+  const Command command = tool.command(
       "face",
       "Put skin over a skull: the generic head by soft-tissue depths, as forensic approximation does");
-  command->add_option("SKULL", request->skull, "Skull mesh: GLB, glTF, OBJ, PLY or STL, in any pose")
-      ->required();
+  command.positional("SKULL", &request->skull, "Skull mesh: GLB, glTF, OBJ, PLY or STL, in any pose")
+      .required();
   command
-      ->add_option("-o,--output", request->output,
-                   "Head to write: .glb (metres, with the band of depths as morph "
-                   "targets) or .obj (the skull's own axes and units)")
-      ->required();
-  command->add_option(
-      "--landmarks", request->landmarks,
-      "Craniometric landmarks on the bone (.mrk.json or .json); without them the skull is found");
-  command->add_option("--depths", request->depths,
-                      "Tissue depth table: a name of the anatomy's, or a .json file like tissue_depths.json");
-  command->add_option("--sex", request->person.sex, "Chooses the table")
-      ->check(CLI::IsMember({"female", "male"}));
-  command->add_option("--age", request->person.age,
-                      "Chooses the table: adult, or what a table of yours says");
-  command->add_option("--ancestry", request->person.ancestry, "Chooses the table, in the words of a table");
-  command->add_option("--units", request->units, "auto, m, cm, mm, or metres a unit");
-  command->add_option("--tissue-scale", request->tissue_scale, "Scales every depth (default 1)");
-  command->add_option("--landmarks-out", request->landmarks_out, "Landmarks on skin and bone (.json)");
-  command->add_option("--sheet", request->sheet,
-                      "Picture of the head, the head over the skull and the band (.png)");
-  command->add_option("--rig", request->rig, "Builds the head's rig as well (.glb)");
-  add_anatomy_option(*command, request->anatomy);
-  command->callback([request, &common] { run(common, *request); });
+      .option("-o,--output", &request->output,
+              "Head to write: .glb (metres, with the band of depths as morph targets) or .obj (the skull's "
+              "own axes "
+              "and units)")
+      .required();
+  command
+      .option("--landmarks", &request->landmarks, "Craniometric landmarks on the bone (.mrk.json or .json)")
+      .default_text("none: the skull is found");
+  command
+      .option("--depths", &request->depths,
+              "Tissue depth table: a name of the anatomy's, or a .json file like tissue_depths.json")
+      .default_text("the one of the nearest people");
+  command.option("--sex", &request->person.sex, "Chooses the table")
+      .one_of({"female", "male"})
+      .default_text("not known");
+  command.option("--age", &request->person.age, "Chooses the table: adult, or a word of your table's")
+      .default_text("not known");
+  command.option("--ancestry", &request->person.ancestry, "Chooses the table, in the words of a table")
+      .default_text("not known");
+  command.option("--units", &request->units, "auto, m, cm, mm, or metres a unit");
+  command.option("--tissue-scale", &request->tissue_scale, "Scales every depth");
+  command.option("--landmarks-out", &request->landmarks_out, "Landmarks on skin and bone (.json)")
+      .default_text("none");
+  command
+      .option("--sheet", &request->sheet, "Picture of the head, the head over the skull and the band (.png)")
+      .default_text("none");
+  command.option("--rig", &request->rig, "Builds the head's rig as well (.glb)").default_text("none");
+  add_anatomy_option(command, request->anatomy);
+  command.run([request, &common] { run(common, *request); });
 }
 
 }  // namespace fascia::cli

@@ -5,6 +5,6 @@
 namespace fascia::cli {
 
 /// Adds `face`: skin from a skull.
-void add_face(CLI::App& app, Common& common);
+void add_face(const Command& tool, Common& common);
 
 }  // namespace fascia::cli
