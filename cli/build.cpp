@@ -180,7 +180,8 @@ rigging::BuildReport build_file(const Common& common, const BuildRequest& reques
   if (!request.report.empty()) make_output_folder(request.report);
   if (request.output.extension() != ".glb")
     throw Error("'" + request.output.string() + "': a rig is a .glb file; give -o NAME.glb");
-  // Shares of a build at medium detail; where another stage takes longest, the time left follows as it is seen.
+  // Shares of a build at medium detail; where another stage takes longest, the time left follows as it is
+  // seen.
   Progress progress(common, "build",
                     {{"reading", 0.05},
                      {"landmarks", 0.15},

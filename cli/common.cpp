@@ -1,5 +1,7 @@
 #include "cli/common.h"
 
+#include <unistd.h>
+
 #include <cstdio>
 #include <iostream>
 #include <memory>
@@ -9,6 +11,13 @@
 #include "geometry/error.h"
 
 namespace fascia::cli {
+
+void Common::progress(const std::string& stage) const {
+  if (running)
+    running->begin(stage);
+  else if (!quiet && isatty(fileno(stderr)) != 0)
+    std::fprintf(stderr, "  %s\n", stage.c_str());
+}
 
 void Common::say(const std::string& line) const {
   if (quiet || json) return;

@@ -17,6 +17,9 @@ struct Common {
   bool quiet = false;
   int threads = 0;  ///< 0: as many as the machine has
 
+  /// Says that a stage begins: of the job that is being done, or by a line of its own on a terminal.
+  void progress(const std::string& stage) const;
+
   mutable Progress* running = nullptr;  ///< the innermost job that is being done
 
   /// One line for people, on stdout; nothing with --json or --quiet.

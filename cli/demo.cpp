@@ -148,7 +148,8 @@ void run(const Common& common, const std::filesystem::path& folder,
          const std::filesystem::path& anatomy_folder) {
   make_output_folder(folder);
   Clock clock(common);
-  Progress progress(common, "demo", {{"build", 2.0}, {"play", 1.0}, {"bake", 1.0}, {"sheet", 3.0}, {"film", 12.0}});
+  Progress progress(common, "demo",
+                    {{"build", 2.0}, {"play", 1.0}, {"bake", 1.0}, {"sheet", 3.0}, {"film", 12.0}});
   progress.begin("build");
   const std::filesystem::path head = folder / "head.obj", landmarks = folder / "head_landmarks.json",
                               rig_path = folder / "rig.glb", curves = folder / "curves.csv";

@@ -98,6 +98,7 @@ void write_animation(const Common& common, const PlayRequest& request, const Tak
   figures.resets = recording.figures.resets;
   figures.milliseconds_a_frame = recording.figures.milliseconds_a_frame;
 
+  common.progress("writing");
   const std::vector<uint8_t> bytes = formats::read_bytes(request.rig);
   GltfEdit edit(rig::glb_source(bytes, request.rig.string()));
   std::vector<std::string> warnings;
@@ -152,7 +153,10 @@ PlayFigures play_file(const Common& common, const PlayRequest& request) {
   figures.duration = take.time(take.frames() - 1);
   figures.start = curves.start();
   Progress progress(common, "play",
-                    {{"simulation", 1.0}, {"principal components", wants_cache ? 0.0 : 0.2}, {"measure", wants_cache ? 0.0 : 1.0}, {"writing", 0.2}});
+                    {{"simulation", 1.0},
+                     {"principal components", wants_cache ? 0.0 : 0.2},
+                     {"measurement", wants_cache ? 0.0 : 1.0},
+                     {"writing", 0.2}});
   progress.begin("simulation");
   if (wants_cache)
     write_caches(common, request, kind, take, face, figures);

@@ -1,5 +1,7 @@
 #include "cli/posing.h"
 
+#include <fascia/fascia.hpp>
+
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -11,12 +13,7 @@ namespace fascia::cli {
 
 namespace {
 
-template <class T>
-T sized() {
-  T value = {};
-  value.struct_size = sizeof(T);
-  return value;
-}
+using api::sized;
 
 std::span<const float> as_span(const fascia_vectors& vectors) {
   return {vectors.data, static_cast<size_t>(vectors.count) * 3};

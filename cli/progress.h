@@ -14,9 +14,9 @@ struct Stage {
   double share = 1.0;  ///< of the job's time, in any unit: only ratios count
 };
 
-/// How far a job is, on one line of stderr that is wiped when it ends: stage, percent, time left. Shown only when
-/// that is a terminal and nobody asked for quiet. A job begun while another runs is a part of the other's present
-/// stage: the line gives the percent and the time left of the whole.
+/// How far a job is, on one line of stderr that is wiped when it ends: stage, percent, time left. Shown only
+/// when that is a terminal and nobody asked for quiet. A job begun while another runs is a part of the
+/// other's present stage: the line gives the percent and the time left of the whole.
 class Progress {
  public:
   /// A job of stages that take different times. A stage that is not listed begins no new part.
@@ -49,8 +49,8 @@ class Progress {
   Clock::time_point started_, said_;
 };
 
-/// "build: tissue  62 %, 3 s left" for a job that is done to a share in so many seconds. The time left is left out
-/// while too little is done to tell.
+/// "build: tissue  62 %, 3 s left" for a job that is done to a share in so many seconds. The time left is
+/// left out while too little is done to tell.
 std::string progress_line(const std::string& what, double done, double seconds);
 
 }  // namespace fascia::cli

@@ -102,6 +102,7 @@ Recording record(const Common& common, const Take& take, Face& face, const Recor
   const auto channels = static_cast<Index>(face.channel_names().size());
   recording.values.resize(channels, static_cast<Index>(take.frames()));
   std::vector<float> frame;
+  common.progress("simulation");
   {
     Progress progress(common, "frame", take.frames());
     recording.figures = perform(take, face, progress, [&](size_t f) {
@@ -113,6 +114,7 @@ Recording record(const Common& common, const Take& take, Face& face, const Recor
           Eigen::Map<const Eigen::VectorXf>(fascia_face_effective_values(face.handle()), channels);
     });
   }
+  common.progress("principal components");
   for (size_t m = 0; m < meshes.size(); ++m) {
     spaces[m].finish();
     if (spaces[m].vertices().empty()) continue;
@@ -133,7 +135,8 @@ void measure(const Common& common, const Take& take, Face& face, Recording& reco
   for (MeshMotion& motion : recording.meshes)
     measurements.emplace_back(motion);
   std::vector<float> frame;
-  Progress progress(common, "measure frame", take.frames());
+  common.progress("measurement");
+  Progress progress(common, "frame", take.frames());
   perform(take, face, progress, [&](size_t) {
     for (size_t m = 0; m < measurements.size(); ++m) {
       displacement(face, recording.meshes[m].mesh, frame);
