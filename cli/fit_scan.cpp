@@ -35,6 +35,18 @@ double share_near(const fit::Subject& subject, const spatial::SurfaceQuery& surf
   return count > 0 ? static_cast<double>(close) / count : 0.0;
 }
 
+rigging::FoundLandmarks face_of(const formats::Scene& scene) {
+  try {
+    return rigging::find_landmarks(scene, {}, anatomy::load_generic(), prepare::PrepareOptions{});
+  } catch (const Error& error) {
+    throw Error("'" + scene.path.string() +
+                "' has neither the rig's topology nor a face that lies on the rig's head or is found in it; "
+                "give it in "
+                "the head's axes and units (" +
+                error.what() + ")");
+  }
+}
+
 }  // namespace
 
 PlacedScan place_scan(const fit::Subject& subject, const formats::Scene& scene, bool may_search) {
@@ -44,8 +56,7 @@ PlacedScan place_scan(const fit::Subject& subject, const formats::Scene& scene, 
   for (Vec3& p : out.mesh.vertices)
     p = transform_point(map, p);
   if (!may_search || share_near(subject, spatial::SurfaceQuery(out.mesh)) > 0.7) return out;
-  const rigging::FoundLandmarks found =
-      rigging::find_landmarks(scene, {}, anatomy::load_generic(), prepare::PrepareOptions{});
+  const rigging::FoundLandmarks found = face_of(scene);
   std::vector<Vec3> from, to;
   for (const std::string name : still_landmarks)
     for (const rig::Landmark& landmark : subject.file().rig.skull.landmarks) {
