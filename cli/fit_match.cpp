@@ -20,11 +20,14 @@ void fail_topology(const std::filesystem::path& path, const fit::Subject& subjec
   throw Error("'" + path.string() + "' " + holds + ", but the rig's meshes have " +
               std::to_string(subject.vertex_count()) + " vertices in " +
               std::to_string(subject.file().primitives.size()) +
-              " parts: give meshes of the rig's own topology, as `fascia pose` writes them (scans of another "
-              "topology and landmarks alone are not fitted in this version)");
+              " parts: give meshes of the rig's own topology, as `fascia pose` writes them, or one scan with "
+              "--as scan");
 }
 
-std::vector<Match> matches(const formats::Scene& scene, const fit::Subject& subject) {
+namespace {
+
+/// As `matches`, but empty when none is there.
+std::vector<Match> matches_or_none(const formats::Scene& scene, const fit::Subject& subject) {
   const auto& primitives = subject.file().primitives;
   const bool is_gltf = scene.kind == formats::FileKind::glb || scene.kind == formats::FileKind::gltf;
   std::vector<Match> found;
@@ -48,6 +51,13 @@ std::vector<Match> matches(const formats::Scene& scene, const fit::Subject& subj
   if (found.empty() && scene.meshes.size() == 1 && scene.meshes[0].positions.size() == subject.vertex_count())
     for (size_t p = 0; p < primitives.size(); ++p)
       found.push_back({p, 0, counted(subject.first_vertex(p), primitives[p].positions.size())});
+  return found;
+}
+
+}  // namespace
+
+std::vector<Match> matches(const formats::Scene& scene, const fit::Subject& subject) {
+  std::vector<Match> found = matches_or_none(scene, subject);
   if (found.empty()) {
     size_t vertices = 0;
     for (const formats::SceneMesh& mesh : scene.meshes)
@@ -64,15 +74,6 @@ TargetMaker::TargetMaker(const fit::Subject& subject, bool takes_out_head)
       takes_out_head_(takes_out_head),
       offset_(rigging::input_offset(subject.file().source)),
       to_metres_(subject.file().rig.input_to_metres.cast<double>()) {}
-
-Mat4 TargetMaker::to_metres(const formats::Scene& scene) const {
-  const bool is_gltf = scene.kind == formats::FileKind::glb || scene.kind == formats::FileKind::gltf;
-  const std::string& source = subject_.file().source.format;
-  if (is_gltf && (source == "obj" || source == "ply" || source == "stl")) return Mat4::Identity();
-  Mat4 map = to_metres_;
-  map.topRightCorner<3, 1>() += to_metres_.topLeftCorner<3, 3>() * (scene.offset - offset_);
-  return map;
-}
 
 fit::Target TargetMaker::finished(fit::Target target) const {
   if (takes_out_head_) target = without_head(std::move(target));
@@ -142,6 +143,20 @@ void TargetMaker::put_metres(fit::Target& target, size_t vertex, const Vec3& pla
   if (!place.allFinite()) return;
   target.displacements.segment<3>(at) = place - Vec3(subject_.rest().segment<3>(at));
   target.trust[vertex] = 1.0;
+}
+
+Mat4 scene_to_metres(const fit::Subject& subject, const formats::Scene& scene) {
+  const bool is_gltf = scene.kind == formats::FileKind::glb || scene.kind == formats::FileKind::gltf;
+  const std::string& source = subject.file().source.format;
+  if (is_gltf && (source == "obj" || source == "ply" || source == "stl")) return Mat4::Identity();
+  Mat4 map = subject.file().rig.input_to_metres.cast<double>();
+  const Vec3 apart = scene.offset - rigging::input_offset(subject.file().source);
+  map.topRightCorner<3, 1>() += map.topLeftCorner<3, 3>() * apart;
+  return map;
+}
+
+bool has_rig_topology(const fit::Subject& subject, const formats::Scene& scene) {
+  return !matches_or_none(scene, subject).empty();
 }
 
 }  // namespace fascia::cli

@@ -28,6 +28,13 @@ std::vector<uint32_t> counted(size_t first, size_t count);
 /// all. Throws fascia::Error when none is there.
 std::vector<Match> matches(const formats::Scene& scene, const fit::Subject& subject);
 
+/// From a scene's axes and units to the rig's metres. A glTF that was written for a head of another format
+/// stands in the rig's own, by the node that was made for it.
+Mat4 scene_to_metres(const fit::Subject& subject, const formats::Scene& scene);
+
+/// True when the meshes of `scene` have the topology of the rig's, by their numbers of vertices.
+bool has_rig_topology(const fit::Subject& subject, const formats::Scene& scene);
+
 /// Builds targets from points in the rig's input space or a scene's.
 class TargetMaker {
  public:
@@ -44,9 +51,7 @@ class TargetMaker {
     put_metres(target, vertex, transform_point(to_metres_, place - offset_));
   }
 
-  /// From a scene's axes and units to the rig's. A glTF that was written for a head of another format stands
-  /// in the rig's own, by the node that was made for it.
-  Mat4 to_metres(const formats::Scene& scene) const;
+  Mat4 to_metres(const formats::Scene& scene) const { return scene_to_metres(subject_, scene); }
 
   /// The target with the head's own motion taken out where asked for. Throws fascia::Error when it is another
   /// place or size than the rig's head.

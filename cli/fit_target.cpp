@@ -98,10 +98,6 @@ FitTargets open_fit_targets(const Common& common, const std::filesystem::path& p
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (std::filesystem::is_directory(path)) return sequence_targets(path, maker, options.fps);
   if (extension == ".pc2" || extension == ".mdd") return cache_targets(path, maker, options.fps);
-  if (extension == ".json" || extension == ".csv")
-    throw Error(
-        "'" + path.string() +
-        "': landmarks alone are not fitted in this version; give a posed mesh, morph targets or a cache");
   const auto scene = std::make_shared<formats::Scene>(formats::read(path));
   const std::vector<Shape> shapes = morph_shapes(*scene);
   FitTargets targets;

@@ -7,6 +7,7 @@
 
 #include "cli/common.h"
 #include "fit/fit.h"
+#include "formats/scene.h"
 
 namespace fascia::cli {
 
