@@ -13,22 +13,22 @@
 namespace fascia::cli {
 
 void Common::progress(const std::string& stage) const {
-  if (running)
-    running->begin(stage);
+  if (Progress* job = Progress::innermost())
+    job->begin(stage);
   else if (!quiet && isatty(fileno(stderr)) != 0)
     std::fprintf(stderr, "  %s\n", stage.c_str());
 }
 
 void Common::say(const std::string& line) const {
   if (quiet || json) return;
-  if (running) running->wipe();
+  if (const Progress* job = Progress::innermost()) job->wipe();
   std::printf("%s\n", line.c_str());
   std::fflush(stdout);
 }
 
 void Common::warn(const std::string& line) const {
   if (quiet) return;
-  if (running) running->wipe();
+  if (const Progress* job = Progress::innermost()) job->wipe();
   std::fprintf(stderr, "warning: %s\n", line.c_str());
 }
 

@@ -9,18 +9,14 @@
 
 namespace fascia::cli {
 
-class Progress;
-
 /// What every command understands.
 struct Common {
   bool json = false;
   bool quiet = false;
   int threads = 0;  ///< 0: as many as the machine has
 
-  /// Says that a stage begins: of the job that is being done, or by a line of its own on a terminal.
-  void progress(const std::string& stage) const;
-
-  mutable Progress* running = nullptr;  ///< the innermost job that is being done
+  /// Says that a stage begins; on stderr, when that is a terminal and nobody asked for quiet.
+  void progress(const std::string& what) const;
 
   /// One line for people, on stdout; nothing with --json or --quiet.
   void say(const std::string& line) const;

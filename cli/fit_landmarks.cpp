@@ -235,10 +235,10 @@ class LandmarkTargetMaker {
         const double share = place.shares[static_cast<Eigen::Index>(k)];
         if (share <= 0.0) continue;
         const auto at = static_cast<Eigen::Index>(3 * place.vertices[k]);
-        double& weight = out.weights[place.vertices[k]];
+        double& trust = out.trust[place.vertices[k]];
         out.displacements.segment<3>(at) =
-            (weight * Vec3(out.displacements.segment<3>(at)) + share * moved) / (weight + share);
-        weight += share;
+            (trust * Vec3(out.displacements.segment<3>(at)) + share * moved) / (trust + share);
+        trust += share;
       }
     }
     return out;

@@ -8,6 +8,17 @@
 
 namespace fascia::cli {
 
+namespace {
+
+/// The terminal has one line for it, so there is one.
+Progress* innermost_job = nullptr;
+
+}  // namespace
+
+Progress* Progress::innermost() {
+  return innermost_job;
+}
+
 std::string progress_line(const std::string& what, double done, double seconds) {
   char percent[32];
   std::snprintf(percent, sizeof percent, "  %.0f %%", std::floor(100.0 * std::clamp(done, 0.0, 1.0)));
@@ -23,8 +34,7 @@ std::string progress_line(const std::string& what, double done, double seconds) 
 }
 
 Progress::Progress(const Common& common, std::string job, std::vector<Stage> stages)
-    : common_(common),
-      outer_(common.running),
+    : outer_(innermost_job),
       job_(std::move(job)),
       stages_(std::move(stages)),
       is_shown_(!common.quiet && isatty(fileno(stderr)) != 0),
@@ -34,7 +44,7 @@ Progress::Progress(const Common& common, std::string job, std::vector<Stage> sta
     whole += stage.share;
   for (Stage& stage : stages_)
     stage.share /= whole;
-  common_.running = this;
+  innermost_job = this;
 }
 
 Progress::Progress(const Common& common, std::string job, size_t steps)
@@ -44,7 +54,7 @@ Progress::Progress(const Common& common, std::string job, size_t steps)
 
 Progress::~Progress() {
   wipe();
-  common_.running = outer_;
+  innermost_job = outer_;
 }
 
 void Progress::begin(const std::string& stage) {

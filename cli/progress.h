@@ -31,6 +31,9 @@ class Progress {
   void begin(const std::string& stage);
   /// One of the steps begins.
   void step();
+  /// The job that is being done, within others perhaps; null when none is. Jobs are told of by one thread.
+  static Progress* innermost();
+
   /// Takes the line away, so that something else can be written; the next stage or step brings it back.
   void wipe() const;
 
@@ -39,7 +42,6 @@ class Progress {
 
   void show(bool is_due);
 
-  const Common& common_;
   Progress* outer_ = nullptr;
   std::string job_, stage_;
   std::vector<Stage> stages_;

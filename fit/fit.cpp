@@ -163,7 +163,7 @@ void Fitter::find_eyes(const Target& target, std::vector<float>& values) const {
     Mat3 sum = Mat3::Zero();
     double most = 0.0;
     for (size_t v = 0; v < subject_->vertex_count(); ++v) {
-      if (subject_->eyes()[v] != eye || target.weights[v] <= 0.0) continue;
+      if (subject_->eyes()[v] != eye || target.trust[v] <= 0.0) continue;
       const auto at = static_cast<Eigen::Index>(3 * v);
       const Vec3 arm = subject_->rest().segment<3>(at) - centre, moved = target.displacements.segment<3>(at);
       sum += (arm + moved) * arm.transpose();
@@ -228,7 +228,7 @@ Eigen::VectorXd Fitter::step(const Eigen::VectorXd& slope, const std::vector<flo
 void Fitter::take_weights(const Target& target) {
   Eigen::VectorXd weights = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(subject_->vertex_count()));
   for (size_t v = 0; v < subject_->vertex_count(); ++v)
-    if (subject_->follows(v)) weights[static_cast<Eigen::Index>(v)] = target.weights[v];
+    if (subject_->follows(v)) weights[static_cast<Eigen::Index>(v)] = target.trust[v];
   if (!(weights.sum() > 0.0)) throw Error("the target tells nothing of the parts of the face that move");
   weights /= weights.sum();
   if (vertex_weights_.size() != weights.size() || vertex_weights_ != weights) linear_at_.clear();
@@ -345,16 +345,16 @@ FitResult Fitter::solve(const Target& target, bool is_next) {
 void Fitter::finish(const Target& target, FitResult& result) {
   if (!is_sequence_) subject_->pose(result.activations, false);
   result.displacements = subject_->displacements(result.activations);
-  double left = 0.0, whole = 0.0, weight = 0.0, miss = 0.0, miss_moved = 0.0;
+  double left = 0.0, whole = 0.0, trust = 0.0, miss = 0.0, miss_moved = 0.0;
   size_t count = 0, count_moved = 0;
   for (size_t v = 0; v < subject_->vertex_count(); ++v) {
-    if (target.weights[v] <= 0.0) continue;
+    if (target.trust[v] <= 0.0) continue;
     const auto at = static_cast<Eigen::Index>(3 * v);
     const Vec3 wanted = target.displacements.segment<3>(at),
                gap = result.displacements.segment<3>(at) - wanted;
-    left += target.weights[v] * gap.squaredNorm();
-    whole += target.weights[v] * wanted.squaredNorm();
-    weight += target.weights[v];
+    left += target.trust[v] * gap.squaredNorm();
+    whole += target.trust[v] * wanted.squaredNorm();
+    trust += target.trust[v];
     miss += gap.norm();
     ++count;
     if (wanted.norm() > 5e-4) {
@@ -363,7 +363,7 @@ void Fitter::finish(const Target& target, FitResult& result) {
     }
   }
   result.share = whole > 0.0 ? 1.0 - left / whole : left > 0.0 ? 0.0 : 1.0;
-  result.rms_mm = 1e3 * std::sqrt(left / weight);
+  result.rms_mm = 1e3 * std::sqrt(left / trust);
   result.error_mm = 1e3 * (count_moved > 0 ? miss_moved / static_cast<double>(count_moved)
                                            : miss / static_cast<double>(count));
   result.spread.assign(result.activations.size(), 0.0);

@@ -8,10 +8,10 @@
 
 namespace fascia::fit {
 
-/// What a face should look like: where each vertex should go, and how much it counts.
+/// What a face should look like: where each vertex should go, and how far it is to be trusted.
 struct Target {
   Eigen::VectorXd displacements;  ///< 3 x #vertices of the subject, metres from rest
-  std::vector<double> weights;    ///< #vertices, 0 where nothing is known of a vertex
+  std::vector<double> trust;      ///< #vertices, 0 where nothing is known of a vertex
   /// 3 x #vertices, unit, or empty. Where given, only the distance along it counts (and a little the rest):
   /// the vertex may slide over a surface it was matched to (Chen & Medioni 1992).
   Eigen::VectorXd normals = {};
@@ -30,9 +30,9 @@ struct FitOptions {
 
 struct FitResult {
   std::vector<float> activations;  ///< one a channel of the rig
-  double share = 0.0;              ///< 1 - sum |u - v|^2 / sum |v|^2 over vertices, weighted
+  double share = 0.0;              ///< 1 - sum |u - v|^2 / sum |v|^2 over trusted vertices
   double error_mm = 0.0;  ///< mean distance left where the target moves more than 0.5 mm; else over all
-  double rms_mm = 0.0;    ///< root mean square distance left over vertices, weighted
+  double rms_mm = 0.0;    ///< root mean square distance left over trusted vertices
   int iterations = 0;
   bool converged = false;
   Eigen::VectorXd
@@ -65,7 +65,7 @@ class Fitter {
  public:
   explicit Fitter(Subject& subject, const FitOptions& options = {});
 
-  /// Throws fascia::Error when no vertex of the target with a weight is one that the rig moves.
+  /// Throws fascia::Error when the target trusts no vertex that the rig moves.
   FitResult fit(const Target& target);
   /// The next frame of a take: begins at the last result and keeps near it.
   FitResult follow(const Target& target);
@@ -105,7 +105,7 @@ class Fitter {
   Eigen::MatrixXd node_columns_;    ///< 3 #nodes x #fitted
   Eigen::MatrixXd jaw_slopes_;      ///< 3 #vertices x 3
   Eigen::MatrixXd hessian_;         ///< #fitted square: of the mean squared error in mm^2, halved
-  Eigen::VectorXd vertex_weights_;  ///< #vertices: the weights over their sum
+  Eigen::VectorXd vertex_weights_;  ///< #vertices: trust over its sum
   Eigen::VectorXd slide_normals_;   ///< of the target; empty: distances count in all directions
   bool is_sequence_ = false;
 };

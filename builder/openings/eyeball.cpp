@@ -4,35 +4,26 @@
 #include <cmath>
 
 #include "builder/prepare/eyeballs.h"
-#include "geometry/error.h"
 
 namespace fascia::openings {
 
 namespace {
 
-/// The width of a grown person's fissure between its corners, metres.
-double generic_fissure(const anatomy::GenericAnatomy& anatomy) {
-  const anatomy::Landmark *inner = anatomy.landmark("endocanthion_left"),
-                          *outer = anatomy.landmark("exocanthion_left");
-  if (!inner || !outer || !inner->skin || !outer->skin)
-    throw Error(
-        "the anatomy has no endocanthion_left or exocanthion_left: put them back into landmarks.json");
-  return (*inner->skin - *outer->skin).norm();
-}
+// A globe of 24 mm across behind a fissure of 28 mm to 30 mm between the canthi (Gray's Anatomy; Farkas
+// 1994).
+constexpr double globe_radius = 0.012, fissure_width = 0.029;
+constexpr double lid_thickness = 0.0015;  // metres of a grown person, between the globe and the skin
 
 const Vec3 sclera(0.86, 0.84, 0.81), iris(0.30, 0.20, 0.12), pupil(0.02, 0.02, 0.02);
 
 }  // namespace
 
-prepare::Eyeball fit_globe(const spatial::SurfaceQuery& skin, const MeetingLine& line, const FaceAxes& face,
-                           const anatomy::GenericAnatomy& anatomy) {
+prepare::Eyeball fit_globe(const spatial::SurfaceQuery& skin, const MeetingLine& line, const FaceAxes& face) {
   prepare::Eyeball ball;
-  const double grown = generic_fissure(anatomy) * face.scale;
+  const double size = 2.0 * line.half_width / fissure_width;
   // Large painted eyes of a stylised face are no larger globes than their face can hold.
-  const double width = std::clamp(2.0 * line.half_width, 0.6 * grown, 2.2 * grown);
-  ball.radius = anatomy.mechanics.lids.globe_radius_share * width;
-  constexpr double lid_share = 0.125;  // of the radius: a lid of 1.5 mm on a globe of 12 mm
-  const double room = (1.0 + lid_share) * ball.radius;
+  ball.radius = globe_radius * std::clamp(size, 0.6 * face.scale, 2.2 * face.scale);
+  const double room = ball.radius + lid_thickness * ball.radius / globe_radius;
   // How far forward the centre may stand before each place of the lids.
   std::vector<double> limits;
   constexpr int steps = 12;

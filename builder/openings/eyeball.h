@@ -9,9 +9,8 @@ namespace fascia::openings {
 /// An eyeball for an eye of this head: of a grown person's size in proportion to the face, as far forward as
 /// its lids, closed over it, let it.
 ///
-/// `line` is where the lids meet; `anatomy` gives the globe's radius in widths of the fissure.
-prepare::Eyeball fit_globe(const spatial::SurfaceQuery& skin, const MeetingLine& line, const FaceAxes& face,
-                           const anatomy::GenericAnatomy& anatomy);
+/// `line` is where the lids meet.
+prepare::Eyeball fit_globe(const spatial::SurfaceQuery& skin, const MeetingLine& line, const FaceAxes& face);
 
 /// The generic head's eyeball of a side as large as `ball` and in its place, looking straight ahead of the
 /// face; metres, rig frame, coloured by iris, pupil and sclera. Empty when the anatomy has none.

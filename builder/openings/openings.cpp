@@ -161,7 +161,7 @@ void open_eye(prepare::PreparedHead& head, const Points& landmarks, const anatom
   if (!has_all(landmarks, {"endocanthion" + side, "exocanthion" + side})) return;
   const MeetingLine line = lid_line(head, landmarks, face, left);
   std::optional<prepare::Eyeball>& own = left ? head.eye_left : head.eye_right;
-  const prepare::Eyeball globe = own ? *own : fit_globe(*head.surface, line, face, anatomy);
+  const prepare::Eyeball globe = own ? *own : fit_globe(*head.surface, line, face);
   const auto cut = are_closed ? cut_head(head, line, lid_end, name, opened) : std::nullopt;
   if (cut) {
     const Lining lining =

@@ -21,16 +21,16 @@ TEST(Progress, JobsWithinJobsAreRegisteredAndGoInOrder) {
   common.quiet = true;
   {
     Progress outer(common, "demo", {{"build", 1.0}, {"film", 3.0}});
-    EXPECT_EQ(common.running, &outer);
+    EXPECT_EQ(Progress::innermost(), &outer);
     {
       Progress inner(common, "frame", 10);
-      EXPECT_EQ(common.running, &inner);
+      EXPECT_EQ(Progress::innermost(), &inner);
       inner.step();
     }
-    EXPECT_EQ(common.running, &outer);
+    EXPECT_EQ(Progress::innermost(), &outer);
     outer.begin("nothing of that name");
   }
-  EXPECT_EQ(common.running, nullptr);
+  EXPECT_EQ(Progress::innermost(), nullptr);
 }
 
 /// `script` gives the tool a terminal; what it shows there ends up in the file.

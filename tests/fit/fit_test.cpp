@@ -152,12 +152,12 @@ TEST_F(Fit, VerticesNobodyTrustsDoNotCount) {
   std::vector<float> values = rest();
   set(values, "zygomaticus_minor_left", 0.6F);
   Target target = target_of(values);
-  for (size_t v = 0; v < target.weights.size(); v += 3) {
+  for (size_t v = 0; v < target.trust.size(); v += 3) {
     target.displacements.segment<3>(static_cast<Eigen::Index>(3 * v)).setConstant(1.0);
-    target.weights[v] = 0.0;
+    target.trust[v] = 0.0;
   }
   EXPECT_LT(Fitter(*subject).fit(target).rms_mm, 0.05);
-  std::fill(target.weights.begin(), target.weights.end(), 0.0);
+  std::fill(target.trust.begin(), target.trust.end(), 0.0);
   EXPECT_THROW(Fitter(*subject).fit(target), Error);
 }
 
