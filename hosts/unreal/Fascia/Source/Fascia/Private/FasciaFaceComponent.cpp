@@ -15,7 +15,8 @@ namespace {
 
 constexpr double CentimetresPerMetre = 100.0;
 
-/** The rig's metres, +Y up, facing +Z, to the engine's centimetres, +Z up, facing +X; right-handed to left-handed. */
+/** The rig's metres, +Y up, facing +Z, to the engine's centimetres, +Z up, facing +X; right-handed to
+ * left-handed. */
 FVector ToEngine(const float* Vector, double Scale) {
   return FVector(Vector[2], Vector[0], Vector[1]) * Scale;
 }
@@ -75,7 +76,8 @@ bool UFasciaFaceComponent::SetValue(const FString& Name, float Value) {
 }
 
 void UFasciaFaceComponent::SetWeights(const TMap<FName, float>& Weights) {
-  for (const auto& [Name, Value] : Weights) SetValue(Name.ToString(), Value);
+  for (const auto& [Name, Value] : Weights)
+    SetValue(Name.ToString(), Value);
 }
 
 void UFasciaFaceComponent::ResetFace() {
@@ -84,19 +86,22 @@ void UFasciaFaceComponent::ResetFace() {
   fascia_face_reset(Face);
 }
 
-void UFasciaFaceComponent::TickComponent(float Seconds, ELevelTick Kind, FActorComponentTickFunction* Function) {
+void UFasciaFaceComponent::TickComponent(float Seconds, ELevelTick Kind,
+                                         FActorComponentTickFunction* Function) {
   Super::TickComponent(Seconds, Kind, Function);
   if (Face == nullptr) return;
   // The head's place, back in the rig's metres and axes, column by column.
   const FTransform World = GetComponentTransform();
   float Place[16] = {};
-  const FVector Axes[3] = {World.GetUnitAxis(EAxis::Y), World.GetUnitAxis(EAxis::Z), World.GetUnitAxis(EAxis::X)};
+  const FVector Axes[3] = {World.GetUnitAxis(EAxis::Y), World.GetUnitAxis(EAxis::Z),
+                           World.GetUnitAxis(EAxis::X)};
   const auto Put = [&Place](int32 Column, const FVector& V) {
     Place[4 * Column] = static_cast<float>(V.Y);
     Place[4 * Column + 1] = static_cast<float>(V.Z);
     Place[4 * Column + 2] = static_cast<float>(V.X);
   };
-  for (int32 Column = 0; Column < 3; ++Column) Put(Column, Axes[Column]);
+  for (int32 Column = 0; Column < 3; ++Column)
+    Put(Column, Axes[Column]);
   Put(3, World.GetLocation() / CentimetresPerMetre);
   Place[15] = 1.0f;
   fascia_face_move_head(Face, Place, Inertia);
@@ -108,7 +113,8 @@ void UFasciaFaceComponent::WriteSections(bool bCreates) {
   fascia_asset_get_info(Asset, &Info);
   for (uint32 Mesh = 0; Mesh < Info.mesh_count; ++Mesh) {
     fascia_vectors Places = {sizeof Places}, Directions = {sizeof Directions};
-    if (fascia_face_positions(Face, Mesh, &Places) != FASCIA_OK || fascia_face_normals(Face, Mesh, &Directions) != FASCIA_OK)
+    if (fascia_face_positions(Face, Mesh, &Places) != FASCIA_OK ||
+        fascia_face_normals(Face, Mesh, &Directions) != FASCIA_OK)
       continue;
     Positions.SetNumUninitialized(Places.count, false);
     Normals.SetNumUninitialized(Places.count, false);
@@ -123,8 +129,10 @@ void UFasciaFaceComponent::WriteSections(bool bCreates) {
     fascia_mesh_info Shape = {sizeof Shape};
     fascia_asset_get_mesh(Asset, Mesh, &Shape);
     TArray<int32> Triangles;
-    for (uint32 T = 0; T < Shape.triangle_count; ++T)  // the axes' handedness turns round, and the triangles with it
-      Triangles.Append({static_cast<int32>(Shape.triangles[3 * T]), static_cast<int32>(Shape.triangles[3 * T + 2]),
+    for (uint32 T = 0; T < Shape.triangle_count;
+         ++T)  // the axes' handedness turns round, and the triangles with it
+      Triangles.Append({static_cast<int32>(Shape.triangles[3 * T]),
+                        static_cast<int32>(Shape.triangles[3 * T + 2]),
                         static_cast<int32>(Shape.triangles[3 * T + 1])});
     CreateMeshSection(Mesh, Positions, Triangles, Normals, {}, {}, {}, false);
   }
