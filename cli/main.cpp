@@ -10,6 +10,7 @@
 #include "cli/check.h"
 #include "cli/common.h"
 #include "cli/fit.h"
+#include "cli/snapshot.h"
 #include "formats/partial.h"
 #include "geometry/error.h"
 
@@ -66,6 +67,7 @@ int main(int argc, char** argv) {
   add_check(app, common);
   add_demo(app, common);
   add_fit(app, common);
+  add_snapshot(app, common);
   add_to_come(app);
   add_manual(app);
   try {
