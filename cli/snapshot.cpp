@@ -224,7 +224,7 @@ void add_snapshot(CLI::App& app, Common& common) {
   part->add_option("--level", recording->level,
                    "Level of detail: low, medium or high (default: the rig's finest)");
   part->add_option("--tolerance", recording->tolerance_mm,
-                   "Allowed difference of a region, root mean square, mm (default: 0.03)")
+                   "Allowed difference of a region, root mean square, mm (default: 0.02)")
       ->check(CLI::Range(1e-3, 1e3));
   part->add_option("--reason", recording->reason, "Why a snapshot that is there is recorded anew");
   part->callback([recording, &common] { record(common, *recording); });

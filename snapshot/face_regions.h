@@ -13,7 +13,7 @@ namespace fascia::snapshot {
 struct RegionOptions {
   size_t vertices = 10;    ///< watched in each region, spread evenly
   double reach_mm = 28.0;  ///< skin farther than this from every landmark belongs to no region
-  double tolerance_mm = 0.03;
+  double tolerance_mm = 0.02;
 };
 
 /// A region of a user's own: skin about landmarks, or vertices of a mesh by number.
