@@ -1,7 +1,7 @@
 #include "cli/snapshot.h"
 
-#include <CLI/CLI.hpp>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "cli/check.h"
 #include "cli/progress.h"
@@ -20,22 +20,12 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-struct RecordRequest {
-  fs::path rig, output, poses;
+struct Request {
+  std::string action;
+  fs::path file, output, against, poses, report, junit;
   std::vector<fs::path> curves;
   std::string level, reason;
-  double tolerance_mm = 0.0;
-};
-
-struct CheckRequest {
-  fs::path rig, against, report, junit;
-  std::vector<fs::path> curves;
-  double tolerance_mm = 0.0;
-};
-
-struct DiffRequest {
-  fs::path then, now;
-  double tolerance_mm = 0.0;
+  double tolerance_mm = 0.0;  ///< 0: not given
 };
 
 std::string quoted(const fs::path& path) {
@@ -79,7 +69,7 @@ std::function<void(size_t, size_t)> shown(const Common& common, std::unique_ptr<
 }
 
 /// What an earlier snapshot of the same name had is recorded again, unless something else is asked for.
-void take_over(const snapshot::Snapshot& old, const RecordRequest& wanted, snapshot::Request& request) {
+void take_over(const snapshot::Snapshot& old, const Request& wanted, snapshot::Request& request) {
   if (request.poses.empty()) request.poses = old.poses;
   if (request.level.empty()) request.level = old.level;
   request.kept_regions = old.regions;
@@ -91,8 +81,8 @@ void take_over(const snapshot::Snapshot& old, const RecordRequest& wanted, snaps
     request.takes.push_back(take_file(wanted.output, file));
 }
 
-void record(const Common& common, const RecordRequest& wanted) {
-  check_output(wanted.output, {wanted.rig, wanted.poses});
+void record(const Common& common, const Request& wanted) {
+  check_output(wanted.output, {wanted.file, wanted.poses});
   snapshot::Request request;
   request.level = wanted.level;
   request.threads = common.threads;
@@ -114,7 +104,8 @@ void record(const Common& common, const RecordRequest& wanted) {
   reasons.push_back(wanted.reason.empty() ? "first recorded" : wanted.reason);
   std::unique_ptr<Progress> progress;
   request.progress = shown(common, progress);
-  snapshot::Snapshot result = snapshot::record(formats::read_bytes(wanted.rig), quoted(wanted.rig), request);
+  snapshot::Snapshot result =
+      snapshot::record(formats::read_bytes(wanted.file), quoted(wanted.file), request);
   progress.reset();
   result.reasons = reasons;
   const std::string text = snapshot::to_text(result);
@@ -167,19 +158,19 @@ void finish(const Common& common, const snapshot::Snapshot& then, const snapshot
   report["largest_mean_mm"] = largest;
   report["differences"] = rows_of(then, comparison);
   common.report(report);
-  if (comparison.failed > 0) throw CLI::RuntimeError(exit_check);
+  if (comparison.failed > 0) throw Exit{exit_check};
 }
 
-void check_snapshot(const Common& common, const CheckRequest& wanted) {
+void check_snapshot(const Common& common, const Request& wanted) {
   for (const fs::path& output : {wanted.report, wanted.junit})
-    if (!output.empty()) check_output(output, {wanted.rig, wanted.against});
+    if (!output.empty()) check_output(output, {wanted.file, wanted.against});
   const snapshot::Snapshot then = read_snapshot(wanted.against);
-  SnapshotReport report = {wanted.rig, curves_of(then, wanted.against, wanted.curves), wanted.tolerance_mm};
+  SnapshotReport report = {wanted.file, curves_of(then, wanted.against, wanted.curves), wanted.tolerance_mm};
   std::vector<snapshot::TakeFile> takes;
   for (const fs::path& file : report.curves)
     takes.push_back(take_file(wanted.against, file));
   std::unique_ptr<Progress> progress;
-  const snapshot::Snapshot now = snapshot::replay(formats::read_bytes(wanted.rig), quoted(wanted.rig), then,
+  const snapshot::Snapshot now = snapshot::replay(formats::read_bytes(wanted.file), quoted(wanted.file), then,
                                                   takes, common.threads, shown(common, progress));
   progress.reset();
   const snapshot::Comparison comparison = snapshot::compare(then, now, wanted.tolerance_mm);
@@ -197,61 +188,72 @@ void check_snapshot(const Common& common, const CheckRequest& wanted) {
   finish(common, then, comparison, wanted.tolerance_mm, json);
 }
 
-void diff(const Common& common, const DiffRequest& wanted) {
-  const snapshot::Snapshot then = read_snapshot(wanted.then), now = read_snapshot(wanted.now);
+void diff(const Common& common, const Request& wanted) {
+  const snapshot::Snapshot then = read_snapshot(wanted.against), now = read_snapshot(wanted.file);
   finish(common, then, snapshot::compare(then, now, wanted.tolerance_mm), wanted.tolerance_mm,
-         {{"against", wanted.then.string()}});
+         {{"against", wanted.against.string()}});
+}
+
+/// Options that go with the action and no others.
+void check_usage(const Request& wanted) {
+  const bool records = wanted.action == "record";
+  if (records && wanted.output.empty()) throw UsageError("'fascia snapshot record' needs -o FILE");
+  if (!records && wanted.against.empty())
+    throw UsageError("'fascia snapshot " + wanted.action + "' needs --against FILE");
+  for (const auto& [name, is_given, is_fitting] :
+       {std::tuple{"--output", !wanted.output.empty(), records},
+        std::tuple{"--against", !wanted.against.empty(), !records},
+        std::tuple{"--poses", !wanted.poses.empty(), records},
+        std::tuple{"--level", !wanted.level.empty(), records},
+        std::tuple{"--reason", !wanted.reason.empty(), records},
+        std::tuple{"--curves", !wanted.curves.empty(), wanted.action != "diff"},
+        std::tuple{"--report", !wanted.report.empty(), wanted.action == "check"},
+        std::tuple{"--junit", !wanted.junit.empty(), wanted.action == "check"}})
+    if (is_given && !is_fitting)
+      throw UsageError("'fascia snapshot " + wanted.action + "' takes no " + std::string(name));
+}
+
+void run(const Common& common, const Request& wanted) {
+  check_usage(wanted);
+  if (wanted.action == "record") return record(common, wanted);
+  if (wanted.action == "check") return check_snapshot(common, wanted);
+  diff(common, wanted);
 }
 
 }  // namespace
 
-void add_snapshot(CLI::App& app, Common& common) {
-  CLI::App* command = app.add_subcommand(
-      "snapshot", "Keep where a rig's skin goes as numbers, and check that it still goes there");
-  command->require_subcommand(1);
-  command->fallthrough();
-
-  auto recording = std::make_shared<RecordRequest>();
-  CLI::App* part = command->add_subcommand("record", "Play poses and takes and write the snapshot");
-  part->fallthrough();
-  part->add_option("RIG", recording->rig, "Rig (.glb)")->required();
-  part->add_option("-o,--output", recording->output, "Snapshot to write; one that is there is renewed")
-      ->required();
-  part->add_option("--poses", recording->poses,
-                   "Poses and regions (.json; default: every channel alone and every ARKit shape, regions by "
-                   "landmarks)");
-  part->add_option("--curves", recording->curves, "Curves to simulate as a take; more than once for more");
-  part->add_option("--level", recording->level,
-                   "Level of detail: low, medium or high (default: the rig's finest)");
-  part->add_option("--tolerance", recording->tolerance_mm,
-                   "Allowed difference of a region, root mean square, mm (default: 0.02)")
-      ->check(CLI::Range(1e-3, 1e3));
-  part->add_option("--reason", recording->reason, "Why a snapshot that is there is recorded anew");
-  part->callback([recording, &common] { record(common, *recording); });
-
-  auto checking = std::make_shared<CheckRequest>();
-  part = command->add_subcommand("check", "Play the same again and compare; exit 4 when something differs");
-  part->fallthrough();
-  part->add_option("RIG", checking->rig, "Rig (.glb)")->required();
-  part->add_option("--against", checking->against, "Snapshot to compare with")->required();
-  part->add_option("--curves", checking->curves,
-                   "The takes' curves, in the snapshot's order (default: where the snapshot found them)");
-  part->add_option("--tolerance", checking->tolerance_mm,
-                   "Allowed difference of every region, mm (default: each region's own)")
-      ->check(CLI::Range(1e-3, 1e3));
-  part->add_option("--report", checking->report, "Page with heat maps to write (.html; default: none)");
-  part->add_option("--junit", checking->junit, "JUnit XML to write (default: none)");
-  part->callback([checking, &common] { check_snapshot(common, *checking); });
-
-  auto comparing = std::make_shared<DiffRequest>();
-  part = command->add_subcommand("diff", "Compare two snapshots; exit 4 when they differ");
-  part->fallthrough();
-  part->add_option("THEN", comparing->then, "Snapshot")->required();
-  part->add_option("NOW", comparing->now, "Snapshot of the same poses and regions")->required();
-  part->add_option("--tolerance", comparing->tolerance_mm,
-                   "Allowed difference of every region, mm (default: each region's own)")
-      ->check(CLI::Range(1e-3, 1e3));
-  part->callback([comparing, &common] { diff(common, *comparing); });
+void add_snapshot(const Command& tool, Common& common) {
+  auto request = std::make_shared<Request>();
+  const Command command = tool.command("snapshot",
+                                       "Keep where a rig's skin goes as numbers (record), and check that it "
+                                       "still goes there (check) or compare two such "
+                                       "files (diff); ends with 4 when something differs");
+  command.positional("ACTION", &request->action, "What to do").required().one_of({"record", "check", "diff"});
+  command.positional("FILE", &request->file, "Rig (.glb) to record or check, or snapshot to compare")
+      .required();
+  command.option("-o,--output", &request->output, "Snapshot to record; one that is there is renewed")
+      .default_text("none");
+  command.option("--against", &request->against, "Snapshot to check or compare with").default_text("none");
+  command.option("--poses", &request->poses, "Poses and regions to record (.json)")
+      .default_text("every channel alone and every ARKit shape, regions by landmarks");
+  command
+      .option("--curves", &request->curves,
+              "Curves to simulate as a take, several times for more; when checking, in the snapshot's order")
+      .default_text("none, or where the snapshot found them");
+  command.option("--level", &request->level, "Level of detail to record: low, medium or high")
+      .value("LEVEL")
+      .default_text("the rig's finest");
+  command
+      .option("--tolerance", &request->tolerance_mm,
+              "Allowed difference of a region, root mean square of its vertices, mm")
+      .range(1e-3, 1e3)
+      .default_text("0.02 when recording, else what was recorded");
+  command.option("--reason", &request->reason, "Why a snapshot that is there is recorded anew")
+      .value("TEXT")
+      .default_text("none");
+  command.option("--report", &request->report, "Page with heat maps to write (.html)").default_text("none");
+  command.option("--junit", &request->junit, "JUnit XML to write").default_text("none");
+  command.run([request, &common] { run(common, *request); });
 }
 
 }  // namespace fascia::cli

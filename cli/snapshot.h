@@ -4,7 +4,8 @@
 
 namespace fascia::cli {
 
-/// Adds `fascia snapshot record|check|diff`.
-void add_snapshot(CLI::App& app, Common& common);
+/// Adds `fascia snapshot record|check|diff`: keeps where a rig's skin goes, and checks that it still goes
+/// there.
+void add_snapshot(const Command& tool, Common& common);
 
 }  // namespace fascia::cli
