@@ -26,7 +26,8 @@ const std::map<std::string, std::set<std::string>> rooms = {
     {"snapshot", {"geometry", "formats", "rig/model", "rig/read"}},
     {"view", {"geometry", "rig"}},
     {"cli",
-     {"geometry", "gltf", "formats", "anatomy", "rig", "sim", "builder", "check", "fit", "runtime", "snapshot", "view"}},
+     {"geometry", "gltf", "formats", "anatomy", "rig", "sim", "builder", "check", "fit", "runtime",
+      "snapshot", "view"}},
     {"samples", {}},
 };
 
