@@ -7,6 +7,7 @@
 #include <new>
 #include <nlohmann/json.hpp>
 
+#include "cli/batch.h"
 #include "cli/check.h"
 #include "cli/common.h"
 #include "cli/face.h"
@@ -55,6 +56,7 @@ void declare(const fascia::cli::Command& tool, fascia::cli::Common& common) {
   add_face(tool, common);
   add_fit(tool, common);
   add_snapshot(tool, common);
+  add_batch(tool, common);
   add_to_come(tool);
   add_manual(tool);
 }
