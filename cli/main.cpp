@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/batch.h"
+#include "cli/calibrate.h"
 #include "cli/check.h"
 #include "cli/common.h"
 #include "cli/face.h"
@@ -53,6 +54,7 @@ void declare(const fascia::cli::Command& tool, fascia::cli::Common& common) {
   add_render(tool, common);
   add_check(tool, common);
   add_demo(tool, common);
+  add_calibrate(tool, common);
   add_face(tool, common);
   add_fit(tool, common);
   add_snapshot(tool, common);
