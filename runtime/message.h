@@ -8,7 +8,6 @@
 #include "fascia/fascia.h"
 #include "geometry/error.h"
 #include "rig/read/read.h"
-#include "runtime/arithmetic_mode.h"
 
 namespace fascia::runtime {
 
@@ -30,11 +29,9 @@ inline void require(bool condition, const char* message) {
   if (!condition) throw Failure(FASCIA_ERROR_ARGUMENT, message);
 }
 
-/// Runs `body` in the usual mode of arithmetic and turns whatever it throws into a result: the wall between
-/// C++ and the C interface.
+/// Runs `body` and turns whatever it throws into a result: the wall between C++ and the C interface.
 template <class Body>
 fascia_result guarded(const Body& body) noexcept {
-  const ArithmeticMode mode;
   try {
     return body();
   } catch (const Failure& failure) {
