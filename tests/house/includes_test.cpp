@@ -23,9 +23,12 @@ const std::map<std::string, std::set<std::string>> rooms = {
     {"fit", {"geometry", "gltf", "rig", "sim"}},
     {"runtime", {"rig/model", "rig/read", "gltf/read", "sim", "geometry"}},
     {"check", {"geometry", "anatomy", "rig/model", "rig/read", "builder/spatial"}},
+    {"batch", {"geometry", "formats"}},
+    {"snapshot", {"geometry", "formats", "rig/model", "rig/read"}},
     {"view", {"geometry", "rig"}},
     {"cli",
-     {"geometry", "gltf", "formats", "anatomy", "rig", "sim", "builder", "check", "fit", "runtime", "view"}},
+     {"geometry", "gltf", "formats", "anatomy", "rig", "sim", "builder", "batch", "check", "fit", "runtime",
+      "snapshot", "view"}},
     {"samples", {}},
     // Beside the product: it may not include any of these.
     {"tools", {"geometry", "formats", "anatomy", "rig", "builder", "view"}},
