@@ -5,6 +5,7 @@
 
 #include "builder/landmarks/complete.h"
 #include "builder/landmarks/find.h"
+#include "builder/landmarks/symmetry.h"
 #include "builder/prepare/repair.h"
 #include "builder/prepare/upright.h"
 #include "builder/rigging/find_landmarks.h"
@@ -125,10 +126,10 @@ Points reference_points(const anatomy::GenericAnatomy& anatomy) {
   return points;
 }
 
-/// What follows tells up and front from the axes: by its landmarks the head is set upright to the last tenth
-/// of a degree, so that it gets the same rig whichever way it looked.
+/// What follows tells up and front from the axes: by its landmarks the head is set upright to half a
+/// degree, so that it gets the same rig whichever way it looked.
 void set_upright(FoundLandmarks& found, const Points& reference) {
-  constexpr double least = 5e-4;  // radians: a head that stands along the axes keeps them to the last digit
+  constexpr double least = 0.01;  // radians: a head that stands along the axes keeps them to the last digit
   Points here;
   for (const auto& [name, landmark] : found.landmarks)
     here[name] = landmark.position;
@@ -173,6 +174,8 @@ FoundLandmarks find_landmarks(const formats::Scene& file, const formats::Landmar
   });
   const double prepared_at = now();
   place_landmarks(result, located, given, anatomy, with_regions);
+  if (const auto plane = landmarks::mirror_plane(result.landmarks, *result.head.surface))
+    landmarks::make_symmetric(*plane, *result.head.surface, result.landmarks);
   set_upright(result, reference);
   result.seconds = {located_at - started, prepared_at - located_at, now() - prepared_at};
   return result;
