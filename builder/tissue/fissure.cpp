@@ -13,6 +13,7 @@ namespace {
 
 constexpr size_t steps = 33;
 constexpr double edge = 0.004;  // metres of skin beside the opening among which a lid's edge is looked for
+constexpr double widest = 2.2;  // radians about the globe: wider than the largest eyes of drawn figures
 
 }  // namespace
 
@@ -31,8 +32,44 @@ Fissure::Fissure(const TissueInputs& inputs, const FaceRegion& region, bool left
   left_ = (b - centre).dot(lateral);
   right_elevation_ = elevation(a);
   left_elevation_ = elevation(b);
+  find_corners(region, left);
   find_gaps(region, left);
   find_closed_lids(region, left);
+}
+
+void Fissure::find_corners(const FaceRegion& region, bool left) {
+  // Where the opening in the skin ends lids meet, a little beyond or before the landmarks: what stays outside
+  // of the corners would stay open.
+  constexpr double off = 0.22, row = 0.04;  // of the width: a corner from its landmark; what is at a corner
+  const auto& distance =
+      region.opening_distance[static_cast<size_t>(left ? Opening::eye_left : Opening::eye_right)];
+  const double width = left_ - right_;
+  std::vector<std::pair<double, double>> edge;  // along the fissure, elevation
+  for (size_t v = 0; v < region.mesh.vertices.size(); ++v) {
+    if (!region.outer[v] || !(distance[v] <= 0.0)) continue;
+    const Vec3& p = region.mesh.vertices[v];
+    const double along = (p - centre).dot(lateral);
+    if (along < right_ - off * width || along > left_ + off * width || std::abs(elevation(p)) > widest)
+      continue;
+    edge.emplace_back(along, elevation(p));
+  }
+  if (edge.size() < 6) return;
+  const auto [first, last] = std::minmax_element(edge.begin(), edge.end());
+  const double from = first->first, to = last->first;
+  if (from > right_ + off * width || to < left_ - off * width) return;
+  const auto height_at = [&](double corner) {
+    double sum = 0.0, count = 0.0;
+    for (const auto& [along, height] : edge)
+      if (std::abs(along - corner) < row * width) {
+        sum += height;
+        count += 1.0;
+      }
+    return sum / count;
+  };
+  right_elevation_ = height_at(from);
+  left_elevation_ = height_at(to);
+  right_ = from;
+  left_ = to;
 }
 
 double Fissure::elevation(const Vec3& p) const {
@@ -64,6 +101,7 @@ void Fissure::find_gaps(const FaceRegion& region, bool left) {
     if (!(from < to)) return;
     for (double k = std::max(0.0, std::ceil(from)); k <= std::min(last, to); k += 1.0) {
       const double share = (k - from) / (to - from), value = elevation(a + share * (b - a));
+      if (std::abs(value) > widest) continue;  // so far round the globe is its socket, not a lid
       const bool above = is_upper(a + share * (b - a));
       const auto step = static_cast<size_t>(k);
       double& best = above ? upper[step] : lower[step];
@@ -90,7 +128,7 @@ void Fissure::find_gaps(const FaceRegion& region, bool left) {
       if (place.triangle >= 0) edges_.push_back(place);
   gaps_.assign(steps, -1.0);
   for (size_t k = 0; k < steps; ++k)
-    if (upper[k] < 4.0 && lower[k] > -4.0) gaps_[k] = std::max(0.0, upper[k] - lower[k]);
+    if (upper[k] < 4.0 && lower[k] > -4.0) gaps_[k] = std::clamp(upper[k] - lower[k], 0.0, widest);
   gaps_.front() = gaps_.back() = 0.0;
   for (size_t k = 1, known = 0; k < steps; ++k) {
     if (gaps_[k] < 0.0) continue;
@@ -102,7 +140,7 @@ void Fissure::find_gaps(const FaceRegion& region, bool left) {
   for (int pass = 0; pass < 2; ++pass) {
     std::vector<double> next = gaps_;
     for (size_t k = 1; k + 1 < steps; ++k)
-      next[k] = 0.25 * (gaps_[k - 1] + 2.0 * gaps_[k] + gaps_[k + 1]);
+      next[k] = std::max(gaps_[k], 0.25 * (gaps_[k - 1] + 2.0 * gaps_[k] + gaps_[k + 1]));
     gaps_ = std::move(next);
   }
 }
@@ -118,16 +156,16 @@ void Fissure::find_closed_lids(const FaceRegion& region, bool left) {
     low[k] = std::min(low[k], elevation(margin.position));
     high[k] = std::max(high[k], elevation(margin.position));
   }
-  double widest = 0.0, sum = 0.0;
+  double farthest = 0.0, sum = 0.0;
   int known = 0;
   for (size_t k = 0; k < steps; ++k)
     if (high[k] >= low[k]) {
-      widest = std::max(widest, high[k] - low[k]);
+      farthest = std::max(farthest, high[k] - low[k]);
       sum += 0.5 * (low[k] + high[k]);
       ++known;
     }
   // A slope within a step counts as little as the step is wide.
-  if (2 * known < static_cast<int>(steps) || widest > 3.0 * closed) return;
+  if (2 * known < static_cast<int>(steps) || farthest > 3.0 * closed) return;
   const double level = sum / known;
   const auto& distance = region.opening_distance[static_cast<size_t>(opening)];
   std::array<std::vector<DistanceSeed>, 2> seeds;
