@@ -9,7 +9,7 @@
 namespace fascia::formats::detail {
 
 void read_gltf(Scene& scene, const std::vector<uint8_t>& bytes, const ReadOptions& options);
-void read_obj(Scene& scene, const ReadOptions& options);
+void read_obj(Scene& scene);
 void read_ply(Scene& scene);
 void read_stl(Scene& scene);
 

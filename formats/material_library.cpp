@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <map>
 #include <sstream>
+#include <string_view>
 
 #include "formats/files.h"
 #include "gltf/edit/uri.h"
@@ -30,7 +32,8 @@ std::string argument_of(std::string_view line) {
 
 class PictureReader {
  public:
-  PictureReader(Scene& scene, const ReadOptions& options) : scene_(scene), options_(options) {}
+  PictureReader(const Scene& scene, const ReadOptions& options, std::vector<std::string>& warnings)
+      : scene_(scene), options_(options), warnings_(warnings) {}
 
   std::shared_ptr<const std::vector<uint8_t>> read(const std::string& name) {
     if (name.empty()) return nullptr;
@@ -38,21 +41,22 @@ class PictureReader {
     if (!is_new) return entry->second;
     FileBeside file = read_beside(scene_.path, name, options_.allow_outside);
     if (!file.bytes) {
-      scene_.warnings.push_back("texture '" + gltf::as_utf8(name) + "' is left out: " + file.why);
+      warnings_.push_back("texture '" + gltf::as_utf8(name) + "' is left out: " + file.why);
       return nullptr;
     }
     const std::string kind = gltf::picture_type(*file.bytes);
     if (kind != "image/png" && kind != "image/jpeg") {
-      scene_.warnings.push_back("texture '" + gltf::as_utf8(name) +
-                                "' is left out: glTF holds PNG and JPEG only; convert it to one of them");
+      warnings_.push_back("texture '" + gltf::as_utf8(name) +
+                          "' is left out: glTF holds PNG and JPEG only; convert it to one of them");
       return nullptr;
     }
     return entry->second = std::make_shared<const std::vector<uint8_t>>(std::move(*file.bytes));
   }
 
  private:
-  Scene& scene_;
+  const Scene& scene_;
   const ReadOptions& options_;
+  std::vector<std::string>& warnings_;
   std::map<std::string, std::shared_ptr<const std::vector<uint8_t>>> known_;
 };
 
@@ -60,50 +64,86 @@ double bounded(double value, double otherwise) {
   return std::isfinite(value) ? std::clamp(value, 0.0, 1.0) : otherwise;
 }
 
-}  // namespace
+/// What an OBJ's lines say of materials.
+struct ObjMaterials {
+  std::vector<std::string> libraries;
+  std::map<int, std::string> by_vertex;  ///< material of the first face that names a vertex (counted from 0)
+};
 
-std::string material_text(Scene& scene, std::string_view obj, const ReadOptions& options) {
-  std::string all;
+ObjMaterials scan(std::string_view obj) {
+  ObjMaterials found;
+  std::string current;
+  int vertices = 0;
   for (size_t at = 0; at < obj.size();) {
-    size_t end = std::min(obj.find('\n', at), obj.size());
+    const size_t end = std::min(obj.find('\n', at), obj.size());
     const std::string_view line = obj.substr(at, end - at);
     at = end + 1;
-    if (line.substr(0, 7) != "mtllib " && line.substr(0, 7) != "mtllib\t") continue;
-    const std::string name = argument_of(line);
-    FileBeside file = read_beside(scene.path, name, options.allow_outside);
-    if (file.bytes)
-      all.append(file.bytes->begin(), file.bytes->end()).append("\n");
-    else
-      scene.warnings.push_back("materials '" + gltf::as_utf8(name) + "' are left out: " + file.why);
+    const auto begins = [&](std::string_view word) {
+      return line.size() > word.size() && line.substr(0, word.size()) == word &&
+             (line[word.size()] == ' ' || line[word.size()] == '\t');
+    };
+    if (begins("mtllib")) found.libraries.push_back(argument_of(line));
+    if (begins("usemtl")) current = argument_of(line);
+    if (begins("v")) ++vertices;
+    if (!begins("f") || current.empty()) continue;
+    std::istringstream words{std::string(line.substr(1))};
+    for (std::string word; words >> word;) {
+      const int index = std::atoi(word.c_str());
+      found.by_vertex.try_emplace(index < 0 ? vertices + index : index - 1, current);
+    }
   }
-  return all;
+  return found;
 }
 
-std::vector<SceneMaterial> read_materials(Scene& scene, const std::string& text, const ReadOptions& options) {
+SceneMaterial material_of(const tinyobj::material_t& from, PictureReader& pictures) {
+  SceneMaterial material;
+  material.name = gltf::as_utf8(from.name);
+  for (int k = 0; k < 3; ++k)
+    material.colour[k] = bounded(from.diffuse[k], 0.8);
+  material.opacity = bounded(from.dissolve, 1.0);
+  // Phong's exponent as the roughness of the lobe of the same width: Karis 2013, specular BRDF reference.
+  if (from.roughness > 0)
+    material.roughness = bounded(from.roughness, 0.6);
+  else if (from.shininess > 1)
+    material.roughness = bounded(std::pow(2.0 / (from.shininess + 2.0), 0.25), 0.6);
+  material.colour_map = pictures.read(from.diffuse_texname);
+  material.normal_map = pictures.read(from.normal_texname);
+  material.has_alpha = !from.alpha_texname.empty() || material.opacity < 1.0;
+  return material;
+}
+
+}  // namespace
+
+MaterialLibrary read_materials(const Scene& scene, const ReadOptions& options) {
+  MaterialLibrary library;
+  library.of_mesh.assign(scene.meshes.size(), -1);
+  if (scene.kind != FileKind::obj) return library;
+  const ObjMaterials found =
+      scan(std::string_view(reinterpret_cast<const char*>(scene.bytes.data()), scene.bytes.size()));
   std::map<std::string, int> by_name;
-  std::vector<tinyobj::material_t> found;
-  std::string warning, error;
-  std::istringstream stream(text);
-  tinyobj::LoadMtl(&by_name, &found, &stream, &warning, &error);
-  PictureReader pictures(scene, options);
-  std::vector<SceneMaterial> materials;
-  for (const tinyobj::material_t& from : found) {
-    SceneMaterial material;
-    material.name = gltf::as_utf8(from.name);
-    for (int k = 0; k < 3; ++k)
-      material.colour[k] = bounded(from.diffuse[k], 0.8);
-    material.opacity = bounded(from.dissolve, 1.0);
-    // Phong's exponent as the roughness of the lobe of the same width: Karis 2013, specular BRDF reference.
-    if (from.roughness > 0)
-      material.roughness = bounded(from.roughness, 0.6);
-    else if (from.shininess > 1)
-      material.roughness = bounded(std::pow(2.0 / (from.shininess + 2.0), 0.25), 0.6);
-    material.colour_map = pictures.read(from.diffuse_texname);
-    material.normal_map = pictures.read(from.normal_texname);
-    material.has_alpha = !from.alpha_texname.empty() || material.opacity < 1.0;
-    materials.push_back(std::move(material));
+  PictureReader pictures(scene, options, library.warnings);
+  for (const std::string& name : found.libraries) {
+    const FileBeside file = read_beside(scene.path, name, options.allow_outside);
+    if (!file.bytes) continue;  // many a head comes without
+    std::istringstream text(std::string(file.bytes->begin(), file.bytes->end()));
+    std::map<std::string, int> ignored;
+    std::vector<tinyobj::material_t> read;
+    std::string warning, error;
+    tinyobj::LoadMtl(&ignored, &read, &text, &warning, &error);
+    for (const tinyobj::material_t& one : read) {
+      by_name.try_emplace(one.name, static_cast<int>(library.materials.size()));
+      library.materials.push_back(material_of(one, pictures));
+    }
   }
-  return materials;
+  for (size_t m = 0; m < scene.meshes.size(); ++m) {
+    const std::vector<int>& vertices = scene.meshes[m].source_vertices;
+    if (vertices.empty()) continue;
+    const auto name = found.by_vertex.find(vertices.front());
+    if (name == found.by_vertex.end()) continue;
+    const auto material = by_name.find(name->second);
+    if (material != by_name.end()) library.of_mesh[m] = material->second;
+  }
+  return library;
 }
 
 }  // namespace fascia::formats

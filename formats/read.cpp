@@ -103,7 +103,7 @@ Scene read(const std::filesystem::path& path, std::vector<uint8_t> bytes, const 
     detail::read_gltf(scene, bytes, options);
   } else {
     scene.bytes = std::move(bytes);
-    if (scene.kind == FileKind::obj) detail::read_obj(scene, options);
+    if (scene.kind == FileKind::obj) detail::read_obj(scene);
     if (scene.kind == FileKind::ply) detail::read_ply(scene);
     if (scene.kind == FileKind::stl) detail::read_stl(scene);
   }

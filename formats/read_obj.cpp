@@ -5,7 +5,6 @@
 #include <map>
 
 #include "formats/detail.h"
-#include "formats/material_library.h"
 #include "formats/obj_lines.h"
 #include "gltf/read/text.h"
 
@@ -75,29 +74,26 @@ void read_object(const Scene& scene, const tinyobj::attrib_t& attributes, const 
     mesh.polygons.push_back(std::move(polygon));
   }
   if (!shape.mesh.material_ids.empty() && shape.mesh.material_ids[0] >= 0 &&
-      shape.mesh.material_ids[0] < static_cast<int>(materials.size())) {
-    mesh.material_index = shape.mesh.material_ids[0];
+      shape.mesh.material_ids[0] < static_cast<int>(materials.size()))
     mesh.material = gltf::as_utf8(materials[shape.mesh.material_ids[0]].name);
-  }
 }
 
 }  // namespace
 
-void read_obj(Scene& scene, const ReadOptions& options) {
+void read_obj(Scene& scene) {
   tinyobj::ObjReaderConfig config;
   config.triangulate = false;
   config.vertex_color = false;
   tinyobj::ObjReader reader;
   const std::string_view text(reinterpret_cast<const char*>(scene.bytes.data()), scene.bytes.size());
   const std::vector<double> places = coordinates(scene, text);
-  const std::string materials = material_text(scene, text, options);
-  if (!reader.ParseFromString(plain_obj(text), materials, config))
+  // Materials are the file's own business; only the geometry is read.
+  if (!reader.ParseFromString(plain_obj(text), "", config))
     fail(scene, "it is not a readable OBJ file: " + gltf::as_utf8(reader.Error()));
   tinyobj::attrib_t attributes = reader.GetAttrib();
   if (attributes.vertices.size() != places.size()) fail(scene, "its 'v' lines are damaged");
   attributes.vertices = places;
   if (attributes.vertices.empty()) fail(scene, "it holds no vertices (no 'v' lines)");
-  if (!materials.empty()) scene.materials = read_materials(scene, materials, options);
   for (const tinyobj::shape_t& shape : reader.GetShapes()) {
     if (shape.mesh.indices.empty()) continue;
     SceneMesh mesh;

@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -15,23 +14,13 @@ namespace fascia::formats {
 
 enum class FileKind { glb, gltf, obj, ply, stl };
 
-/// How a mesh of an OBJ file is to look.
-struct SceneMaterial {
-  std::string name;
-  Vec3 colour = Vec3(0.8, 0.8, 0.8);  ///< sRGB, 0..1
-  double opacity = 1.0, roughness = 0.6;
-  bool has_alpha = false;  ///< whether it, or its colour map by its own alpha, lets through what is behind
-  std::shared_ptr<const std::vector<uint8_t>> colour_map, normal_map;  ///< PNG or JPEG files, or none
-};
-
 /// One drawable piece of a file: a glTF primitive of a node, an OBJ object, a whole PLY or STL.
 struct SceneMesh {
-  std::string name;         ///< node or mesh, or object or group; never empty
-  std::string material;     ///< material name, empty when there is none
-  int material_index = -1;  ///< OBJ: in `Scene::materials`, -1 without
-  int mesh = -1;            ///< glTF mesh index, -1 in other formats
-  int primitive = -1;       ///< glTF primitive index within it
-  int node = -1;            ///< glTF node that carries it
+  std::string name;      ///< node or mesh, or object or group; never empty
+  std::string material;  ///< material name, empty when there is none
+  int mesh = -1;         ///< glTF mesh index, -1 in other formats
+  int primitive = -1;    ///< glTF primitive index within it
+  int node = -1;         ///< glTF node that carries it
   Mat4 to_file =
       Mat4::Identity();  ///< from the primitive's coordinates to those of `positions` (node transforms)
   std::vector<Vec3>
@@ -48,11 +37,10 @@ struct SceneMesh {
 struct Scene {
   std::filesystem::path path;
   FileKind kind = FileKind::glb;
-  std::vector<SceneMesh> meshes;         ///< in node order
-  std::vector<SceneMaterial> materials;  ///< of OBJ
-  gltf::Document document;     ///< of GLB and glTF: self-contained, uncompressed, a mesh for each node
-  std::vector<uint8_t> bytes;  ///< of OBJ, PLY and STL: the file itself
-  bool is_extended = false;    ///< vertices have been appended since it was read (formats/extend.h)
+  std::vector<SceneMesh> meshes;  ///< in node order
+  gltf::Document document;        ///< of GLB and glTF: self-contained, uncompressed, a mesh for each node
+  std::vector<uint8_t> bytes;     ///< of OBJ, PLY and STL: the file itself
+  bool is_extended = false;       ///< vertices have been appended since it was read (formats/extend.h)
   /// Where the coordinates of `meshes` have their origin in the file's own. Not 0 for what lies far off (a
   /// scan in map coordinates): single precision would lose its shape.
   Vec3 offset = Vec3::Zero();

@@ -23,7 +23,7 @@ const std::map<std::string, std::set<std::string>> rooms = {
     {"fit", {"geometry", "gltf", "rig", "sim"}},
     {"runtime", {"rig/model", "rig/read", "gltf/read", "sim", "geometry"}},
     {"check", {"geometry", "anatomy", "rig/model", "rig/read", "builder/spatial"}},
-    {"view", {"geometry", "rig"}},
+    {"view", {"geometry", "gltf", "rig"}},
     {"cli",
      {"geometry", "gltf", "formats", "anatomy", "rig", "sim", "builder", "check", "fit", "runtime", "view"}},
     {"samples", {}},

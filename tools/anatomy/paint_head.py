@@ -188,7 +188,7 @@ class Painter:
         away = self.p - crown
         radius = np.linalg.norm(away, axis=1)
         turn = np.arctan2(away[:, 0], away[:, 2])
-        strands = np.stack([turn * np.maximum(radius, 12) / 0.33, radius / 2.2, np.zeros_like(radius)], 1)
+        strands = np.stack([turn * np.maximum(radius, 12) / 0.45, radius / 1.3, np.zeros_like(radius)], 1)
         grain = noise.layers(strands.astype(np.float32), 1.0, 141, 3, 0.6)
         patch = noise.layers(self.p, 5, 147, 4, 0.65)
         dense = np.clip(cover * f["cover"] * (1 + f["grain"] * (grain - 0.5) * 1.4 + 0.30 * (patch - 0.5)), 0, 0.96)
