@@ -211,8 +211,10 @@ rigging::BuildReport build_file(const Common& common, const BuildRequest& reques
   rigging::BuildResult result = rigging::build_rig(scene, landmarks, anatomy, options);
   if (!request.anatomy.empty()) result.report.corrected = anatomy::corrected_files(request.anatomy);
   progress.begin("writing");
-  const std::vector<uint8_t> bytes = rig::write(
-      rigging::gltf_source(result.opened.value_or(scene), result.report.input_to_metres), result.rig);
+  const std::vector<uint8_t> bytes =
+      rig::write(rigging::gltf_source(result.opened.value_or(scene), result.report.input_to_metres,
+                                      &result.report.warnings),
+                 result.rig);
   formats::write_bytes(request.output, bytes.data(), bytes.size());
   Mat4 to_origin = Mat4::Identity();
   to_origin.topRightCorner<3, 1>() = -scene.offset;

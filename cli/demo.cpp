@@ -7,6 +7,7 @@
 #include "cli/bake_file.h"
 #include "cli/common.h"
 #include "cli/demo_curves.h"
+#include "cli/embedded_head.h"
 #include "cli/picture.h"
 #include "cli/play_file.h"
 #include "cli/progress.h"
@@ -103,6 +104,13 @@ std::vector<SheetPose> sheet_poses() {
   };
 }
 
+view::Look studio() {
+  view::Look look;
+  look.background = {52, 56, 62};
+  look.has_backdrop = true;
+  return look;
+}
+
 view::Image contact_sheet(const Common& common, const std::filesystem::path& rig_path, const rig::Rig& rig) {
   Face face(rig_path, {FASCIA_SPACE_METRES, "own", "low"});
   const view::Renderer renderer(440, 440);
@@ -115,8 +123,8 @@ view::Image contact_sheet(const Common& common, const std::filesystem::path& rig
     for (const auto& [name, value] : pose.values)
       face.set(name, value);
     face.pose();
-    tiles.push_back({renderer.draw(draw_face(face, rig, layers_from(pose.layers)),
-                                   view::named_camera(pose.view, face_box(rig))),
+    tiles.push_back({renderer.draw_with(draw_face(face, rig, layers_from(pose.layers)),
+                                        view::named_camera(pose.view, face_box(rig), 0.98), studio()),
                      pose.caption});
   }
   return view::contact_sheet(tiles, 4);
@@ -126,10 +134,12 @@ void film(const Common& common, const std::filesystem::path& rig_path, const rig
           const std::filesystem::path& curves_path, const std::filesystem::path& output) {
   const Curves curves(curves_path);
   Face face(rig_path, {FASCIA_SPACE_METRES, "own", "low"});
-  const int size = 480, frames_per_second = 24;
+  const int size = 540, frames_per_second = 24;
   const view::Renderer renderer(size, size);
   view::Video video(output, size, size, frames_per_second);
   const std::set<std::string> layers = layers_from("skin,eyes");
+  view::Look look = studio();
+  look.samples = 4;
   const int count = static_cast<int>(curves.duration() * frames_per_second) + 1;
   Progress progress(common, "frame", static_cast<size_t>(count));
   for (int f = 0; f < count; ++f) {
@@ -137,9 +147,9 @@ void film(const Common& common, const std::filesystem::path& rig_path, const rig
     const double time = static_cast<double>(f) / frames_per_second;
     curves.apply(time, face);
     face.step(1.0 / frames_per_second);
-    view::Camera camera = view::named_camera("front", face_box(rig));
+    view::Camera camera = view::named_camera("front", face_box(rig), 0.98);
     camera.yaw = 28.0 * std::sin(0.45 * time);
-    video.add(renderer.draw(draw_face(face, rig, layers), camera));
+    video.add(renderer.draw_with(draw_face(face, rig, layers), camera, look));
   }
   video.finish();
 }

@@ -25,7 +25,7 @@ const std::map<std::string, std::set<std::string>> rooms = {
     {"check", {"geometry", "anatomy", "rig/model", "rig/read", "builder/spatial"}},
     {"batch", {"geometry", "formats"}},
     {"snapshot", {"geometry", "formats", "rig/model", "rig/read"}},
-    {"view", {"geometry", "rig"}},
+    {"view", {"geometry", "gltf", "rig"}},
     {"cli",
      {"geometry", "gltf", "formats", "anatomy", "rig", "sim", "builder", "batch", "check", "fit", "runtime",
       "snapshot", "view"}},
