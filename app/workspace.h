@@ -166,6 +166,7 @@ class Workspace {
   std::string selected_landmark, selected_muscle;
   std::set<std::string> hidden_muscles;
   bool rebuilds_by_itself = true;
+  bool orbit_moves = false;  ///< the camera glides
   std::shared_ptr<const FaceFrame> frame, reference_frame;
 
  private:

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <utility>
 
 #include "app/window/theme.h"
 #include "app/window/widgets.h"
