@@ -1,9 +1,9 @@
 #include "cli/fit.h"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "cli/common.h"
 #include "cli/fit_output.h"
@@ -61,6 +61,7 @@ nlohmann::ordered_json summary(const std::vector<fit::FitResult>& results,
 void run(const Common& common, const Request& request) {
   const auto started = std::chrono::steady_clock::now();
   check_output(request.output, {request.rig, request.target});
+  if (!request.report.empty()) make_output_folder(request.report);
   fit::Subject subject(rig::read(formats::read_bytes(request.rig), request.rig.string()), request.level);
   FitTargets targets = open_fit_targets(common, request.target, subject, request.reading);
   choose_shape(request, targets);
@@ -102,50 +103,40 @@ void run(const Common& common, const Request& request) {
 
 }  // namespace
 
-void add_fit(CLI::App& app, Common& common) {
+void add_fit(const Command& tool, Common& common) {
   auto request = std::make_shared<Request>();
-  CLI::App* command = app.add_subcommand("fit", "Find the activations behind a posed mesh, shapes or a take");
-  command->add_option("RIG", request->rig, "Rig (.glb)")->required();
+  const Command command = tool.command("fit", "Find the activations behind a posed mesh, shapes or a take");
+  add_rig_argument(command, request->rig);
   command
-      ->add_option(
-          "--target", request->target,
+      .option(
+          "--target", &request->target,
           "Mesh of the rig's topology (.glb, .gltf, .obj, .ply, .stl), its morph targets or their animation, "
           "a cache (.pc2, .mdd) or a folder of meshes, one a frame")
-      ->required();
+      .required();
   command
-      ->add_option("-o,--output", request->output,
-                   "Activations (.json), a folder of them for several shapes, or curves (.csv, .json)")
-      ->required();
-  command->add_option("--report", request->report, "Folder for residual.png, residual.ply and report.md");
-  command->add_option("--level", request->level,
-                      "Level of detail: low, medium or high (default: the finest)");
-  command->add_option("--shape", request->shape, "Fit one morph target only");
-  command->add_option("--as", request->reading.as, "What to fit of a file with morph targets")
-      ->check(CLI::IsMember({"auto", "mesh", "shapes", "take"}))
-      ->capture_default_str();
+      .option("-o,--output", &request->output,
+              "Activations (.json), a folder of them for several shapes, or curves (.csv, .json)")
+      .required();
+  command.option("--report", &request->report, "Folder for residual.png, residual.ply and report.md")
+      .value("DIR")
+      .default_text("none");
+  add_level_option(command, request->level);
+  command.option("--shape", &request->shape, "Fit one morph target only").default_text("all");
+  command.option("--as", &request->reading.as, "What to fit of a file with morph targets")
+      .one_of({"auto", "mesh", "shapes", "take"});
   command
-      ->add_option("--head-pose", request->reading.head_pose,
-                   "auto: the head's own motion is taken out where parts that cannot move have moved")
-      ->check(CLI::IsMember({"auto", "fixed"}))
-      ->capture_default_str();
-  command->add_option("--fps", request->reading.fps, "Frames a second of what holds no times")
-      ->check(CLI::Range(1.0, 1000.0))
-      ->capture_default_str();
-  const auto price = CLI::Range(0.0, 1e3);
+      .option("--head-pose", &request->reading.head_pose,
+              "auto: the head's own motion is taken out where parts that cannot move have moved")
+      .one_of({"auto", "fixed"});
+  command.option("--fps", &request->reading.fps, "Frames a second of what holds no times").range(1.0, 1000.0);
   command
-      ->add_option("--ridge", request->fitting.ridge,
-                   "Cost of squared activations, mm^2 of mean squared error")
-      ->check(price)
-      ->capture_default_str();
-  command->add_option("--sparsity", request->fitting.sparsity, "Cost of activations' sizes, mm^2")
-      ->check(price)
-      ->capture_default_str();
-  command
-      ->add_option("--smoothness", request->fitting.smoothness,
-                   "Cost of squared changes between frames, mm^2")
-      ->check(price)
-      ->capture_default_str();
-  command->callback([request, &common] { run(common, *request); });
+      .option("--ridge", &request->fitting.ridge, "Cost of squared activations, mm^2 of mean squared error")
+      .range(0.0, 1e3);
+  command.option("--sparsity", &request->fitting.sparsity, "Cost of activations' sizes, mm^2")
+      .range(0.0, 1e3);
+  command.option("--smoothness", &request->fitting.smoothness, "Cost of squared changes between frames, mm^2")
+      .range(0.0, 1e3);
+  command.run([request, &common] { run(common, *request); });
 }
 
 }  // namespace fascia::cli
