@@ -34,8 +34,8 @@ class Application {
         state_(state_place(options)),
         work_({state_, ToolJob::this_program()},
               options.script.empty() ? Simulation::Pace::real_time : Simulation::Pace::lockstep),
-        window_(options.script.empty() ? work_.settings.width : 1280, options.script.empty() ? work_.settings.height : 800,
-                "Fascia") {
+        window_(options.script.empty() ? work_.settings.width : 1280,
+                options.script.empty() ? work_.settings.height : 800, "Fascia") {
     if (!options.script.empty()) script_.emplace(options.script);
     if (options.monkey) monkey_.emplace(*options.monkey);
     renew_theme();
@@ -64,7 +64,8 @@ class Application {
   ApplicationReport run() {
     const auto started = Clock::now();
     while (!window_.wants_to_close() && !(script_ && script_->has_ended())) {
-      if (monkey_ && std::chrono::duration<double>(Clock::now() - started).count() > options_.monkey_seconds) break;
+      if (monkey_ && std::chrono::duration<double>(Clock::now() - started).count() > options_.monkey_seconds)
+        break;
       frame();
     }
     ApplicationReport report;
@@ -80,7 +81,7 @@ class Application {
 
  private:
   void renew_theme() {
-    const double wanted = options_.scale > 0.0          ? options_.scale
+    const double wanted = options_.scale > 0.0         ? options_.scale
                           : work_.settings.scale > 0.0 ? work_.settings.scale
                                                        : static_cast<double>(window_.display_scale());
     const float scale = script_ && options_.scale == 0.0 ? 1.0F : static_cast<float>(wanted);
@@ -109,9 +110,12 @@ class Application {
     work_.update(seconds);
     work_.orbit_moves = work_.orbit.advance(seconds, script_.has_value());
     lay_out();
-    window_.end_frame([&] {
-      if (script_) script_->take_pictures(*screen_, window_);
-    });
+    if (script_ && !script_->wants_picture())
+      window_.drop_frame();
+    else
+      window_.end_frame([&] {
+        if (script_) script_->take_pictures(*screen_, window_);
+      });
     times_.push_back(std::chrono::duration<double, std::milli>(Clock::now() - started).count());
     const size_t most = 100000;
     if (times_.size() > most) times_.erase(times_.begin(), times_.begin() + most / 2);
@@ -155,8 +159,9 @@ class Application {
     ui::note("edge");
     if (ImGui::IsItemHovered() || ImGui::IsItemActive()) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
     if (ImGui::IsItemActive())
-      work_.settings.panel_width =
-          std::clamp(work_.settings.panel_width + static_cast<double>(ImGui::GetIO().MouseDelta.x / ui_scale()), 300.0, 720.0);
+      work_.settings.panel_width = std::clamp(
+          work_.settings.panel_width + static_cast<double>(ImGui::GetIO().MouseDelta.x / ui_scale()), 300.0,
+          720.0);
     end_area();
   }
 

@@ -25,8 +25,8 @@ struct ApplicationReport {
   std::vector<std::string> files;  ///< that a script wrote
 };
 
-/// Opens the window and returns when it is closed, or when the script has ended. Throws fascia::Error when there is no
-/// display, or when a step of the script cannot be done (its line is named).
+/// Opens the window and returns when it is closed, or when the script has ended. Throws fascia::Error when
+/// there is no display, or when a step of the script cannot be done (its line is named).
 ApplicationReport run_application(const ApplicationOptions& options);
 
 }  // namespace fascia::app

@@ -1,7 +1,7 @@
 #include "app/monkey.h"
 
-#include <epoxy/gl.h>
 #include <GLFW/glfw3.h>
+#include <epoxy/gl.h>
 
 #include "app/window/widgets.h"
 
@@ -47,9 +47,10 @@ void Monkey::advance(Workspace& work, Screen& screen, Window& window) {
   } else if (thought < 72) {
     input_.buttons[1] = !input_.buttons[1];
   } else if (thought < 88) {
-    const int keys[] = {GLFW_KEY_Z, GLFW_KEY_Y, GLFW_KEY_SPACE, GLFW_KEY_ESCAPE, GLFW_KEY_N, GLFW_KEY_X, GLFW_KEY_M,
-                        GLFW_KEY_S, GLFW_KEY_K, GLFW_KEY_L, GLFW_KEY_1, GLFW_KEY_4, GLFW_KEY_F, GLFW_KEY_P,
-                        GLFW_KEY_TAB, GLFW_KEY_ENTER, GLFW_KEY_BACKSPACE, GLFW_KEY_LEFT, GLFW_KEY_R, GLFW_KEY_F1};
+    const int keys[] = {GLFW_KEY_Z,     GLFW_KEY_Y,         GLFW_KEY_SPACE, GLFW_KEY_ESCAPE, GLFW_KEY_N,
+                        GLFW_KEY_X,     GLFW_KEY_M,         GLFW_KEY_S,     GLFW_KEY_K,      GLFW_KEY_L,
+                        GLFW_KEY_1,     GLFW_KEY_4,         GLFW_KEY_F,     GLFW_KEY_P,      GLFW_KEY_TAB,
+                        GLFW_KEY_ENTER, GLFW_KEY_BACKSPACE, GLFW_KEY_LEFT,  GLFW_KEY_R,      GLFW_KEY_F1};
     input_.keys[keys[upto(static_cast<int>(std::size(keys)))]] = true;
     input_.has_ctrl = upto(3) == 0;
     input_.has_shift = upto(4) == 0;
@@ -58,7 +59,7 @@ void Monkey::advance(Workspace& work, Screen& screen, Window& window) {
   } else if (thought < 93) {
     window.resize(640 + upto(900), 420 + upto(600));
   } else if (thought < 94) {
-    open_embedded_head(work);
+    work.open_embedded_head();
   } else if (thought < 95) {
     work.open(upto(2) ? "/nonexistent.glb" : "/proc/self/exe");
   } else if (thought < 97 && screen.browser.is_open()) {

@@ -1,7 +1,7 @@
 #include "app/script_runner.h"
 
-#include <epoxy/gl.h>
 #include <GLFW/glfw3.h>
+#include <epoxy/gl.h>
 
 #include <algorithm>
 #include <cctype>
@@ -23,11 +23,18 @@ constexpr int longest_wait = 60 * 600;  ///< frames: a step that takes longer ha
 int key_of(const std::string& name) {
   if (name.size() == 1 && std::isalnum(static_cast<unsigned char>(name[0])))
     return std::toupper(static_cast<unsigned char>(name[0]));
-  for (const auto& [known, key] :
-       {std::pair("space", GLFW_KEY_SPACE), {"escape", GLFW_KEY_ESCAPE}, {"enter", GLFW_KEY_ENTER},
-        {"tab", GLFW_KEY_TAB}, {"home", GLFW_KEY_HOME}, {"end", GLFW_KEY_END}, {"left", GLFW_KEY_LEFT},
-        {"right", GLFW_KEY_RIGHT}, {"up", GLFW_KEY_UP}, {"down", GLFW_KEY_DOWN}, {"f1", GLFW_KEY_F1},
-        {"backspace", GLFW_KEY_BACKSPACE}})
+  for (const auto& [known, key] : {std::pair("space", GLFW_KEY_SPACE),
+                                   {"escape", GLFW_KEY_ESCAPE},
+                                   {"enter", GLFW_KEY_ENTER},
+                                   {"tab", GLFW_KEY_TAB},
+                                   {"home", GLFW_KEY_HOME},
+                                   {"end", GLFW_KEY_END},
+                                   {"left", GLFW_KEY_LEFT},
+                                   {"right", GLFW_KEY_RIGHT},
+                                   {"up", GLFW_KEY_UP},
+                                   {"down", GLFW_KEY_DOWN},
+                                   {"f1", GLFW_KEY_F1},
+                                   {"backspace", GLFW_KEY_BACKSPACE}})
     if (name == known) return key;
   return -1;
 }
@@ -89,11 +96,12 @@ bool ScriptRunner::begin_hand(const ScriptStep& step, Workspace& work, Screen& s
     const auto place = work.landmark_now(words[0]);
     if (!place) fail(step, "there is no landmark '" + words[0] + "'");
     const Area& area = screen.viewport;
-    const auto pixel = work.orbit.pixel(*place, static_cast<double>(area.width), static_cast<double>(area.height));
+    const auto pixel =
+        work.orbit.pixel(*place, static_cast<double>(area.width), static_cast<double>(area.height));
     if (!pixel) fail(step, "the landmark '" + words[0] + "' is not in the picture");
     if (step.verb == "poke") screen.tool = Tool::pull;
-    drag(area.x + static_cast<float>((*pixel)[0]), area.y + static_cast<float>((*pixel)[1]), std::stof(words[1]),
-         std::stof(words[2]), step.verb == "poke");
+    drag(area.x + static_cast<float>((*pixel)[0]), area.y + static_cast<float>((*pixel)[1]),
+         std::stof(words[1]), std::stof(words[2]), step.verb == "poke");
   } else if (step.verb == "release") {
     SyntheticInput input = input_;
     input.buttons[0] = false;
@@ -101,7 +109,8 @@ bool ScriptRunner::begin_hand(const ScriptStep& step, Workspace& work, Screen& s
   } else if (step.verb == "key") {
     SyntheticInput input;
     std::string rest = words[0];
-    for (size_t plus = rest.find('+'); plus != std::string::npos && plus + 1 < rest.size(); plus = rest.find('+')) {
+    for (size_t plus = rest.find('+'); plus != std::string::npos && plus + 1 < rest.size();
+         plus = rest.find('+')) {
       const std::string held = rest.substr(0, plus);
       if (held == "ctrl") input.has_ctrl = true;
       if (held == "shift") input.has_shift = true;
@@ -226,7 +235,8 @@ void ScriptRunner::begin(const ScriptStep& step, Workspace& work, Screen& screen
     waits_idle_ = true;
   } else if (step.verb == "compare") {
     const std::string names[] = {"none", "rest", "before", "bullet", "converged", "file"};
-    const auto found = std::find(std::begin(names), std::end(names), words[0] == "reference" ? "converged" : words[0]);
+    const auto found =
+        std::find(std::begin(names), std::end(names), words[0] == "reference" ? "converged" : words[0]);
     if (found == std::end(names)) fail(step, "compare with none, rest, before, bullet, converged or file");
     work.compare_with(static_cast<Reference>(found - std::begin(names)),
                       words.size() > 1 ? input_file(words[1]).string() : "");
@@ -259,7 +269,8 @@ void ScriptRunner::advance(Workspace& work, Screen& screen, Window& window) {
     idle_frames_ = work.is_idle() ? idle_frames_ + 1 : 0;
     if (!work.is_idle() && (work.is_building() || !work.jobs().empty()))
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    if (++waited_frames_ > longest_wait) throw Error(file_.string() + ": the window has been busy for too long");
+    if (++waited_frames_ > longest_wait)
+      throw Error(file_.string() + ": the window has been busy for too long");
     if (idle_frames_ < settled) return;
     waits_idle_ = false;
     idle_frames_ = waited_frames_ = 0;

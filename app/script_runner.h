@@ -17,14 +17,16 @@ class ScriptRunner {
   /// Throws fascia::Error when the script is unsound. Files it names are looked for beside it.
   explicit ScriptRunner(const std::filesystem::path& file);
 
-  /// Before each frame: the next step, or the next motion of the one under way. Throws fascia::Error naming the line when
-  /// a step cannot be done.
+  /// Before each frame: the next step, or the next motion of the one under way. Throws fascia::Error naming
+  /// the line when a step cannot be done.
   void advance(Workspace& work, Screen& screen, Window& window);
   /// After each frame, with the picture in the framebuffer.
   void take_pictures(const Screen& screen, const Window& window);
 
   const SyntheticInput& input() const { return input_; }
   bool has_ended() const { return has_ended_; }
+  /// Whether the frame under way will be looked at.
+  bool wants_picture() const { return !screenshot_.empty() || !picture_.empty(); }
   const std::vector<std::string>& written() const { return written_; }
 
  private:
@@ -45,13 +47,13 @@ class ScriptRunner {
   std::filesystem::path file_;
   std::vector<ScriptStep> steps_;
   size_t next_ = 0;
-  int waits_ = 0;           ///< frames
+  int waits_ = 0;  ///< frames
   bool waits_idle_ = false;
   int idle_frames_ = 0, waited_frames_ = 0;
   std::vector<Motion> motions_;
   SyntheticInput input_;
   std::string screenshot_, picture_;
-  int pictures_wait_ = 0;   ///< frames until the picture stands in its best
+  int pictures_wait_ = 0;  ///< frames until the picture stands in its best
   std::vector<std::string> written_;
   bool has_ended_ = false;
 };

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "anatomy/anatomy.h"
 #include "formats/files.h"
 #include "formats/scene.h"
 #include "geometry/error.h"
@@ -67,7 +68,9 @@ Workspace::Workspace(Places places, Simulation::Pace pace)
     : settings(read_settings(places.state / "view.json")),
       places_(std::move(places)),
       pace_(pace),
-      autosave_(places_.state / "autosave.json") {}
+      autosave_(places_.state / "autosave.json") {
+  left_behind = autosave_.left_behind();
+}
 
 Workspace::~Workspace() {
   write_settings(places_.state / "view.json", settings);
@@ -96,6 +99,18 @@ void Workspace::open(const std::filesystem::path& file) {
   opened_ = std::filesystem::absolute(file).string();
   building_edits_ = nlohmann::ordered_json::object();
   build_ = std::make_unique<BuildTask>(BuildOrder{opened_, places_.state / "built", "", "medium", false});
+}
+
+void Workspace::open_embedded_head() {
+  try {
+    const std::filesystem::path folder = places_.state / "built";
+    std::filesystem::create_directories(folder);
+    const std::string_view head = anatomy::embedded_file("head.obj");
+    formats::write_bytes(folder / "embedded_head.obj", head.data(), head.size());
+    open(folder / "embedded_head.obj");
+  } catch (const std::exception& error) {
+    notify(error.what(), Notice::Kind::error);
+  }
 }
 
 void Workspace::rebuild() {
@@ -236,6 +251,7 @@ void Workspace::adopt(LoadedRig loaded) {
   simulation = std::move(next);
   frame = simulation->frame();
   poke_.reset();
+  holds_.clear();
   skin_.reset();
   TriangleMesh skin = skin_at_rest(*rig->asset);
   if (!skin.empty()) skin_.emplace(std::move(skin));
@@ -288,16 +304,22 @@ Warning Workspace::warning_of(const std::string& text) const {
     }
   if (warning.place) return warning;
   for (const rig::Muscle& muscle : rig->rig->muscles)
-    if (muscle.name.size() > longest && !muscle.points.empty() && text.find(muscle.name) != std::string::npos) {
+    if (muscle.name.size() > longest && !muscle.points.empty() &&
+        text.find(muscle.name) != std::string::npos) {
       longest = muscle.name.size();
       warning.place = muscle.points[muscle.points.size() / 2].cast<double>();
     }
   if (warning.place) return warning;
   // Rows of the check name an opening and a side.
   const bool is_right = text.find("_right") != std::string::npos;
-  for (const auto& [word, landmark] : {std::pair("lid", "exocanthion"), {"blink", "exocanthion"},
-                                       {"cornea", "exocanthion"}, {"lip", "stomion"}, {"mouth", "stomion"},
-                                       {"jaw", "gnathion"}, {"teeth", "stomion"}, {"nose", "pronasale"}})
+  for (const auto& [word, landmark] : {std::pair("lid", "exocanthion"),
+                                       {"blink", "exocanthion"},
+                                       {"cornea", "exocanthion"},
+                                       {"lip", "stomion"},
+                                       {"mouth", "stomion"},
+                                       {"jaw", "gnathion"},
+                                       {"teeth", "stomion"},
+                                       {"nose", "pronasale"}})
     if (text.find(word) != std::string::npos)
       for (const rig::Landmark& known : rig->rig->skull.landmarks)
         if (known.name == landmark || known.name == landmark + std::string(is_right ? "_right" : "_left")) {
@@ -329,7 +351,8 @@ void Workspace::submit(double seconds) {
   inputs.head(2, 0) = -inputs.head(0, 2);
   if (poke_ && frame && poke_->part < frame->positions.size()) {
     const std::vector<float>& flat = frame->positions[poke_->part];
-    const Vec3 now = Eigen::Map<const Eigen::Vector3f>(flat.data() + 3 * size_t{poke_->vertex}).cast<double>();
+    const Vec3 now =
+        Eigen::Map<const Eigen::Vector3f>(flat.data() + 3 * size_t{poke_->vertex}).cast<double>();
     const double newtons_a_metre = 150.0, strongest = 4.0;
     Vec3 force = newtons_a_metre * (poke_->target - now);
     if (force.norm() > strongest) force *= strongest / force.norm();
@@ -361,7 +384,8 @@ void Workspace::update(double seconds) {
     notice.age += seconds;
   notices.erase(std::remove_if(notices.begin(), notices.end(),
                                [](const Notice& notice) {
-                                 return notice.age > (notice.kind == Notice::Kind::error ? 3.0 : 1.0) * notice_seconds;
+                                 return notice.age >
+                                        (notice.kind == Notice::Kind::error ? 3.0 : 1.0) * notice_seconds;
                                }),
                 notices.end());
   since_edit_ += seconds;
@@ -409,7 +433,8 @@ void Workspace::update(double seconds) {
 }
 
 bool Workspace::is_idle() const {
-  if (build_ || coming_reference_.valid() || shake_ || playback.is_playing || playback.is_recording) return false;
+  if (build_ || coming_reference_.valid() || shake_ || playback.is_playing || playback.is_recording)
+    return false;
   for (const auto& job : jobs_)
     if (!job->is_done()) return false;
   if (rebuilds_by_itself && has_unbuilt_edits() && state().edits != failed_edits_) return false;

@@ -48,7 +48,7 @@ struct Comparison {
 /// The timeline's own state.
 struct Playback {
   bool is_playing = false, is_recording = false;
-  double time = 0.0;  ///< seconds in the take
+  double time = 0.0;                                    ///< seconds in the take
   std::vector<std::map<std::string, double>> recorded;  ///< the pose in every sixtieth of a second
 };
 
@@ -61,8 +61,8 @@ struct Poke {
 
 enum class Gravity { upright, lying, face_down, upside_down };
 
-/// Everything behind the window, and every command of it, without a pixel: panels, keys and scripts call the same
-/// functions. update() lets time pass and never waits for anything.
+/// Everything behind the window, and every command of it, without a pixel: panels, keys and scripts call the
+/// same functions. update() lets time pass and never waits for anything.
 class Workspace {
  public:
   struct Places {
@@ -76,6 +76,8 @@ class Workspace {
 
   /// Opens whatever it is: a head (built in the background), a rig, a recording, an edits file.
   void open(const std::filesystem::path& file);
+  /// Opens the head that comes with Fascia.
+  void open_embedded_head();
   /// Builds the head again with the present edits.
   void rebuild();
   void cancel_build();
@@ -83,7 +85,6 @@ class Workspace {
   BuildTask::Progress build_progress() const;
   /// Continues where a crash ended the last session.
   void restore(const DocumentState& state);
-  const Autosave& autosave() const { return autosave_; }
   void load_take(const std::filesystem::path& file);
   void load_edits(const std::filesystem::path& file);
   /// Saves the edits, or copies the rig as it is built. False, with a notice, when that fails.
@@ -110,6 +111,8 @@ class Workspace {
   std::optional<Vec3> landmark(const std::string& name) const;
   /// The same on the face as it stands.
   std::optional<Vec3> landmark_now(const std::string& name) const;
+  /// The same with the skin it lies on: `position` and `normal` as the face stands, `rest` at rest.
+  std::optional<SkinHit> landmark_hold(const std::string& name) const;
   bool has_unbuilt_edits() const { return rig && state().edits != built_edits_; }
 
   // --- Jobs
@@ -152,6 +155,7 @@ class Workspace {
   // --- What panels read, and set where it is theirs
 
   Settings settings;
+  std::optional<DocumentState> left_behind;  ///< by a session that ended in a crash
   std::optional<LoadedRig> rig;
   std::unique_ptr<Simulation> simulation, reference;
   std::shared_ptr<const Take> take;
@@ -190,6 +194,7 @@ class Workspace {
   std::optional<spatial::SurfaceQuery> skin_;
   std::string opened_;  ///< what the build under way was opened as; empty: a rebuild
   nlohmann::ordered_json built_edits_ = nlohmann::ordered_json::object(), building_edits_, failed_edits_;
+  mutable std::map<std::string, SkinHit> holds_;  ///< the skin under each landmark, found once
   std::optional<Poke> poke_;
   std::optional<double> shake_;
   double since_edit_ = 0.0, since_save_ = 0.0;

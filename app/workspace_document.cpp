@@ -44,7 +44,8 @@ void Workspace::set_value(const std::string& name, double value, bool is_gesture
   if (!rig || !std::isfinite(value)) return;
   DocumentState next = state();
   const FaceChannel range = rig->asset->range_of(name);
-  const double clamped = std::clamp(value, static_cast<double>(range.minimum), static_cast<double>(range.maximum));
+  const double clamped =
+      std::clamp(value, static_cast<double>(range.minimum), static_cast<double>(range.maximum));
   set_pose(next, name, clamped, static_cast<double>(range.rest));
   const std::string partner = mirrored(name);
   if (settings.is_symmetric && partner != name) {
@@ -68,13 +69,32 @@ std::optional<Vec3> Workspace::landmark(const std::string& name) const {
   return std::nullopt;
 }
 
-std::optional<Vec3> Workspace::landmark_now(const std::string& name) const {
+std::optional<SkinHit> Workspace::landmark_hold(const std::string& name) const {
   const auto rest = landmark(name);
-  if (!rest || !frame) return rest;
-  const SkinHit near = nearest_skin(*rig->asset, *frame, *rest);
+  if (!rest || !frame) return std::nullopt;
+  const auto [entry, is_new] = holds_.try_emplace(name);
+  SkinHit& held = entry->second;
+  if (is_new || held.rest != *rest) {
+    held = nearest_skin(*rig->asset, *frame, *rest);
+    held.rest = *rest;
+  }
+  SkinHit now = held;
   const double too_far = 0.03;  // metres: a landmark off the skin moves with nothing
-  if (near.distance > too_far) return rest;
-  return *rest + (near.position - near.rest);
+  if (held.part >= frame->positions.size() || held.distance > too_far) {
+    now.position = *rest;
+    return now;
+  }
+  const auto at = [&](const std::vector<float>& flat) {
+    return Vec3(Eigen::Map<const Eigen::Vector3f>(flat.data() + 3 * size_t{held.vertex}).cast<double>());
+  };
+  now.position = *rest + (at(frame->positions[held.part]) - at(rig->asset->parts[held.part].rest));
+  now.normal = at(frame->normals[held.part]);
+  return now;
+}
+
+std::optional<Vec3> Workspace::landmark_now(const std::string& name) const {
+  const auto held = landmark_hold(name);
+  return held ? std::optional<Vec3>(held->position) : std::nullopt;
 }
 
 void Workspace::move_landmark(const std::string& name, const Vec3& point, bool is_gesture) {

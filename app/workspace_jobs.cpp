@@ -46,11 +46,13 @@ void Workspace::read_check(const ToolJob& job) {
   for (const Json& row : json["rows"]) {
     if (row.value("ok", true)) continue;
     ++failed;
-    const std::string text = "check " + row.value("name", std::string()) + ": " + row.value("remedy", std::string());
+    const std::string text =
+        "check " + row.value("name", std::string()) + ": " + row.value("remedy", std::string());
     const std::string start = text.substr(0, text.find(':'));
-    warnings.erase(std::remove_if(warnings.begin(), warnings.end(),
-                                  [&](const Warning& known) { return known.text.rfind(start + ":", 0) == 0; }),
-                   warnings.end());
+    warnings.erase(
+        std::remove_if(warnings.begin(), warnings.end(),
+                       [&](const Warning& known) { return known.text.rfind(start + ":", 0) == 0; }),
+        warnings.end());
     warnings.push_back(warning_of(text));
   }
   notify("Checked: " + std::to_string(json["rows"].size()) + " rows, " + std::to_string(failed) + " failed",
@@ -143,7 +145,8 @@ std::vector<std::vector<float>> Workspace::positions_from(const std::string& fil
     }
   }
   if (std::all_of(lists.begin(), lists.end(), [](const auto& list) { return list.empty(); }))
-    throw Error("'" + file + "': none of its meshes has as many vertices as one of the head's; compare with a file "
+    throw Error("'" + file +
+                "': none of its meshes has as many vertices as one of the head's; compare with a file "
                 "of the same meshes");
   return lists;
 }
@@ -185,7 +188,8 @@ void Workspace::poke(const SkinHit& hit) {
   if (!frame) return;
   const double radius = 0.012;  // metres: a fingertip
   const size_t most = 48;
-  poke_ = Poke{hit.part, hit.vertex, hit.position, soft_selection(*frame, hit.part, hit.vertex, radius, most)};
+  poke_ =
+      Poke{hit.part, hit.vertex, hit.position, soft_selection(*frame, hit.part, hit.vertex, radius, most)};
   if (poke_->grip.empty()) poke_->grip.emplace_back(hit.vertex, 1.0);
 }
 

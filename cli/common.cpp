@@ -52,8 +52,7 @@ void make_output_folder(const std::filesystem::path& folder) {
 }
 
 void add_to_come(const Command& tool) {
-  for (const auto& [name, what] :
-       {std::pair{"batch", "building many heads"}, std::pair{"view", "the window"}}) {
+  for (const auto& [name, what] : {std::pair{"batch", "building many heads"}}) {
     const Command command = tool.command(name, std::string(what) + " (to come)");
     const auto unread = std::make_shared<std::vector<std::string>>();
     command.positional("ARGUMENTS", unread.get(), "Not read yet").default_text("none");

@@ -11,6 +11,7 @@
 #include "cli/common.h"
 #include "cli/face.h"
 #include "cli/fit.h"
+#include "cli/view.h"
 #include "formats/partial.h"
 #include "geometry/error.h"
 
@@ -53,6 +54,7 @@ void declare(const fascia::cli::Command& tool, fascia::cli::Common& common) {
   add_demo(tool, common);
   add_face(tool, common);
   add_fit(tool, common);
+  add_view(tool, common);
   add_to_come(tool);
   add_manual(tool);
 }

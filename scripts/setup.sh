@@ -17,7 +17,7 @@ packages=(
   libeigen3-dev libbullet-dev libglfw3-dev libtinygltf-dev libtinyobjloader-dev libdraco-dev
   libcli11-dev nlohmann-json3-dev
   libembree-dev libtbb-dev libmeshoptimizer-dev libnanoflann-dev
-  libepoxy-dev libegl-dev libgl-dev libegl1 libgl1-mesa-dri libimgui-dev libstb-dev
+  libepoxy-dev libegl-dev libgl-dev libegl1 libgl1-mesa-dri libimgui-dev libstb-dev fonts-lato
   ffmpeg
 )
 [ "$tier" = demo ] || packages+=(libgtest-dev libgmock-dev libvalijson-dev binutils clang-format abigail-tools valgrind xvfb xauth)

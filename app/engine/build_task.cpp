@@ -126,8 +126,8 @@ LoadedRig BuildTask::build(const BuildOrder& order) {
   const anatomy::GenericAnatomy anatomy = anatomy::load_generic();
   rigging::BuildResult built = rigging::build_rig(scene, {}, anatomy, options);
   enter("write");
-  const std::vector<uint8_t> bytes = rig::write(
-      rigging::gltf_source(built.opened.value_or(scene), built.report.input_to_metres), built.rig);
+  const std::vector<uint8_t> bytes =
+      rig::write(rigging::gltf_source(built.opened.value_or(scene), built.report.input_to_metres), built.rig);
   std::filesystem::create_directories(order.cache);
   const std::filesystem::path output = order.cache / "rig.glb";
   formats::write_bytes(output, bytes.data(), bytes.size());

@@ -26,8 +26,8 @@ struct LoadedRig {
   std::filesystem::path head;                  ///< what to build from: see load_rig()
 };
 
-/// Reads a rig file. What it was built from is taken out of it and laid down beside `cache` when it has to be built
-/// again. Throws fascia::Error.
+/// Reads a rig file. What it was built from is taken out of it and laid down beside `cache` when it has to be
+/// built again. Throws fascia::Error.
 LoadedRig load_rig(const std::filesystem::path& file, const std::filesystem::path& cache);
 
 /// What to build, or to open.
@@ -48,10 +48,10 @@ class BuildTask {
   BuildTask& operator=(const BuildTask&) = delete;
 
   struct Progress {
-    std::string stage;      ///< as people say it
-    double share = 0.0;     ///< 0..1, by how long the stages take as a rule
-    double seconds = 0.0;   ///< since it began
-    bool is_done = false;   ///< take_result() or fault() has what came of it
+    std::string stage;     ///< as people say it
+    double share = 0.0;    ///< 0..1, by how long the stages take as a rule
+    double seconds = 0.0;  ///< since it began
+    bool is_done = false;  ///< take_result() or fault() has what came of it
   };
   Progress progress() const;
 

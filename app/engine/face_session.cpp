@@ -95,7 +95,8 @@ void FaceAsset::read_parts(uint32_t count) {
     check(fascia_asset_get_mesh(asset_.get(), m, &mesh), "mesh");
     auto positions = described<fascia_vectors>();
     check(fascia_face_positions(made, m, &positions), "mesh");
-    FacePart part{mesh.name, mesh.part, mesh.vertex_count, triangles_of(mesh.triangles, mesh.triangle_count), {}};
+    FacePart part{
+        mesh.name, mesh.part, mesh.vertex_count, triangles_of(mesh.triangles, mesh.triangle_count), {}};
     copy(positions, part.rest);
     parts.push_back(std::move(part));
   }
@@ -127,12 +128,12 @@ void FaceSession::apply(const FaceInputs& inputs) {
   if (inputs.resets != resets_) check(fascia_face_reset(face), "reset");
   resets_ = inputs.resets;
   check(fascia_face_clear(face), "clear");
-  // A name of another rig or of a later version is left out; so are captured ones that this rig does not know.
+  // A name of another rig or of a later version is left out; so are captured ones that this rig does not
+  // know.
   for (const auto* values : {&inputs.live, &inputs.pose})
     for (const auto& [name, value] : *values)
       fascia_face_set(face, name.c_str(), static_cast<float>(value));
-  if (inputs.take)
-    check(fascia_curves_apply(inputs.take->handle(), inputs.take_time, 1.0F, face), "take");
+  if (inputs.take) check(fascia_curves_apply(inputs.take->handle(), inputs.take_time, 1.0F, face), "take");
   check(fascia_face_clear_touches(face), "touch");
   const size_t most_touches = 64;
   for (size_t t = 0; t < std::min(inputs.touches.size(), most_touches); ++t) {

@@ -38,7 +38,8 @@ struct FaceSurface {
   std::vector<Triangle> triangles;
 };
 
-/// A rig, loaded through the runtime's C interface: what does not change while it is played. Shared by threads.
+/// A rig, loaded through the runtime's C interface: what does not change while it is played. Shared by
+/// threads.
 class FaceAsset {
  public:
   /// Loads a rig from the bytes of a .glb file. Throws fascia::Error naming `name`.
@@ -86,7 +87,7 @@ struct FaceInputs {
   std::vector<Touch> touches;          ///< at most 64
   Eigen::Vector3f acceleration = Eigen::Vector3f::Zero();  ///< that loose tissue feels, m/s^2
   Eigen::Matrix4f head = Eigen::Matrix4f::Identity();      ///< where the head stands in the world
-  bool wants_compression = false;  ///< whether frames say how the skin is compressed
+  bool wants_compression = false;                          ///< whether frames say how the skin is compressed
   uint32_t resets = 0;  ///< counts up: the face is put to rest when it changes
 
   bool operator==(const FaceInputs&) const = default;
@@ -95,7 +96,7 @@ struct FaceInputs {
 /// How a face stands after a step. Arrays as the runtime lists them, metres.
 struct FaceFrame {
   std::vector<std::vector<float>> positions, normals;  ///< one a part, 3 numbers a vertex
-  std::vector<std::vector<float>> compression;  ///< see fascia_face_compression; empty unless wanted
+  std::vector<std::vector<float>> compression;         ///< see fascia_face_compression; empty unless wanted
   std::vector<float> fibre_points;
   std::vector<float> values;  ///< of the channels, as they were used
   Eigen::Matrix4f jaw = Eigen::Matrix4f::Identity();

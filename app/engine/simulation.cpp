@@ -10,8 +10,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr double frame_seconds = 1.0 / 60.0;
-constexpr double still_metres = 2e-7;  ///< below what a pixel shows at any zoom
-constexpr int still_frames = 20;       ///< slow creep would stop short with fewer
+constexpr double still_metres = 1e-6;  ///< a frame; below what a pixel shows
+constexpr int still_frames = 15;       ///< slow creep would stop short with fewer
 
 }  // namespace
 
@@ -100,8 +100,8 @@ void Simulation::run() {
       still_frames_ = still_frames;
     }
     publish();
-    std::this_thread::sleep_until(last + std::chrono::duration_cast<Clock::duration>(
-                                             std::chrono::duration<double>(frame_seconds)));
+    std::this_thread::sleep_until(
+        last + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(frame_seconds)));
   }
 }
 

@@ -10,8 +10,8 @@
 
 namespace fascia::app {
 
-/// A face that lives on a thread of its own: the window hands in what is wanted and takes the newest frame, and
-/// never waits. When nothing moves any more the thread sleeps.
+/// A face that lives on a thread of its own: the window hands in what is wanted and takes the newest frame,
+/// and never waits. When nothing moves any more the thread sleeps.
 class Simulation {
  public:
   enum class Pace {

@@ -95,7 +95,8 @@ void ToolJob::cancel() {
 }
 
 double ToolJob::seconds() const {
-  return std::chrono::duration<double>((is_done_ ? ended_ : std::chrono::steady_clock::now()) - started_).count();
+  return std::chrono::duration<double>((is_done_ ? ended_ : std::chrono::steady_clock::now()) - started_)
+      .count();
 }
 
 std::filesystem::path ToolJob::this_program() {

@@ -1,19 +1,19 @@
 #pragma once
 
+#include <sys/types.h>
 #include <chrono>
 #include <filesystem>
 #include <string>
-#include <sys/types.h>
 #include <vector>
 
 namespace fascia::app {
 
-/// A `fascia` command that runs as a process of its own: what the window exports, it exports by the very command
-/// that it shows. A fault of it leaves the window standing, and it can be ended at any time.
+/// A `fascia` command that runs as a process of its own: what the window exports, it exports by the very
+/// command that it shows. A fault of it leaves the window standing, and it can be ended at any time.
 class ToolJob {
  public:
-  /// Starts `tool` with `arguments` (without the program's name). `title` is for people. Throws fascia::Error when
-  /// it cannot be started.
+  /// Starts `tool` with `arguments` (without the program's name). `title` is for people. Throws fascia::Error
+  /// when it cannot be started.
   ToolJob(std::filesystem::path tool, std::vector<std::string> arguments, std::string title);
   ~ToolJob();
   ToolJob(const ToolJob&) = delete;

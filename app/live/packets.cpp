@@ -11,23 +11,67 @@ namespace fascia::app {
 namespace {
 
 /// ARKit's coefficients in the order in which Live Link Face sends them; nine angles of head and eyes follow.
-constexpr std::array<const char*, 61> live_link_names = {
-    "arkit:eyeBlinkLeft",     "arkit:eyeLookDownLeft",   "arkit:eyeLookInLeft",     "arkit:eyeLookOutLeft",
-    "arkit:eyeLookUpLeft",    "arkit:eyeSquintLeft",     "arkit:eyeWideLeft",       "arkit:eyeBlinkRight",
-    "arkit:eyeLookDownRight", "arkit:eyeLookInRight",    "arkit:eyeLookOutRight",   "arkit:eyeLookUpRight",
-    "arkit:eyeSquintRight",   "arkit:eyeWideRight",      "arkit:jawForward",        "arkit:jawLeft",
-    "arkit:jawRight",         "arkit:jawOpen",           "arkit:mouthClose",        "arkit:mouthFunnel",
-    "arkit:mouthPucker",      "arkit:mouthLeft",         "arkit:mouthRight",        "arkit:mouthSmileLeft",
-    "arkit:mouthSmileRight",  "arkit:mouthFrownLeft",    "arkit:mouthFrownRight",   "arkit:mouthDimpleLeft",
-    "arkit:mouthDimpleRight", "arkit:mouthStretchLeft",  "arkit:mouthStretchRight", "arkit:mouthRollLower",
-    "arkit:mouthRollUpper",   "arkit:mouthShrugLower",   "arkit:mouthShrugUpper",   "arkit:mouthPressLeft",
-    "arkit:mouthPressRight",  "arkit:mouthLowerDownLeft", "arkit:mouthLowerDownRight", "arkit:mouthUpperUpLeft",
-    "arkit:mouthUpperUpRight", "arkit:browDownLeft",     "arkit:browDownRight",     "arkit:browInnerUp",
-    "arkit:browOuterUpLeft",  "arkit:browOuterUpRight",  "arkit:cheekPuff",         "arkit:cheekSquintLeft",
-    "arkit:cheekSquintRight", "arkit:noseSneerLeft",     "arkit:noseSneerRight",    "arkit:tongueOut",
-    "HeadYaw",                "HeadPitch",               "HeadRoll",                "LeftEyeYaw",
-    "LeftEyePitch",           "LeftEyeRoll",             "RightEyeYaw",             "RightEyePitch",
-    "RightEyeRoll"};
+constexpr std::array<const char*, 61> live_link_names = {"arkit:eyeBlinkLeft",
+                                                         "arkit:eyeLookDownLeft",
+                                                         "arkit:eyeLookInLeft",
+                                                         "arkit:eyeLookOutLeft",
+                                                         "arkit:eyeLookUpLeft",
+                                                         "arkit:eyeSquintLeft",
+                                                         "arkit:eyeWideLeft",
+                                                         "arkit:eyeBlinkRight",
+                                                         "arkit:eyeLookDownRight",
+                                                         "arkit:eyeLookInRight",
+                                                         "arkit:eyeLookOutRight",
+                                                         "arkit:eyeLookUpRight",
+                                                         "arkit:eyeSquintRight",
+                                                         "arkit:eyeWideRight",
+                                                         "arkit:jawForward",
+                                                         "arkit:jawLeft",
+                                                         "arkit:jawRight",
+                                                         "arkit:jawOpen",
+                                                         "arkit:mouthClose",
+                                                         "arkit:mouthFunnel",
+                                                         "arkit:mouthPucker",
+                                                         "arkit:mouthLeft",
+                                                         "arkit:mouthRight",
+                                                         "arkit:mouthSmileLeft",
+                                                         "arkit:mouthSmileRight",
+                                                         "arkit:mouthFrownLeft",
+                                                         "arkit:mouthFrownRight",
+                                                         "arkit:mouthDimpleLeft",
+                                                         "arkit:mouthDimpleRight",
+                                                         "arkit:mouthStretchLeft",
+                                                         "arkit:mouthStretchRight",
+                                                         "arkit:mouthRollLower",
+                                                         "arkit:mouthRollUpper",
+                                                         "arkit:mouthShrugLower",
+                                                         "arkit:mouthShrugUpper",
+                                                         "arkit:mouthPressLeft",
+                                                         "arkit:mouthPressRight",
+                                                         "arkit:mouthLowerDownLeft",
+                                                         "arkit:mouthLowerDownRight",
+                                                         "arkit:mouthUpperUpLeft",
+                                                         "arkit:mouthUpperUpRight",
+                                                         "arkit:browDownLeft",
+                                                         "arkit:browDownRight",
+                                                         "arkit:browInnerUp",
+                                                         "arkit:browOuterUpLeft",
+                                                         "arkit:browOuterUpRight",
+                                                         "arkit:cheekPuff",
+                                                         "arkit:cheekSquintLeft",
+                                                         "arkit:cheekSquintRight",
+                                                         "arkit:noseSneerLeft",
+                                                         "arkit:noseSneerRight",
+                                                         "arkit:tongueOut",
+                                                         "HeadYaw",
+                                                         "HeadPitch",
+                                                         "HeadRoll",
+                                                         "LeftEyeYaw",
+                                                         "LeftEyePitch",
+                                                         "LeftEyeRoll",
+                                                         "RightEyeYaw",
+                                                         "RightEyePitch",
+                                                         "RightEyeRoll"};
 constexpr size_t live_link_shapes = 52;  ///< the angles behind them are not the rig's
 
 uint32_t big_endian(const uint8_t* at) {
@@ -76,8 +120,8 @@ class Reader {
 bool read_message(std::span<const uint8_t> bytes, CapturedValues& values) {
   Reader reader(bytes);
   std::string_view address, types;
-  if (!reader.text(address) || !reader.text(types) || address.size() < 2 || address[0] != '/' || types.empty() ||
-      types[0] != ',')
+  if (!reader.text(address) || !reader.text(types) || address.size() < 2 || address[0] != '/' ||
+      types.empty() || types[0] != ',')
     return false;
   std::string_view name = address.substr(address.rfind('/') + 1), said;
   bool has_value = false;
@@ -126,7 +170,8 @@ bool read_osc(std::span<const uint8_t> datagram, CapturedValues& values) {
 }
 
 bool read_live_link(std::span<const uint8_t> datagram, CapturedValues& values) {
-  // Version, 37 bytes of device id with its length, the subject's name by length, 16 bytes of frame time, a count.
+  // Version, 37 bytes of device id with its length, the subject's name by length, 16 bytes of frame time, a
+  // count.
   constexpr size_t name_length_at = 41, longest_name = 256, time_bytes = 16;
   if (datagram.size() < name_length_at + 4) return false;
   const uint32_t name_length = big_endian(datagram.data() + name_length_at);

@@ -42,7 +42,8 @@ LiveReceiver::LiveReceiver(Protocol protocol, uint16_t port) : protocol_(protoco
   socket_ = bound_socket(port);
   sockaddr_in address = {};
   socklen_t size = sizeof address;
-  if (getsockname(socket_, reinterpret_cast<sockaddr*>(&address), &size) == 0) port_ = ntohs(address.sin_port);
+  if (getsockname(socket_, reinterpret_cast<sockaddr*>(&address), &size) == 0)
+    port_ = ntohs(address.sin_port);
   if (pipe2(wake_, O_CLOEXEC) != 0) {
     close(socket_);
     throw Error(std::string("no pipe: ") + std::strerror(errno));
@@ -81,8 +82,8 @@ void LiveReceiver::run() {
     const size_t most_names = 1024;  // whatever is sent, memory stays bounded
     const std::lock_guard<std::mutex> lock(mutex_);
     if (values_.size() > most_names) values_.clear();
-    const bool is_understood = protocol_ == Protocol::osc ? read_osc(datagram, values_)
-                                                          : read_live_link(datagram, values_);
+    const bool is_understood =
+        protocol_ == Protocol::osc ? read_osc(datagram, values_) : read_live_link(datagram, values_);
     ++(is_understood ? datagrams_ : refused_);
     if (is_understood) last_ = now();
   }

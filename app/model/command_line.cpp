@@ -20,8 +20,9 @@ void add_pose(CommandLine& command, const DocumentState& state) {
 }
 
 bool is_plain(const std::string& word) {
-  return !word.empty() && word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
-                                                 "_-+=:,./@%") == std::string::npos;
+  return !word.empty() && word.find_first_not_of(
+                              "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+                              "_-+=:,./@%") == std::string::npos;
 }
 
 }  // namespace
@@ -60,8 +61,8 @@ CommandLine render_command(const DocumentState& state, const std::filesystem::pa
                            const std::filesystem::path& output) {
   CommandLine command = {"render", rig.string()};
   add_pose(command, state);
-  command.insert(command.end(), {"--layers", layers, "--view", view, "--size", std::to_string(size), "-o",
-                                 output.string()});
+  command.insert(command.end(),
+                 {"--layers", layers, "--view", view, "--size", std::to_string(size), "-o", output.string()});
   return command;
 }
 

@@ -86,7 +86,8 @@ void set_muscle_present(DocumentState& state, const std::string& muscle, bool is
 
 std::string muscle_variant(const DocumentState& state, const std::string& muscle) {
   const Json* item = entry(state.edits, "muscles", muscle);
-  if (!item || !item->is_object() || !item->contains("variant") || !item->at("variant").is_string()) return "";
+  if (!item || !item->is_object() || !item->contains("variant") || !item->at("variant").is_string())
+    return "";
   return item->at("variant").get<std::string>();
 }
 

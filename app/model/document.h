@@ -24,7 +24,8 @@ struct TakeChoice {
 /// Everything that a user makes in the window, and that undo brings back.
 struct DocumentState {
   std::string head;  ///< the mesh the rig is built from; the rig itself when that is what was opened
-  /// Of the builder, in the form of an edits file (docs/muscles.md): entries the window does not know are kept.
+  /// Of the builder, in the form of an edits file (docs/muscles.md): entries the window does not know are
+  /// kept.
   nlohmann::ordered_json edits = nlohmann::ordered_json::object();
   /// By name as `--set` takes them: a channel, or set:member; only what is not at rest.
   std::map<std::string, double> pose;
@@ -33,7 +34,8 @@ struct DocumentState {
   bool operator==(const DocumentState&) const = default;
 };
 
-/// Where a landmark was put by hand, in the head file's axes and units; nothing when the builder is to find it.
+/// Where a landmark was put by hand, in the head file's axes and units; nothing when the builder is to find
+/// it.
 std::optional<Vec3> landmark_edit(const DocumentState& state, const std::string& name);
 void set_landmark(DocumentState& state, const std::string& name, const Vec3& point);
 void clear_landmark(DocumentState& state, const std::string& name);
@@ -60,7 +62,8 @@ void set_pose(DocumentState& state, const std::string& name, double value, doubl
 std::string to_text(const DocumentState& state);
 DocumentState state_from_text(const std::string& text, const std::string& where);
 
-/// Reads an edits file as it stands; whether the builder accepts it shows when it builds. Throws fascia::Error.
+/// Reads an edits file as it stands; whether the builder accepts it shows when it builds. Throws
+/// fascia::Error.
 nlohmann::ordered_json read_edits_file(const std::filesystem::path& path);
 /// Writes the edits of `state`, whole or not at all. Throws fascia::Error.
 void write_edits_file(const std::filesystem::path& path, const DocumentState& state);

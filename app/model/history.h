@@ -7,8 +7,8 @@
 
 namespace fascia::app {
 
-/// Undo and redo over whole states. A state is small (names and numbers), so that each step keeps a copy of it:
-/// what is undone is then exactly what was, whichever part of the program changed it.
+/// Undo and redo over whole states. A state is small (names and numbers), so that each step keeps a copy of
+/// it: what is undone is then exactly what was, whichever part of the program changed it.
 template <class State>
 class History {
  public:

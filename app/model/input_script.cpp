@@ -38,7 +38,8 @@ std::vector<std::string> words_of(const std::string& line, const std::string& wh
 const std::vector<ScriptVerb>& script_verbs() {
   static const std::vector<ScriptVerb> verbs = {
       {"open", 1, 1, "open FILE: a head or a rig, and wait until it is there"},
-      {"wait", 1, 1, "wait FRAMES|idle: let frames pass, or wait for builds and exports, and for the face to rest"},
+      {"wait", 1, 1,
+       "wait FRAMES|idle: let frames pass, or wait for builds and exports, and for the face to rest"},
       {"view", 1, 1, "view front|left|right|three-quarter|back|below"},
       {"layers", 1, 1, "layers skin,muscles,smas,skull,landmarks,strain"},
       {"panel", 1, 1, "panel pose|landmarks|muscles|warnings|compare|live|export"},
@@ -61,8 +62,9 @@ const std::vector<ScriptVerb>& script_verbs() {
       {"size", 2, 2, "size WIDTH HEIGHT: of the window"},
       {"screenshot", 1, 1, "screenshot FILE.png: of the whole window"},
       {"picture", 1, 1, "picture FILE.png: of the face alone"},
-      {"expect", 2, 2, "expect WHAT VALUE: end with an error unless rig|landmarks|undo|redo|warnings|pose|panel "
-                       "is VALUE"},
+      {"expect", 2, 2,
+       "expect WHAT VALUE: end with an error unless rig|landmarks|undo|redo|warnings|pose|panel "
+       "is VALUE"},
       {"quit", 0, 0, "quit"},
   };
   return verbs;

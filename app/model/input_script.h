@@ -21,8 +21,8 @@ struct ScriptVerb {
 };
 const std::vector<ScriptVerb>& script_verbs();
 
-/// Reads a script: a step a line, words by spaces, "quoted words" with spaces in them, # begins a comment. Throws
-/// fascia::Error naming `where`, the line and what the verb wants.
+/// Reads a script: a step a line, words by spaces, "quoted words" with spaces in them, # begins a comment.
+/// Throws fascia::Error naming `where`, the line and what the verb wants.
 std::vector<ScriptStep> parse_script(const std::string& text, const std::string& where);
 
 }  // namespace fascia::app

@@ -44,33 +44,54 @@ std::string words_of(std::string_view name) {
 }
 
 constexpr std::array<std::pair<std::string_view, std::string_view>, 38> regions = {{
-    {"frontalis", "Brow and eye"},          {"procerus", "Brow and eye"},
-    {"corrugator", "Brow and eye"},         {"depressor_supercilii", "Brow and eye"},
-    {"orbicularis_oculi", "Brow and eye"},  {"levator_palpebrae", "Brow and eye"},
-    {"lid", "Brow and eye"},                {"eye", "Brow and eye"},
-    {"nasalis", "Nose and upper lip"},      {"depressor_septi", "Nose and upper lip"},
-    {"levator_labii", "Nose and upper lip"}, {"zygomaticus_minor", "Nose and upper lip"},
-    {"zygomaticus_major", "Mouth and cheek"}, {"levator_anguli", "Mouth and cheek"},
-    {"risorius", "Mouth and cheek"},        {"buccinator", "Mouth and cheek"},
-    {"buccal", "Mouth and cheek"},          {"orbicularis_oris", "Mouth and cheek"},
-    {"incisivus", "Mouth and cheek"},       {"compressor", "Mouth and cheek"},
-    {"lip", "Mouth and cheek"},             {"oral", "Mouth and cheek"},
-    {"pressure", "Mouth and cheek"},        {"depressor_anguli", "Lower lip and chin"},
-    {"depressor_labii", "Lower lip and chin"}, {"mentalis", "Lower lip and chin"},
-    {"platysma", "Lower lip and chin"},     {"jaw", "Jaw"},
-    {"masseter", "Jaw"},                    {"temporalis", "Jaw"},
-    {"medial_pterygoid", "Jaw"},            {"lateral_pterygoid", "Jaw"},
-    {"digastric", "Jaw"},                   {"mylohyoid", "Jaw"},
-    {"geniohyoid", "Jaw"},                  {"tongue", "Mouth and cheek"},
-    {"upper_lip", "Mouth and cheek"},       {"lower_lip", "Mouth and cheek"},
+    {"frontalis", "Brow and eye"},
+    {"procerus", "Brow and eye"},
+    {"corrugator", "Brow and eye"},
+    {"depressor_supercilii", "Brow and eye"},
+    {"orbicularis_oculi", "Brow and eye"},
+    {"levator_palpebrae", "Brow and eye"},
+    {"lid", "Brow and eye"},
+    {"eye", "Brow and eye"},
+    {"nasalis", "Nose and upper lip"},
+    {"depressor_septi", "Nose and upper lip"},
+    {"levator_labii", "Nose and upper lip"},
+    {"zygomaticus_minor", "Nose and upper lip"},
+    {"zygomaticus_major", "Mouth and cheek"},
+    {"levator_anguli", "Mouth and cheek"},
+    {"risorius", "Mouth and cheek"},
+    {"buccinator", "Mouth and cheek"},
+    {"buccal", "Mouth and cheek"},
+    {"orbicularis_oris", "Mouth and cheek"},
+    {"incisivus", "Mouth and cheek"},
+    {"compressor", "Mouth and cheek"},
+    {"lip", "Mouth and cheek"},
+    {"oral", "Mouth and cheek"},
+    {"pressure", "Mouth and cheek"},
+    {"depressor_anguli", "Lower lip and chin"},
+    {"depressor_labii", "Lower lip and chin"},
+    {"mentalis", "Lower lip and chin"},
+    {"platysma", "Lower lip and chin"},
+    {"jaw", "Jaw"},
+    {"masseter", "Jaw"},
+    {"temporalis", "Jaw"},
+    {"medial_pterygoid", "Jaw"},
+    {"lateral_pterygoid", "Jaw"},
+    {"digastric", "Jaw"},
+    {"mylohyoid", "Jaw"},
+    {"geniohyoid", "Jaw"},
+    {"tongue", "Mouth and cheek"},
+    {"upper_lip", "Mouth and cheek"},
+    {"lower_lip", "Mouth and cheek"},
 }};
 
 }  // namespace
 
 SplitName split_side(std::string_view name) {
   const std::string_view member = set_and_member(name).second;
-  for (const auto& [ending, half] :
-       {std::pair("_left", Half::left), {"_right", Half::right}, {"Left", Half::left}, {"Right", Half::right}})
+  for (const auto& [ending, half] : {std::pair("_left", Half::left),
+                                     {"_right", Half::right},
+                                     {"Left", Half::left},
+                                     {"Right", Half::right}})
     if (member.size() > std::string_view(ending).size() && member.ends_with(ending))
       return {std::string(member.substr(0, member.size() - std::string_view(ending).size())), half};
   if (member.size() > 1 && (member[0] == 'L' || member[0] == 'R') && is_number(member.substr(1)))
@@ -85,7 +106,8 @@ std::string mirrored(std::string_view name) {
   if (split.half == Half::none) return std::string(name);
   const bool to_right = split.half == Half::left;
   if (is_number(split.base)) return prefix + (to_right ? "R" : "L") + split.base;
-  if (member.find('_') != std::string_view::npos) return prefix + split.base + (to_right ? "_right" : "_left");
+  if (member.find('_') != std::string_view::npos)
+    return prefix + split.base + (to_right ? "_right" : "_left");
   // jawLeft and mouthRight are motions, and mirror as such all the same.
   return prefix + split.base + (to_right ? "Right" : "Left");
 }

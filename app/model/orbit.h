@@ -38,8 +38,8 @@ class Orbit {
 
   /// The ray under a pixel of a viewport of `width` by `height`, from its top left corner.
   Ray ray(double x, double y, double width, double height) const;
-  /// Where a point of the rig's frame is in the viewport, in pixels from its top left corner, and how far behind
-  /// the camera's plane; nothing when it lies behind the camera.
+  /// Where a point of the rig's frame is in the viewport, in pixels from its top left corner, and how far
+  /// behind the camera's plane; nothing when it lies behind the camera.
   std::optional<Vec3> pixel(const Vec3& point, double width, double height) const;
   /// Metres a pixel at the distance of `point`.
   double metres_a_pixel(const Vec3& point, double height) const;

@@ -88,8 +88,8 @@ SkinHit nearest_skin(const FaceAsset& asset, const FaceFrame& frame, const Vec3&
   return best;
 }
 
-std::optional<size_t> pick_fibre(const FaceAsset& asset, const FaceFrame& frame, const Vec3& point, double reach,
-                                 const std::vector<bool>& is_hidden) {
+std::optional<size_t> pick_fibre(const FaceAsset& asset, const FaceFrame& frame, const Vec3& point,
+                                 double reach, const std::vector<bool>& is_hidden) {
   std::optional<size_t> best;
   double least = reach;
   for (size_t f = 0; f + 1 < asset.fibre_offsets.size(); ++f) {
@@ -108,8 +108,8 @@ std::optional<size_t> pick_fibre(const FaceAsset& asset, const FaceFrame& frame,
   return best;
 }
 
-std::vector<std::pair<uint32_t, double>> soft_selection(const FaceFrame& frame, uint32_t part, uint32_t vertex,
-                                                        double radius, size_t most) {
+std::vector<std::pair<uint32_t, double>> soft_selection(const FaceFrame& frame, uint32_t part,
+                                                        uint32_t vertex, double radius, size_t most) {
   std::vector<std::pair<uint32_t, double>> chosen;
   if (part >= frame.positions.size()) return chosen;
   const std::vector<float>& flat = frame.positions[part];

@@ -49,8 +49,10 @@ Layers layers_of(const std::string& names) {
 
 std::string names_of(const Layers& layers) {
   std::string names;
-  for (const auto& [is_on, name] : {std::pair(layers.skin, "skin,eyes"), {layers.skull, "skull"},
-                                    {layers.smas, "smas"}, {layers.muscles, "muscles"},
+  for (const auto& [is_on, name] : {std::pair(layers.skin, "skin,eyes"),
+                                    {layers.skull, "skull"},
+                                    {layers.smas, "smas"},
+                                    {layers.muscles, "muscles"},
                                     {layers.landmarks, "landmarks"}})
     if (is_on) names += (names.empty() ? "" : ",") + std::string(name);
   return names.empty() ? "eyes" : names;

@@ -31,16 +31,16 @@ struct Settings {
   std::string panel = "pose";
   bool is_symmetric = true;
   Layers layers;
-  std::vector<std::string> recent;    ///< files opened, the last first
-  std::set<std::string> favourites;   ///< names of the pose panel
+  std::vector<std::string> recent;   ///< files opened, the last first
+  std::set<std::string> favourites;  ///< names of the pose panel
   std::string export_folder;
 
   /// Puts a file at the head of the recent ones.
   void remember(const std::string& file);
 };
 
-/// Where the window keeps its things: $XDG_STATE_HOME/fascia, else ~/.local/state/fascia, else a folder of the
-/// temporary directory. Not made yet.
+/// Where the window keeps its things: $XDG_STATE_HOME/fascia, else ~/.local/state/fascia, else a folder of
+/// the temporary directory. Not made yet.
 std::filesystem::path state_folder();
 
 /// Settings from a file; what it lacks or has wrong is as it is by default. Never throws.
@@ -48,8 +48,8 @@ Settings read_settings(const std::filesystem::path& file);
 /// Writes them, whole or not at all; failure is silent, as nothing is lost but comfort.
 void write_settings(const std::filesystem::path& file, const Settings& settings);
 
-/// A copy of the document that a crash leaves behind: written as the document changes, taken away when the window
-/// closes as it should.
+/// A copy of the document that a crash leaves behind: written as the document changes, taken away when the
+/// window closes as it should.
 class Autosave {
  public:
   explicit Autosave(std::filesystem::path file) : file_(std::move(file)) {}

@@ -54,10 +54,12 @@ void show_landmark(Workspace& work, const std::string& name) {
   for (const rig::Landmark& landmark : work.rig->rig->skull.landmarks)
     if (landmark.name == name) {
       const bool is_edited = landmark_edit(work.state(), name).has_value();
-      ImGui::TextColored(landmark_colour(work, landmark), is_edited ? "Placed by hand" : "Found, confidence %.2f",
+      ImGui::TextColored(landmark_colour(work, landmark),
+                         is_edited ? "Placed by hand" : "Found, confidence %.2f",
                          static_cast<double>(landmark.confidence));
       if (landmark.depth > 0.0F)
-        ImGui::TextColored(palette().faint, "%.1f mm of tissue over the bone", 1e3 * static_cast<double>(landmark.depth));
+        ImGui::TextColored(palette().faint, "%.1f mm of tissue over the bone",
+                           1e3 * static_cast<double>(landmark.depth));
       if (is_edited && ui::button("Let it be found")) work.release_landmark(name);
     }
 }
@@ -104,8 +106,8 @@ void show_landmark_panel(Workspace& work, Screen& screen) {
 namespace {
 
 /// A factor of a muscle's entry, and of the other side's in symmetric editing.
-void show_factor(Workspace& work, const std::string& muscle, const char* key, const char* title, double otherwise,
-                 float least, float most, float width) {
+void show_factor(Workspace& work, const std::string& muscle, const char* key, const char* title,
+                 double otherwise, float least, float most, float width) {
   auto value = static_cast<float>(muscle_number(work.state(), muscle, key, otherwise));
   ImGui::TextUnformatted(title);
   ui::SliderLook look{least, most, static_cast<float>(otherwise), palette().accent, "", "%.2f"};
@@ -135,7 +137,8 @@ void show_variants(Workspace& work, const std::string& name, const anatomy::Musc
   if (ImGui::Selectable("usual", chosen.empty())) choose("");
   for (const anatomy::Variant& variant : muscle.variants) {
     char text[160];
-    std::snprintf(text, sizeof text, "%s, %.0f %% of faces", variant.name.c_str(), 100.0 * variant.prevalence);
+    std::snprintf(text, sizeof text, "%s, %.0f %% of faces", variant.name.c_str(),
+                  100.0 * variant.prevalence);
     if (ImGui::Selectable(text, chosen == variant.name)) choose(variant.name);
     ui::tooltip(variant.note);
   }
@@ -148,8 +151,8 @@ void show_muscle(Workspace& work, const std::string& name) {
   const anatomy::Muscle* known = described_muscle(name);
   for (const rig::Muscle& muscle : work.rig->rig->muscles)
     if (muscle.name == name && !muscle.fibre_offsets.empty())
-      ImGui::TextColored(palette().faint, "%zu fibres, %.1f N at full activation", muscle.fibre_offsets.size() - 1,
-                         static_cast<double>(muscle.strength));
+      ImGui::TextColored(palette().faint, "%zu fibres, %.1f N at full activation",
+                         muscle.fibre_offsets.size() - 1, static_cast<double>(muscle.strength));
   if (ui::button("Contract")) {
     work.set_value(name, work.value(name) > 0.5 ? 0.0 : 1.0, false);
   }
@@ -212,7 +215,8 @@ void show_muscle_panel(Workspace& work, Screen& screen) {
         work.hidden_muscles.insert(muscle->name);
     }
     ImGui::SameLine();
-    const bool is_edited = work.state().edits.contains("muscles") && work.state().edits["muscles"].contains(muscle->name);
+    const bool is_edited =
+        work.state().edits.contains("muscles") && work.state().edits["muscles"].contains(muscle->name);
     if (is_edited) ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(0.42F, 0.66F, 1.0F, 1.0F));
     if (ImGui::Selectable(full_title(muscle->name).c_str(), work.selected_muscle == muscle->name)) {
       work.selected_muscle = muscle->name;
@@ -236,7 +240,9 @@ void show_warning_panel(Workspace& work, Screen& screen) {
   if (!work.rig) return ui::hint("Open a head: what the builder doubts is listed here.");
   if (ui::button("Check the rig", ui::Emphasis::plain, ImGui::GetContentRegionAvail().x)) work.run_check();
   ui::tooltip("Plays a fixed list of poses and measures the face in them; some seconds in the background");
-  if (work.warnings.empty()) return ui::hint("No warnings. The check plays a list of poses and measures lids, lips, skin and symmetry.");
+  if (work.warnings.empty())
+    return ui::hint(
+        "No warnings. The check plays a list of poses and measures lids, lips, skin and symmetry.");
   ui::hint("Click a warning to see the place.");
   ImGui::BeginChild("##list", {0, 0});
   for (size_t i = 0; i < work.warnings.size(); ++i) {
@@ -252,9 +258,9 @@ void show_warning_panel(Workspace& work, Screen& screen) {
     }
     ui::note("warning " + std::to_string(i + 1));
     ImDrawList* list = ImGui::GetWindowDrawList();
-    list->AddRectFilled(at, {at.x + box.x, at.y + box.y},
-                        colour_of(ImGui::IsItemHovered() && warning.place ? palette().hover : palette().raised),
-                        scaled(8));
+    list->AddRectFilled(
+        at, {at.x + box.x, at.y + box.y},
+        colour_of(ImGui::IsItemHovered() && warning.place ? palette().hover : palette().raised), scaled(8));
     list->AddCircleFilled({at.x + scaled(15), at.y + scaled(19)}, scaled(4),
                           colour_of(warning.place ? palette().warning : palette().faint));
     list->AddText(ImGui::GetFont(), ImGui::GetFontSize(), {at.x + scaled(27), at.y + scaled(10)},

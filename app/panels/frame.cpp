@@ -2,13 +2,11 @@
 #include <algorithm>
 #include <array>
 
-#include "anatomy/anatomy.h"
 #include "app/model/names.h"
 #include "app/panels/screen.h"
 #include "app/window/icons.h"
 #include "app/window/theme.h"
 #include "app/window/widgets.h"
-#include "formats/files.h"
 
 namespace fascia::app {
 
@@ -36,8 +34,8 @@ void begin_area(const char* name, const Area& area, const ImVec4& background, Im
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, padding);
   ImGui::Begin(name, nullptr,
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
-                   ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NoSavedSettings |
-                   ImGuiWindowFlags_NoBringToFrontOnFocus);
+                   ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse |
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus);
 }
 
 void end_area() {
@@ -62,21 +60,10 @@ void ask_to_save_rig(Workspace& work, Screen& screen) {
                              [&work](const std::filesystem::path& file) { work.save_rig(file); });
 }
 
-void open_embedded_head(Workspace& work) {
-  try {
-    const std::filesystem::path folder = state_folder() / "built";
-    std::filesystem::create_directories(folder);
-    const std::string_view head = anatomy::embedded_file("head.obj");
-    formats::write_bytes(folder / "embedded_head.obj", head.data(), head.size());
-    work.open(folder / "embedded_head.obj");
-  } catch (const std::exception& error) {
-    work.notify(error.what(), Notice::Kind::error);
-  }
-}
-
 std::string present_command(const Workspace& work) {
   if (!work.rig) return "";
-  if (work.take) return shell_text(play_command(work.state().take, work.rig->file.filename(), 60.0, "take.glb"));
+  if (work.take)
+    return shell_text(play_command(work.state().take, work.rig->file.filename(), 60.0, "take.glb"));
   if (!work.state().pose.empty())
     return shell_text(pose_command(work.state(), work.rig->file.filename(), "posed.glb"));
   return shell_text(build_command(work.state(), "edits.json", "rig.glb"));
@@ -99,12 +86,12 @@ void show_top_bar(Workspace& work, Screen& screen, const Area& area) {
     ui::tooltip("Save the rig as a .glb file (Ctrl+S)");
     ImGui::SameLine(0, scaled(14));
     const auto& history = work.history();
-    if (icon_button("Undo", "undo", history.can_undo() ? "Undo: " + history.undo_label() : "Nothing to undo", false,
-                    history.can_undo()))
+    if (icon_button("Undo", "undo", history.can_undo() ? "Undo: " + history.undo_label() : "Nothing to undo",
+                    false, history.can_undo()))
       work.undo();
     ImGui::SameLine(0, scaled(2));
-    if (icon_button("Redo", "redo", history.can_redo() ? "Redo: " + history.redo_label() : "Nothing to redo", false,
-                    history.can_redo()))
+    if (icon_button("Redo", "redo", history.can_redo() ? "Redo: " + history.redo_label() : "Nothing to redo",
+                    false, history.can_redo()))
       work.redo();
     const std::string name = std::filesystem::path(work.state().head).filename().string() +
                              (work.has_unbuilt_edits() ? "  (edited)" : "");
@@ -142,17 +129,19 @@ void show_rail(Workspace& work, Screen& screen, const Area& area) {
     draw_icon(list, panel.name, {at.x + 0.5F * area.width, at.y + scaled(24)}, scaled(21), colour);
     ImGui::PushFont(fonts().small);
     const float width = ImGui::CalcTextSize(panel.title).x;
-    list->AddText({at.x + 0.5F * (area.width - width), at.y + scaled(40)}, colour_of(is_chosen ? p.text : p.faint),
-                  panel.title);
+    list->AddText({at.x + 0.5F * (area.width - width), at.y + scaled(40)},
+                  colour_of(is_chosen ? p.text : p.faint), panel.title);
     if (panel.name == std::string("warnings") && !work.warnings.empty()) {
       const std::string count = std::to_string(work.warnings.size());
       const ImVec2 middle(at.x + 0.5F * area.width + scaled(15), at.y + scaled(15));
       list->AddCircleFilled(middle, scaled(9), colour_of(p.warning));
-      list->AddText({middle.x - 0.5F * ImGui::CalcTextSize(count.c_str()).x, middle.y - 0.5F * ImGui::GetFontSize()},
-                    IM_COL32(30, 26, 20, 255), count.c_str());
+      list->AddText(
+          {middle.x - 0.5F * ImGui::CalcTextSize(count.c_str()).x, middle.y - 0.5F * ImGui::GetFontSize()},
+          IM_COL32(30, 26, 20, 255), count.c_str());
     }
     if (panel.name == std::string("live") && work.live)
-      list->AddCircleFilled({at.x + 0.5F * area.width + scaled(15), at.y + scaled(14)}, scaled(4), colour_of(p.good));
+      list->AddCircleFilled({at.x + 0.5F * area.width + scaled(15), at.y + scaled(14)}, scaled(4),
+                            colour_of(p.good));
     ImGui::PopFont();
   }
   (void)screen;
@@ -191,7 +180,8 @@ void show_status(Workspace& work, Screen& screen, const Area& area) {
   begin_area("##status", area, p.window, {scaled(12), scaled(3)});
   ImGui::PushFont(fonts().small);
   char figures[96];
-  std::snprintf(figures, sizeof figures, "simulation %.1f ms    picture %.0f ms", work.frame ? work.frame->step_milliseconds : 0.0,
+  std::snprintf(figures, sizeof figures, "simulation %.1f ms    picture %.0f ms",
+                work.frame ? work.frame->step_milliseconds : 0.0,
                 screen.picture.milliseconds(screen.drawn_care));
   const float right = ImGui::CalcTextSize(figures).x + scaled(24);
   const std::string command = present_command(work);
@@ -227,8 +217,8 @@ void show_notices(Workspace& work, const Area& area) {
     list->AddRect(at, {at.x + box.x, at.y + box.y}, colour_of(p.line, fade), scaled(8));
     list->AddRectFilled({at.x + scaled(9), at.y + scaled(9)}, {at.x + scaled(12), at.y + box.y - scaled(9)},
                         colour_of(side, fade), scaled(2));
-    list->AddText(ImGui::GetFont(), ImGui::GetFontSize(), {at.x + scaled(22), at.y + scaled(9)}, colour_of(p.text, fade),
-                  notice->text.c_str(), nullptr, wrap);
+    list->AddText(ImGui::GetFont(), ImGui::GetFontSize(), {at.x + scaled(22), at.y + scaled(9)},
+                  colour_of(p.text, fade), notice->text.c_str(), nullptr, wrap);
     y -= box.y + scaled(8);
   }
 }
@@ -261,8 +251,9 @@ void show_help(Screen& screen) {
   if (screen.shows_help) ImGui::OpenPopup("##help");
   const ImVec2 window = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({0.5F * window.x, 0.5F * window.y}, ImGuiCond_Always, {0.5F, 0.5F});
-  if (!ImGui::BeginPopupModal("##help", nullptr,
-                              ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_AlwaysAutoResize))
+  if (!ImGui::BeginPopupModal(
+          "##help", nullptr,
+          ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_AlwaysAutoResize))
     return;
   ImGui::PushFont(fonts().large);
   ImGui::TextUnformatted("Keys and mouse");
@@ -274,7 +265,8 @@ void show_help(Screen& screen) {
     ImGui::TextUnformatted(key.what);
   }
   ImGui::Dummy({0, scaled(6)});
-  if (ui::button("Close", ui::Emphasis::strong, scaled(120)) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) {
+  if (ui::button("Close", ui::Emphasis::strong, scaled(120)) ||
+      ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) {
     screen.shows_help = false;
     ImGui::CloseCurrentPopup();
   }

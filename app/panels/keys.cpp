@@ -1,6 +1,6 @@
 // epoxy comes before GLFW, which would bring its own OpenGL header.
-#include <epoxy/gl.h>
 #include <GLFW/glfw3.h>
+#include <epoxy/gl.h>
 
 #include <algorithm>
 
@@ -18,10 +18,13 @@ void act_on_views(Workspace& work, Screen& screen) {
   if (ImGui::IsKeyPressed(GLFW_KEY_V, false)) screen.tool = Tool::turn;
   if (ImGui::IsKeyPressed(GLFW_KEY_P, false)) screen.tool = Tool::pull;
   Layers& layers = work.settings.layers;
-  for (const auto& [key, layer] : {std::pair(GLFW_KEY_S, &layers.skin), {GLFW_KEY_M, &layers.muscles},
-                                   {GLFW_KEY_K, &layers.skull}, {GLFW_KEY_L, &layers.landmarks}})
+  for (const auto& [key, layer] : {std::pair(GLFW_KEY_S, &layers.skin),
+                                   {GLFW_KEY_M, &layers.muscles},
+                                   {GLFW_KEY_K, &layers.skull},
+                                   {GLFW_KEY_L, &layers.landmarks}})
     if (ImGui::IsKeyPressed(key, false)) *layer = !*layer;
-  if (layers.skin && (layers.muscles || layers.skull) && layers.skin_opacity > 0.99) layers.skin_opacity = 0.35;
+  if (layers.skin && (layers.muscles || layers.skull) && layers.skin_opacity > 0.99)
+    layers.skin_opacity = 0.35;
   if (!layers.muscles && !layers.skull && !layers.smas) layers.skin_opacity = 1.0;
 }
 

@@ -12,7 +12,8 @@ namespace fascia::app {
 namespace {
 
 struct Figures {
-  double mean = 0.0, largest = 0.0;  ///< millimetres, over the vertices that are apart by more than half a millimetre
+  double mean = 0.0,
+         largest = 0.0;  ///< millimetres, over the vertices that are apart by more than half a millimetre
   size_t moved = 0;
 };
 
@@ -53,9 +54,10 @@ void show_compare_panel(Workspace& work, Screen& screen) {
     const bool is_chosen = work.comparison.reference == entry.reference;
     if (ImGui::RadioButton(entry.name, is_chosen) && !is_chosen) {
       if (entry.reference == Reference::file)
-        screen.browser.ask_to_open(
-            "Compare with a mesh", {".glb", ".gltf", ".obj", ".ply"},
-            [&work](const std::filesystem::path& file) { work.compare_with(Reference::file, file.string()); });
+        screen.browser.ask_to_open("Compare with a mesh", {".glb", ".gltf", ".obj", ".ply"},
+                                   [&work](const std::filesystem::path& file) {
+                                     work.compare_with(Reference::file, file.string());
+                                   });
       else
         work.compare_with(entry.reference);
     }
@@ -63,7 +65,8 @@ void show_compare_panel(Workspace& work, Screen& screen) {
     ImGui::SameLine(scaled(170));
     ImGui::PushFont(fonts().small);
     ImGui::SetCursorPosY(ImGui::GetCursorPosY() + scaled(8));
-    ImGui::TextColored(palette().faint, "%s", ui::shortened(entry.what, ImGui::GetContentRegionAvail().x).c_str());
+    ImGui::TextColored(palette().faint, "%s",
+                       ui::shortened(entry.what, ImGui::GetContentRegionAvail().x).c_str());
     ImGui::PopFont();
     ui::tooltip(entry.what);
   }
@@ -80,18 +83,21 @@ void show_compare_panel(Workspace& work, Screen& screen) {
     work.comparison.scale_mm = static_cast<double>(scale);
   const Figures figures = figures_of(work);
   char text[160];
-  std::snprintf(text, sizeof text, "Largest distance %.2f mm. Mean of the %zu points farther than 0.5 mm: %.2f mm.",
+  std::snprintf(text, sizeof text,
+                "Largest distance %.2f mm. Mean of the %zu points farther than 0.5 mm: %.2f mm.",
                 figures.largest, figures.moved, figures.mean);
   ImGui::Dummy({0, scaled(4)});
   ui::hint(text);
 }
 
 void show_live_panel(Workspace& work, Screen& screen) {
-  ui::hint("Receives a captured face over the network, on this machine only (127.0.0.1), and plays it on top of the "
-           "pose.");
+  ui::hint(
+      "Receives a captured face over the network, on this machine only (127.0.0.1), and plays it on top of "
+      "the "
+      "pose.");
   const float width = ImGui::GetContentRegionAvail().x;
-  const auto receiver = [&](const char* title, const char* button, const char* note, LiveReceiver::Protocol protocol,
-                            int& port) {
+  const auto receiver = [&](const char* title, const char* button, const char* note,
+                            LiveReceiver::Protocol protocol, int& port) {
     ui::heading(title);
     ui::hint(note);
     ImGui::PushID(title);
@@ -109,7 +115,8 @@ void show_live_panel(Workspace& work, Screen& screen) {
     }
     ImGui::PopID();
   };
-  receiver("OSC and VMC", "Listen##osc", "VSeeFace, VTube Studio, Waidayo, any program that sends blend shapes by OSC.",
+  receiver("OSC and VMC", "Listen##osc",
+           "VSeeFace, VTube Studio, Waidayo, any program that sends blend shapes by OSC.",
            LiveReceiver::Protocol::osc, screen.osc_port);
   receiver("Live Link Face", "Listen##livelink", "Epic Games' app on a phone, forwarded to this machine.",
            LiveReceiver::Protocol::live_link, screen.live_link_port_number);
@@ -139,8 +146,8 @@ void show_export_panel(Workspace& work, Screen& screen) {
     ui::hint(what);
     ImGui::Dummy({0, scaled(2)});
   };
-  entry("Rig", "The head with its anatomy (.glb), for the runtime and for later.", stem + "_rig.glb", {".glb"},
-        [&work](const std::filesystem::path& file) { work.save_rig(file); });
+  entry("Rig", "The head with its anatomy (.glb), for the runtime and for later.", stem + "_rig.glb",
+        {".glb"}, [&work](const std::filesystem::path& file) { work.save_rig(file); });
   entry("Pose", "The mesh as it stands, in the file's own vertex order.", stem + "_posed.glb",
         {".glb", ".obj", ".ply"}, [&work, rig](const std::filesystem::path& file) {
           work.run(pose_command(work.state(), rig, file), "Export " + file.filename().string());
@@ -153,20 +160,22 @@ void show_export_panel(Workspace& work, Screen& screen) {
     ui::SliderLook look{12.0F, 120.0F, 60.0F, palette().accent, "", "%.0f"};
     auto fps = static_cast<float>(screen.export_fps);
     bool has_ended = false;
-    entry("Animation", "The recording's piece, simulated: morph targets and curves, or a point cache (.pc2, .mdd).",
-          stem + "_take.glb", {".glb", ".pc2", ".mdd"}, [&work, &screen](const std::filesystem::path& file) {
-            work.export_take(file, screen.export_fps);
-          });
+    entry("Animation",
+          "The recording's piece, simulated: morph targets and curves, or a point cache (.pc2, .mdd).",
+          stem + "_take.glb", {".glb", ".pc2", ".mdd"},
+          [&work, &screen](const std::filesystem::path& file) { work.export_take(file, screen.export_fps); });
     ImGui::TextUnformatted("Frames a second");
-    if (ui::slider("Frames a second", fps, look, width, has_ended)) screen.export_fps = static_cast<int>(std::lround(fps));
+    if (ui::slider("Frames a second", fps, look, width, has_ended))
+      screen.export_fps = static_cast<int>(std::lround(fps));
     ImGui::Dummy({0, scaled(4)});
   } else {
     ui::hint("Load a recording in the timeline to export an animation.");
   }
   entry("Picture", "The pose, 1600 pixels high, with the layers shown.", stem + ".png", {".png"},
         [&work, rig](const std::filesystem::path& file) {
-          work.run(render_command(work.state(), rig, names_of(work.settings.layers), "three-quarter", 1600, file),
-                   "Draw " + file.filename().string());
+          work.run(
+              render_command(work.state(), rig, names_of(work.settings.layers), "three-quarter", 1600, file),
+              "Draw " + file.filename().string());
         });
   entry("Turntable", "A film once around the head.", stem + ".mp4", {".mp4"},
         [&work, rig](const std::filesystem::path& file) {

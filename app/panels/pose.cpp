@@ -65,8 +65,8 @@ std::vector<Row> channel_rows(const FaceAsset& asset) {
   for (const FaceChannel& channel : asset.channels)
     add_row(rows, known, channel.name, std::string(region_of(channel.name)));
   std::stable_sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) {
-    const std::array<std::string, 6> order = {"Brow and eye",       "Nose and upper lip", "Mouth and cheek",
-                                              "Lower lip and chin", "Jaw",                "Other"};
+    const std::array<std::string, 6> order = {
+        "Brow and eye", "Nose and upper lip", "Mouth and cheek", "Lower lip and chin", "Jaw", "Other"};
     const auto place = [&](const Row& row) { return std::find(order.begin(), order.end(), row.group); };
     return place(a) < place(b);
   });
@@ -132,7 +132,6 @@ void show_row(Workspace& work, const Row& row, float width) {
     if (!row.right.empty() && !row.left.empty()) ImGui::SameLine(0, scaled(14));
     if (!row.left.empty()) show_slider(work, row.left, p.left, "L", half);
   }
-  ImGui::Dummy({0, scaled(1)});
   ImGui::PopID();
 }
 

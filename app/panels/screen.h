@@ -7,6 +7,7 @@
 
 #include "app/scene/face_picture.h"
 #include "app/scene/scene_list.h"
+#include "app/scene/still_renderer.h"
 #include "app/window/file_browser.h"
 #include "app/workspace.h"
 
@@ -24,14 +25,15 @@ enum class Tool { turn, pull };
 struct Screen {
   FileBrowser browser;
   FacePicture picture;
+  StillRenderer stills;
   std::unique_ptr<SceneStore> scene, reference_scene;
   const FaceAsset *scene_of = nullptr, *reference_of = nullptr;
 
   Tool tool = Tool::turn;
   std::string pose_search, landmark_search, muscle_search;
-  int vocabulary = 0;         ///< of the pose panel
+  int vocabulary = 0;  ///< of the pose panel
   bool shows_favourites = false, shows_only_low = false, shows_help = false;
-  std::string command;        ///< the `fascia` command that does what was done last
+  std::string command;  ///< the `fascia` command that does what was done last
   std::string dragged_landmark, hovered_landmark, hovered_muscle;
   bool is_turning = false, is_shifting = false;
   ImVec2 pressed_at;
@@ -41,9 +43,9 @@ struct Screen {
   uint64_t drawn_stamp = 0;
   double since_motion = 0.0;  ///< seconds the picture has stood still
   FacePicture::Care drawn_care = FacePicture::Care::quick;
-  bool is_scripted = false;   ///< pictures are always drawn with everything, at the end
-  bool wants_full = false;    ///< the next picture is drawn with everything
-  std::string picture_key;    ///< of what was drawn last besides the frame
+  bool is_scripted = false;  ///< the picture is drawn when it is wanted, with everything
+  bool wants_full = false;   ///< the next picture is drawn with everything
+  std::string picture_key;   ///< of what was drawn last besides the frame
   Area viewport;
   double longest_frame = 0.0, frame_milliseconds = 0.0;
   bool wants_quit = false, wants_theme = false;
@@ -78,7 +80,6 @@ void end_area();
 void ask_to_open(Workspace& work, Screen& screen);
 void ask_for_take(Workspace& work, Screen& screen);
 void ask_to_save_rig(Workspace& work, Screen& screen);
-void open_embedded_head(Workspace& work);
 /// Acts on the keys of the keyboard map.
 void act_on_keys(Workspace& work, Screen& screen);
 

@@ -1,5 +1,5 @@
 #include <algorithm>
-#include <array>
+#include <utility>
 
 #include "app/panels/screen.h"
 #include "app/window/icons.h"
@@ -22,12 +22,15 @@ void draw_sign(ImDrawList* list, ImVec2 centre, float size) {
   const int fibres = 26;
   for (int i = 0; i < fibres; ++i) {
     const float share = static_cast<float>(i) / (fibres - 1), spread = share - 0.5F;
-    const ImVec2 from(centre.x - 0.62F * size, centre.y + (0.1F + 0.16F * spread) * size);
-    const ImVec2 to(centre.x + 0.62F * size, centre.y - (0.08F - 0.5F * spread) * size);
+    const ImVec2 from(centre.x - (0.62F - 0.5F * spread * spread) * size,
+                      centre.y + (0.1F + 0.16F * spread) * size);
+    const ImVec2 to(centre.x + (0.66F - 0.9F * spread * spread) * size,
+                    centre.y - (0.08F - 0.5F * spread) * size);
     const ImVec2 c1(centre.x - 0.2F * size, centre.y + (0.32F + 0.55F * spread) * size);
     const ImVec2 c2(centre.x + 0.2F * size, centre.y - (0.34F - 0.75F * spread) * size);
     const ImVec4 a = palette().accent, b = palette().warning;
-    const ImVec4 colour(a.x + share * (b.x - a.x), a.y + share * (b.y - a.y), a.z + share * (b.z - a.z), 0.75F);
+    const ImVec4 colour(a.x + share * (b.x - a.x), a.y + share * (b.y - a.y), a.z + share * (b.z - a.z),
+                        0.75F);
     list->AddBezierCubic(from, c1, c2, to, colour_of(colour), scaled(1.5F), 32);
   }
 }
@@ -46,7 +49,8 @@ void show_recent(Workspace& work, float width) {
     const std::filesystem::path file = work.settings.recent[i];
     ImGui::SetCursorPosX(left);
     ImGui::PushID(static_cast<int>(i));
-    if (ImGui::Selectable(("  " + file.filename().string()).c_str(), false, 0, {width, 0})) opened = file.string();
+    if (ImGui::Selectable(("  " + file.filename().string()).c_str(), false, 0, {width, 0}))
+      opened = file.string();
     ui::note("recent " + std::to_string(i + 1));
     ui::tooltip(file.string());
     ImGui::PopID();
@@ -60,7 +64,7 @@ void show_start(Workspace& work, Screen& screen, const Area& area) {
   const Palette& p = palette();
   begin_area("##start", area, p.window, {0, 0});
   ImDrawList* list = ImGui::GetWindowDrawList();
-  const float top = std::max(0.5F * area.height - scaled(300), scaled(10));
+  const float top = std::max(0.5F * area.height - scaled(270), scaled(10));
   draw_sign(list, {area.x + 0.5F * area.width, area.y + top + scaled(78)}, scaled(150));
   ImGui::SetCursorPosY(top + scaled(150));
   centred("Fascia", fonts().title, p.text);
@@ -79,17 +83,16 @@ void show_start(Workspace& work, Screen& screen, const Area& area) {
   ImGui::SetCursorPosX(left + 0.5F * width - scaled(172));
   if (ui::button("Open a file", ui::Emphasis::strong, scaled(160))) ask_to_open(work, screen);
   ImGui::SameLine(0, scaled(24));
-  if (ui::button("Try the embedded head", ui::Emphasis::plain, scaled(160))) open_embedded_head(work);
+  if (ui::button("Try the embedded head", ui::Emphasis::plain, scaled(160))) work.open_embedded_head();
   ImGui::SetCursorPosY(drop.y - area.y + height + scaled(6));
-  static std::optional<DocumentState> left_behind = work.autosave().left_behind();
-  if (left_behind && !left_behind->head.empty()) {
+  if (work.left_behind && !work.left_behind->head.empty()) {
     ImGui::Dummy({0, scaled(6)});
-    const std::string text =
-        "Go on with " + std::filesystem::path(left_behind->head).filename().string() + ", where it ended last time";
+    const std::string text = "Go on with " +
+                             std::filesystem::path(work.left_behind->head).filename().string() +
+                             ", where it ended last time";
     ImGui::SetCursorPosX(left);
     if (ui::button(text, ui::Emphasis::plain, width)) {
-      const DocumentState state = *left_behind;
-      left_behind.reset();
+      const DocumentState state = *std::exchange(work.left_behind, std::nullopt);
       work.restore(state);
     }
   }
@@ -103,8 +106,8 @@ void show_build(Workspace& work, Screen& screen, const Area& area) {
   if (work.rig) {
     // A rebuild: small, at the top of the picture, which stays in use.
     const float width = scaled(330), height = scaled(46);
-    begin_area("##rebuild", {area.x + area.width - width - scaled(14), area.y + scaled(12), width, height}, p.panel,
-               {scaled(12), scaled(7)});
+    begin_area("##rebuild", {area.x + area.width - width - scaled(14), area.y + scaled(12), width, height},
+               p.panel, {scaled(12), scaled(7)});
     ImGui::PushFont(fonts().small);
     ImGui::TextUnformatted(progress.stage.c_str());
     ui::progress_bar(static_cast<float>(progress.share), width - scaled(90), scaled(5));

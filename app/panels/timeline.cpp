@@ -54,20 +54,23 @@ void show_track(Workspace& work, float width, float height) {
   static int held = -1;
   for (const int side : {0, 1}) {
     const float x = x_of(side == 0 ? begin : end);
-    list->AddRectFilled({x - scaled(2.5F), at.y}, {x + scaled(2.5F), at.y + height}, colour_of(p.accent), scaled(2));
+    list->AddRectFilled({x - scaled(2.5F), at.y}, {x + scaled(2.5F), at.y + height}, colour_of(p.accent),
+                        scaled(2));
     ImGui::SetCursorScreenPos({x - scaled(6), at.y});
     ImGui::InvisibleButton(side == 0 ? "Trim begin" : "Trim end", {scaled(12), height});
     ui::note(side == 0 ? "Trim begin" : "Trim end");
     if (ImGui::IsItemHovered() || ImGui::IsItemActive()) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
     if (ImGui::IsItemActive()) {
       held = side;
-      const double seconds = std::clamp(static_cast<double>((ImGui::GetIO().MousePos.x - at.x) / width), 0.0, 1.0) * duration;
+      const double seconds =
+          std::clamp(static_cast<double>((ImGui::GetIO().MousePos.x - at.x) / width), 0.0, 1.0) * duration;
       DocumentState next = work.state();
       const double least = 0.05;  // seconds
       if (side == 0)
         next.take.begin = std::min(seconds, end - least) < 0.0 ? 0.0 : std::min(seconds, end - least);
       else
-        next.take.end = std::max(seconds, begin + least) >= duration ? -1.0 : std::max(seconds, begin + least);
+        next.take.end =
+            std::max(seconds, begin + least) >= duration ? -1.0 : std::max(seconds, begin + least);
       work.commit(std::move(next), "Trim the recording", "trim");
     } else if (held == side && ImGui::IsItemDeactivated()) {
       held = -1;
@@ -78,7 +81,8 @@ void show_track(Workspace& work, float width, float height) {
   ImGui::InvisibleButton("Track", {width, height});
   ui::note("Track");
   if (ImGui::IsItemActive()) {
-    work.playback.time = std::clamp(static_cast<double>((ImGui::GetIO().MousePos.x - at.x) / width), 0.0, 1.0) * duration;
+    work.playback.time =
+        std::clamp(static_cast<double>((ImGui::GetIO().MousePos.x - at.x) / width), 0.0, 1.0) * duration;
     work.playback.is_playing = false;
   }
   const float head = x_of(work.playback.time);
@@ -94,13 +98,13 @@ void show_timeline(Workspace& work, Screen& screen, const Area& area) {
   begin_area("##timeline", area, p.panel, {scaled(14), scaled(8)});
   Playback& playback = work.playback;
   const bool has_take = work.take != nullptr;
-  if (icon_button("Play", playback.is_playing ? "pause" : "play", playback.is_playing ? "Pause (Space)" : "Play (Space)",
-                  false, has_take)) {
+  if (icon_button("Play", playback.is_playing ? "pause" : "play",
+                  playback.is_playing ? "Pause (Space)" : "Play (Space)", false, has_take)) {
     if (!playback.is_playing && playback.time >= end_of(work) - 1e-3) playback.time = work.state().take.begin;
     playback.is_playing = !playback.is_playing;
   }
   ImGui::SameLine(0, scaled(2));
-  if (icon_button("Loop", "loop", "Play over and over", work.state().take.loops, has_take)) {
+  if (icon_button("Loop", "loop", "Play over and over", has_take && work.state().take.loops, has_take)) {
     DocumentState next = work.state();
     next.take.loops = !next.take.loops;
     work.commit(std::move(next), "Loop");
@@ -120,13 +124,16 @@ void show_timeline(Workspace& work, Screen& screen, const Area& area) {
   } else if (has_take) {
     ImGui::Text("%s / %s", clock_text(playback.time).c_str(), clock_text(work.take->duration()).c_str());
     ImGui::SameLine(0, scaled(14));
-    ImGui::TextColored(p.faint, "%s", ui::shortened(work.take->file().filename().string(), scaled(220)).c_str());
+    ImGui::TextColored(p.faint, "%s",
+                       ui::shortened(work.take->file().filename().string(), scaled(220)).c_str());
   } else {
-    ImGui::TextColored(p.faint, "No recording. Drop a CSV, JSON or GLB of curves on the window.");
+    ImGui::TextColored(
+        p.faint, "%s",
+        ui::shortened("Drop a recording here: CSV, JSON or GLB", area.width - scaled(540)).c_str());
   }
   const bool is_wide = area.width > scaled(640);
   if (is_wide) {
-    ImGui::SameLine(area.width - scaled(360));
+    ImGui::SameLine(area.width - scaled(346));
     const char* const gravities[] = {"Upright", "Lying", "Face down", "Upside down"};
     int gravity = static_cast<int>(work.gravity);
     ImGui::SetNextItemWidth(scaled(120));

@@ -36,12 +36,11 @@ struct PlacedLandmark {
 std::vector<PlacedLandmark> placed_landmarks(const Workspace& work, const Area& area) {
   std::vector<PlacedLandmark> placed;
   for (const rig::Landmark& landmark : work.rig->rig->skull.landmarks) {
-    const auto rest = work.landmark(landmark.name);
-    if (!rest) continue;
-    const SkinHit skin = nearest_skin(*work.rig->asset, *work.frame, *rest);
-    const Vec3 now = *rest + (skin.position - skin.rest);
-    if (skin.normal.dot(work.orbit.eye() - now) < 0.0) continue;
-    const auto pixel = work.orbit.pixel(now, static_cast<double>(area.width), static_cast<double>(area.height));
+    const auto held = work.landmark_hold(landmark.name);
+    if (!held || held->normal.dot(work.orbit.eye() - held->position) < 0.0) continue;
+    const Vec3 now = held->position;
+    const auto pixel =
+        work.orbit.pixel(now, static_cast<double>(area.width), static_cast<double>(area.height));
     if (pixel) placed.push_back({&landmark, on_screen(area, *pixel), now});
   }
   return placed;
@@ -73,8 +72,8 @@ void draw_landmarks(const Workspace& work, Screen& screen, const Area& area,
     const std::string text = full_title(name);
     const ImVec2 size = ImGui::CalcTextSize(text.c_str());
     const ImVec2 from(one.at.x + scaled(14), one.at.y - 0.5F * size.y - scaled(3));
-    list->AddRectFilled(from, {from.x + size.x + scaled(14), from.y + size.y + scaled(6)}, IM_COL32(20, 21, 24, 225),
-                        scaled(6));
+    list->AddRectFilled(from, {from.x + size.x + scaled(14), from.y + size.y + scaled(6)},
+                        IM_COL32(20, 21, 24, 225), scaled(6));
     list->AddText({from.x + scaled(7), from.y + scaled(3)}, IM_COL32(240, 238, 234, 255), text.c_str());
   }
 }
@@ -115,7 +114,8 @@ void move_press(Workspace& work, Screen& screen, const Area& area) {
     const double depth = (held.target - ray.origin).dot(-work.orbit.back());
     work.pull(ray.origin + depth / ray.direction.dot(-work.orbit.back()) * ray.direction);
   } else if (screen.is_turning) {
-    work.orbit.turn(-0.35 * static_cast<double>(io.MouseDelta.x), 0.35 * static_cast<double>(io.MouseDelta.y));
+    work.orbit.turn(-0.35 * static_cast<double>(io.MouseDelta.x),
+                    0.35 * static_cast<double>(io.MouseDelta.y));
   }
 }
 
@@ -161,13 +161,13 @@ void use_mouse(Workspace& work, Screen& screen, const Area& area, bool is_hovere
 std::string key_of(const Workspace& work, const Area& area, const view::Camera& camera) {
   const Layers& l = work.settings.layers;
   char text[400];
-  std::snprintf(text, sizeof text, "%g %g %.6f %.6f %.6f %.6f %.6f %.6f %d%d%d%d%d %.3f %d%d%d %.2f %d %llu %s ",
-                static_cast<double>(area.width), static_cast<double>(area.height), camera.target[0],
-                camera.target[1], camera.target[2], camera.distance, camera.yaw, camera.pitch, l.skin, l.muscles,
-                l.smas, l.skull, l.strain, l.skin_opacity, static_cast<int>(work.comparison.reference),
-                work.comparison.has_heat, work.comparison.is_side_by_side, work.comparison.scale_mm,
-                work.settings.is_light, static_cast<unsigned long long>(work.picture_stamp()),
-                work.selected_muscle.c_str());
+  std::snprintf(
+      text, sizeof text, "%g %g %.6f %.6f %.6f %.6f %.6f %.6f %d%d%d%d%d %.3f %d%d%d %.2f %d %llu %s ",
+      static_cast<double>(area.width), static_cast<double>(area.height), camera.target[0], camera.target[1],
+      camera.target[2], camera.distance, camera.yaw, camera.pitch, l.skin, l.muscles, l.smas, l.skull,
+      l.strain, l.skin_opacity, static_cast<int>(work.comparison.reference), work.comparison.has_heat,
+      work.comparison.is_side_by_side, work.comparison.scale_mm, work.settings.is_light,
+      static_cast<unsigned long long>(work.picture_stamp()), work.selected_muscle.c_str());
   std::string key = text;
   for (const std::string& name : work.hidden_muscles)
     key += name + ",";
@@ -184,18 +184,19 @@ void renew_scenes(const Workspace& work, Screen& screen) {
   screen.reference_of = other;
 }
 
+/// How carefully the window draws by itself: what takes longer than a tenth of a second is left to the thread
+/// for stills.
 FacePicture::Care care_for(const Screen& screen, bool has_changed) {
   using Care = FacePicture::Care;
-  const double fluid = 30.0, tolerable = 95.0;  // milliseconds; below a tenth of a second nobody waits
-  const auto costs = [&](Care care) { return screen.picture.milliseconds(care); };
-  if (screen.is_scripted) return screen.wants_full ? Care::full : Care::quick;
   if (screen.wants_full) return Care::full;
-  if (has_changed) {
-    if (costs(Care::full) > 0.0 && costs(Care::full) < fluid) return Care::full;
-    if (costs(Care::good) > 0.0 && costs(Care::good) < fluid) return Care::good;
-    return Care::quick;
-  }
-  return costs(Care::full) < tolerable ? Care::full : costs(Care::good) < tolerable ? Care::good : Care::quick;
+  const double fluid = 30.0, tolerable = 80.0, software = 8.0;  // milliseconds
+  const auto costs = [&](Care care) { return screen.picture.milliseconds(care); };
+  const double limit = has_changed ? fluid : tolerable;
+  // Nothing is known of a care not tried yet; after a quick picture that took long it is not tried at all.
+  const bool is_slow = costs(Care::quick) > software;
+  if (costs(Care::full) > 0.0 ? costs(Care::full) < limit : !has_changed && !is_slow) return Care::full;
+  if (costs(Care::good) > 0.0 && costs(Care::good) < limit) return Care::good;
+  return Care::quick;
 }
 
 view::Look look_of(const Workspace& work) {
@@ -208,10 +209,15 @@ view::Look look_of(const Workspace& work) {
   return look;
 }
 
-void draw_picture(Workspace& work, Screen& screen, int width, int height, FacePicture::Care care,
-                  const view::Camera& camera) {
+/// What a picture shows: one list, or that of the reference for its left half and that of the face for its
+/// right.
+struct Pictured {
+  view::DrawList face, reference;
+  bool is_divided = false;
+};
+
+Pictured pictured(Workspace& work, Screen& screen) {
   renew_scenes(work, screen);
-  screen.picture.resize(width, height);
   SceneOptions options;
   options.layers = work.settings.layers;
   options.selected_muscle = work.selected_muscle;
@@ -220,28 +226,42 @@ void draw_picture(Workspace& work, Screen& screen, int width, int height, FacePi
   std::vector<std::vector<float>> distances;
   const bool has_other = work.reference_frame || !work.reference_positions.empty();
   if (has_other && work.comparison.has_heat) {
-    distances = distances_between(*work.frame, work.reference_frame ? work.reference_frame->positions
-                                                                    : work.reference_positions);
+    distances = distances_between(
+        *work.frame, work.reference_frame ? work.reference_frame->positions : work.reference_positions);
     options.distances = &distances;
   }
-  const view::DrawList list = screen.scene->list(*work.frame, options);
-  if (!has_other || !work.comparison.is_side_by_side)
-    return screen.picture.draw(list, camera, look_of(work), care, 0, width);
-  SceneOptions plain = options;
-  plain.distances = nullptr;
-  view::DrawList other;
+  Pictured result;
+  result.face = screen.scene->list(*work.frame, options);
+  if (!has_other || !work.comparison.is_side_by_side) return result;
+  result.is_divided = true;
+  options.distances = nullptr;
   if (work.reference_frame && screen.reference_scene) {
-    other = screen.reference_scene->list(*work.reference_frame, plain);
-  } else {
-    FaceFrame still = *work.frame;
-    for (size_t part = 0; part < still.positions.size(); ++part)
-      if (part < work.reference_positions.size() &&
-          work.reference_positions[part].size() == still.positions[part].size())
-        still.positions[part] = work.reference_positions[part];
-    other = screen.scene->list(still, plain);
+    result.reference = screen.reference_scene->list(*work.reference_frame, options);
+    return result;
   }
-  screen.picture.draw(other, camera, look_of(work), care, 0, width / 2);
-  screen.picture.draw(list, camera, look_of(work), care, width / 2, width - width / 2);
+  FaceFrame still = *work.frame;
+  for (size_t part = 0; part < still.positions.size(); ++part)
+    if (part < work.reference_positions.size() &&
+        work.reference_positions[part].size() == still.positions[part].size())
+      still.positions[part] = work.reference_positions[part];
+  result.reference = screen.scene->list(still, options);
+  return result;
+}
+
+/// Orders the picture with everything, and shows it when it comes and is still wanted.
+void renew_still(Workspace& work, Screen& screen, const std::string& key, const view::Camera& camera) {
+  const double calm = 0.15;  // seconds
+  if (!screen.stills.works() || screen.is_scripted || screen.drawn_care == FacePicture::Care::full) return;
+  if (const auto still = screen.stills.take(); still && still->key == key) {
+    screen.picture.show(still->image);
+    screen.drawn_care = FacePicture::Care::full;
+    return;
+  }
+  if (screen.since_motion < calm || screen.stills.ordered() == key) return;
+  Pictured shown = pictured(work, screen);
+  if (shown.is_divided) return;
+  screen.stills.order(
+      {key, std::move(shown.face), camera, look_of(work), screen.picture.width(), screen.picture.height()});
 }
 
 void renew_picture(Workspace& work, Screen& screen, const Area& area) {
@@ -249,15 +269,23 @@ void renew_picture(Workspace& work, Screen& screen, const Area& area) {
   camera.yaw -= work.shake_yaw();
   const std::string key = key_of(work, area, camera);
   const bool has_changed = key != screen.picture_key;
-  const double seconds = static_cast<double>(ImGui::GetIO().DeltaTime);
-  screen.since_motion = has_changed ? 0.0 : screen.since_motion + seconds;
+  screen.since_motion =
+      has_changed ? 0.0 : screen.since_motion + static_cast<double>(ImGui::GetIO().DeltaTime);
   const FacePicture::Care care = care_for(screen, has_changed);
   const double calm = 0.12;  // seconds without motion before a still picture is drawn with care
   const bool is_better = care > screen.drawn_care && (screen.since_motion > calm || screen.wants_full);
-  if (!has_changed && !is_better) return;
+  if (screen.is_scripted ? !screen.wants_full : !has_changed && !is_better)
+    return renew_still(work, screen, key, camera);
   const ImVec2 pixels = ImGui::GetIO().DisplayFramebufferScale;
-  draw_picture(work, screen, static_cast<int>(area.width * pixels.x), static_cast<int>(area.height * pixels.y), care,
-               camera);
+  const int width = static_cast<int>(area.width * pixels.x);
+  screen.picture.resize(width, static_cast<int>(area.height * pixels.y));
+  const Pictured shown = pictured(work, screen);
+  if (shown.is_divided) {
+    screen.picture.draw(shown.reference, camera, look_of(work), care, 0, width / 2);
+    screen.picture.draw(shown.face, camera, look_of(work), care, width / 2, width - width / 2);
+  } else {
+    screen.picture.draw(shown.face, camera, look_of(work), care, 0, width);
+  }
   screen.drawn_care = care;
   screen.picture_key = key;
   screen.wants_full = false;
@@ -287,7 +315,8 @@ void show_layer_chips(Workspace& work, const Area& area) {
   auto opacity = static_cast<float>(l.skin_opacity);
   bool has_ended = false;
   ui::SliderLook look{0.05F, 1.0F, 0.35F, palette().accent, "", "%.2f"};
-  if (ui::slider("Skin opacity", opacity, look, scaled(180), has_ended)) l.skin_opacity = static_cast<double>(opacity);
+  if (ui::slider("Skin opacity", opacity, look, scaled(180), has_ended))
+    l.skin_opacity = static_cast<double>(opacity);
   ui::tooltip("How much the skin hides what lies beneath");
 }
 
@@ -307,7 +336,8 @@ void show_views(Workspace& work, Screen& screen, const Area& area) {
 }
 
 void show_legend(const Workspace& work, const Area& area) {
-  const bool has_distances = work.comparison.has_heat && (work.reference_frame || !work.reference_positions.empty());
+  const bool has_distances =
+      work.comparison.has_heat && (work.reference_frame || !work.reference_positions.empty());
   if (!has_distances && !work.settings.layers.strain) return;
   ImDrawList* list = ImGui::GetWindowDrawList();
   const float width = scaled(14), height = scaled(180);
@@ -317,10 +347,12 @@ void show_legend(const Workspace& work, const Area& area) {
   const int steps = 48;
   const auto shade = [](double share) {
     const Vec3 c = heat_colour(share);
-    return IM_COL32(static_cast<int>(255 * c[0]), static_cast<int>(255 * c[1]), static_cast<int>(255 * c[2]), 255);
+    return IM_COL32(static_cast<int>(255 * c[0]), static_cast<int>(255 * c[1]), static_cast<int>(255 * c[2]),
+                    255);
   };
   for (int i = 0; i < steps; ++i) {
-    const float from = y + height * static_cast<float>(i) / steps, to = y + height * static_cast<float>(i + 1) / steps;
+    const float from = y + height * static_cast<float>(i) / steps,
+                to = y + height * static_cast<float>(i + 1) / steps;
     list->AddRectFilled({x, from}, {x + width, to + 0.5F}, shade(1.0 - (i + 0.5) / steps));
   }
   ImGui::PushFont(fonts().small);
@@ -329,7 +361,8 @@ void show_legend(const Workspace& work, const Area& area) {
   char text[16];
   for (int i = 0; i <= 2; ++i) {
     std::snprintf(text, sizeof text, "%.3g", 0.5 * i * most);
-    list->AddText({x + width + scaled(5), y + height * (1.0F - 0.5F * static_cast<float>(i)) - scaled(7)}, white, text);
+    list->AddText({x + width + scaled(5), y + height * (1.0F - 0.5F * static_cast<float>(i)) - scaled(7)},
+                  white, text);
   }
   list->AddText({x - scaled(2), y - scaled(22)}, white, has_distances ? "mm" : "% shorter");
   ImGui::PopFont();
@@ -342,8 +375,9 @@ void show_muscle_name(const Workspace& work, const Area& area) {
   ImGui::PushFont(fonts().large);
   const ImVec2 size = ImGui::CalcTextSize(text.c_str());
   const ImVec2 at(area.x + 0.5F * (area.width - size.x), area.y + area.height - scaled(92));
-  list->AddRectFilled({at.x - scaled(16), at.y - scaled(7)}, {at.x + size.x + scaled(16), at.y + size.y + scaled(7)},
-                      IM_COL32(20, 21, 24, 205), scaled(10));
+  list->AddRectFilled({at.x - scaled(16), at.y - scaled(7)},
+                      {at.x + size.x + scaled(16), at.y + size.y + scaled(7)}, IM_COL32(20, 21, 24, 205),
+                      scaled(10));
   list->AddText(at, IM_COL32(255, 217, 90, 255), text.c_str());
   ImGui::PopFont();
 }
@@ -363,8 +397,8 @@ void show_viewport(Workspace& work, Screen& screen, const Area& area) {
   if (work.rig && work.frame && area.width > 8 && area.height > 8) {
     renew_picture(work, screen, area);
     ImDrawList* list = ImGui::GetWindowDrawList();
-    list->AddImage(reinterpret_cast<ImTextureID>(static_cast<uintptr_t>(screen.picture.texture())), {area.x, area.y},
-                   {area.x + area.width, area.y + area.height}, {0, 1}, {1, 0});
+    list->AddImage(reinterpret_cast<ImTextureID>(static_cast<uintptr_t>(screen.picture.texture())),
+                   {area.x, area.y}, {area.x + area.width, area.y + area.height}, {0, 1}, {1, 0});
     ImGui::SetCursorScreenPos({area.x, area.y});
     ImGui::SetNextItemWidth(area.width);
     if (shows_landmarks(work) && !work.comparison.is_side_by_side)

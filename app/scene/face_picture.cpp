@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <vector>
 
 #include "geometry/error.h"
 
@@ -43,8 +44,8 @@ void FacePicture::resize(int width, int height) {
   if (!is_complete) throw Error("a window of this size is too large for OpenGL here: make it smaller");
 }
 
-void FacePicture::draw(const view::DrawList& list, const view::Camera& camera, view::Look look, Care care, int x,
-                       int columns) {
+void FacePicture::draw(const view::DrawList& list, const view::Camera& camera, view::Look look, Care care,
+                       int x, int columns) {
   const auto started = std::chrono::steady_clock::now();
   look.has_shadows = care != Care::quick;
   look.has_occlusion = care == Care::full;
@@ -57,6 +58,18 @@ void FacePicture::draw(const view::DrawList& list, const view::Camera& camera, v
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - started).count();
   double& mean = milliseconds_[static_cast<int>(care)];
   mean = mean == 0.0 ? passed : 0.8 * mean + 0.2 * passed;
+}
+
+void FacePicture::show(const view::Image& image) {
+  if (image.width != width_ || image.height != height_) return;
+  // Rows from the bottom, as OpenGL has them.
+  std::vector<uint8_t> rows(image.pixels.size());
+  const auto row = static_cast<std::ptrdiff_t>(width_) * 3;
+  for (int line = 0; line < height_; ++line)
+    std::copy_n(image.pixels.begin() + row * (height_ - 1 - line), row, rows.begin() + row * line);
+  glBindTexture(GL_TEXTURE_2D, texture_);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width_, height_, GL_RGB, GL_UNSIGNED_BYTE, rows.data());
 }
 
 view::Image read_pixels(int x, int y, int width, int height) {

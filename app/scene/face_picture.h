@@ -10,9 +10,9 @@
 
 namespace fascia::app {
 
-/// The picture of the face as a texture of the window's OpenGL context, drawn anew only when something has changed. How
-/// carefully it is drawn follows from how long this machine takes: a moving face is kept fluid, a still one is drawn once
-/// more with everything.
+/// The picture of the face as a texture of the window's OpenGL context, drawn anew only when something has
+/// changed. How carefully it is drawn follows from how long this machine takes: a moving face is kept fluid,
+/// a still one is drawn once more with everything.
 class FacePicture {
  public:
   FacePicture();
@@ -29,7 +29,11 @@ class FacePicture {
   /// Makes the texture `width` by `height`. Throws fascia::Error when that is too large for the driver.
   void resize(int width, int height);
   /// Draws into the rectangle from (x, 0) on, `columns` wide, over the whole height.
-  void draw(const view::DrawList& list, const view::Camera& camera, view::Look look, Care care, int x, int columns);
+  void draw(const view::DrawList& list, const view::Camera& camera, view::Look look, Care care, int x,
+            int columns);
+
+  /// Puts a picture of the texture's size in its place.
+  void show(const view::Image& image);
 
   /// Mean milliseconds of the last pictures of that care; 0 before the first.
   double milliseconds(Care care) const { return milliseconds_[static_cast<int>(care)]; }

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
+
+#include "view/smooth_normals.h"
 
 namespace fascia::app {
 
@@ -31,6 +34,12 @@ bool is_eye(const std::string& part) {
 /// Cards that only their textures' transparency makes thin; plain, they would hide the face.
 bool is_card(const std::string& part) {
   return part == "eye_surround" || part == "lashes" || part == "hair";
+}
+
+/// What is neither eye, mouth, hair nor card.
+bool is_skin(const std::string& part) {
+  return !is_eye(part) && !is_card(part) && part != "brows" && part != "tongue" && part != "mouth_interior" &&
+         !starts_with(part, "teeth") && !starts_with(part, "gums");
 }
 
 void set_look(view::DrawSurface& surface, const std::string& part) {
@@ -80,8 +89,9 @@ std::vector<Vec3> eye_coordinates(const FacePart& part, const rig::Eye& eye) {
 }  // namespace
 
 Vec3 heat_colour(double share) {
-  static const std::array<Vec3, 6> stops = {Vec3(0.23, 0.20, 0.42), Vec3(0.42, 0.20, 0.56), Vec3(0.74, 0.22, 0.45),
-                                            Vec3(0.93, 0.41, 0.24), Vec3(0.99, 0.68, 0.22), Vec3(0.98, 0.97, 0.65)};
+  static const std::array<Vec3, 6> stops = {Vec3(0.23, 0.20, 0.42), Vec3(0.42, 0.20, 0.56),
+                                            Vec3(0.74, 0.22, 0.45), Vec3(0.93, 0.41, 0.24),
+                                            Vec3(0.99, 0.68, 0.22), Vec3(0.98, 0.97, 0.65)};
   const double at = std::clamp(std::isfinite(share) ? share : 0.0, 0.0, 1.0) * (stops.size() - 1);
   const auto low = std::min(static_cast<size_t>(at), stops.size() - 2);
   return stops[low] + (at - static_cast<double>(low)) * (stops[low + 1] - stops[low]);
@@ -93,41 +103,66 @@ Vec3 muscle_colour(double activation) {
 }
 
 SceneStore::SceneStore(const FaceAsset& asset, const rig::Rig& rig) : asset_(asset) {
-  for (const FacePart& part : asset.parts) {
+  std::vector<Vec3> rest;
+  for (size_t p = 0; p < asset.parts.size(); ++p) {
+    const FacePart& part = asset.parts[p];
     const rig::Eye& eye = part.part == "eye_left" ? rig.skull.eye_left : rig.skull.eye_right;
     eye_coordinates_.push_back(is_eye(part.part) && eye.radius > 0.0F ? eye_coordinates(part, eye)
-                                                                     : std::vector<Vec3>());
+                                                                      : std::vector<Vec3>());
+    if (!is_skin(part.part)) continue;
+    skin_parts_.push_back(p);
+    const int first = static_cast<int>(rest.size());
+    for (const Triangle& t : part.triangles)
+      skin_triangles_.push_back({t[0] + first, t[1] + first, t[2] + first});
+    const std::vector<Vec3> points = points_of(part.rest);
+    rest.insert(rest.end(), points.begin(), points.end());
   }
+  skin_seams_ = std::make_shared<const std::vector<int>>(view::seams_of(rest));
 }
 
-void SceneStore::add_part(view::DrawList& list, size_t part, const FaceFrame& frame,
-                          const SceneOptions& options) const {
-  const FacePart& source = asset_.parts[part];
-  if (is_card(source.part)) return;
+void SceneStore::add_skin(view::DrawList& list, const FaceFrame& frame, const SceneOptions& options) const {
   view::DrawSurface surface;
-  set_look(surface, source.part);
-  surface.positions = points_of(frame.positions[part]);
-  surface.normals = points_of(frame.normals[part]);
-  surface.triangles = source.triangles;
-  surface.eye_coordinates = eye_coordinates_[part];
-  const bool is_skin = surface.shading == view::Shading::skin;
-  if (is_skin && options.distances && (*options.distances)[part].size() == surface.positions.size()) {
+  set_look(surface, "skin");
+  surface.triangles = skin_triangles_;
+  surface.seams = skin_seams_;
+  const bool has_heat = options.distances != nullptr, has_strain = !has_heat && options.layers.strain;
+  const double strongest = 0.3;  // compression, share of the length
+  for (const size_t part : skin_parts_) {
+    const std::vector<Vec3> points = points_of(frame.positions[part]);
+    surface.positions.insert(surface.positions.end(), points.begin(), points.end());
+    if (!has_heat && !has_strain) continue;
     surface.shading = view::Shading::data;
-    for (const float distance : (*options.distances)[part])
-      surface.vertex_colours.push_back(heat_colour(static_cast<double>(distance) / options.scale));
-  } else if (is_skin && options.layers.strain && part < frame.compression.size()) {
-    const double most = 0.3;  // share of the length
-    surface.shading = view::Shading::data;
-    for (const Vec3& compression : points_of(frame.compression[part]))
-      surface.vertex_colours.push_back(heat_colour(compression.norm() / most));
-  } else if (is_skin && options.layers.skin_opacity < 0.999) {
+    for (size_t v = 0; v < points.size(); ++v) {
+      double share = 0.0;
+      if (has_heat && v < (*options.distances)[part].size())
+        share = static_cast<double>((*options.distances)[part][v]) / options.scale;
+      if (has_strain && part < frame.compression.size() && 3 * v + 2 < frame.compression[part].size())
+        share = static_cast<double>(
+                    Eigen::Map<const Eigen::Vector3f>(frame.compression[part].data() + 3 * v).norm()) /
+                strongest;
+      surface.vertex_colours.push_back(heat_colour(share));
+    }
+  }
+  if (!has_heat && !has_strain && options.layers.skin_opacity < 0.999) {
     surface.opacity = options.layers.skin_opacity;
     surface.is_two_sided = false;
   }
   list.surfaces.push_back(std::move(surface));
 }
 
-void SceneStore::add_muscles(view::DrawList& list, const FaceFrame& frame, const SceneOptions& options) const {
+void SceneStore::add_part(view::DrawList& list, size_t part, const FaceFrame& frame) const {
+  const FacePart& source = asset_.parts[part];
+  view::DrawSurface surface;
+  set_look(surface, source.part);
+  surface.positions = points_of(frame.positions[part]);
+  surface.normals = points_of(frame.normals[part]);
+  surface.triangles = source.triangles;
+  surface.eye_coordinates = eye_coordinates_[part];
+  list.surfaces.push_back(std::move(surface));
+}
+
+void SceneStore::add_muscles(view::DrawList& list, const FaceFrame& frame,
+                             const SceneOptions& options) const {
   std::map<std::string, std::pair<view::DrawLines, double>> muscles;
   for (size_t f = 0; f + 1 < asset_.fibre_offsets.size(); ++f) {
     const std::string& name = asset_.fibre_muscles[f];
@@ -154,8 +189,10 @@ view::DrawList SceneStore::list(const FaceFrame& frame, const SceneOptions& opti
   const Layers& layers = options.layers;
   for (size_t part = 0; part < asset_.parts.size(); ++part) {
     const std::string& kind = asset_.parts[part].part;
-    if (layers.skin || is_eye(kind)) add_part(list, part, frame, options);
+    if (is_skin(kind) || is_card(kind)) continue;
+    if (layers.skin || is_eye(kind)) add_part(list, part, frame);
   }
+  if (layers.skin && !skin_parts_.empty()) add_skin(list, frame, options);
   if (layers.skull) {
     add_surface(list, asset_.cranium, still, view::Shading::bone, bone_colour, 1.0);
     add_surface(list, asset_.mandible, jaw, view::Shading::bone, bone_colour, 1.0);

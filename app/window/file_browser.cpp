@@ -30,8 +30,8 @@ void FileBrowser::ask_to_open(const std::string& title, std::vector<std::string>
   begin(title, std::move(endings), std::move(chosen));
 }
 
-void FileBrowser::ask_to_save(const std::string& title, const std::string& name, std::vector<std::string> endings,
-                              Chosen chosen) {
+void FileBrowser::ask_to_save(const std::string& title, const std::string& name,
+                              std::vector<std::string> endings, Chosen chosen) {
   is_saving_ = true;
   name_ = name;
   begin(title, std::move(endings), std::move(chosen));
@@ -61,7 +61,8 @@ void FileBrowser::read_folder() {
     const bool is_folder = entry->is_directory(kind);
     if (name.empty() || name[0] == '.') continue;
     const std::string ending = lower(entry->path().extension().string());
-    if (!is_folder && !endings_.empty() && std::find(endings_.begin(), endings_.end(), ending) == endings_.end())
+    if (!is_folder && !endings_.empty() &&
+        std::find(endings_.begin(), endings_.end(), ending) == endings_.end())
       continue;
     entries_.push_back({name, is_folder});
   }
@@ -108,7 +109,8 @@ void FileBrowser::show() {
   ImGui::SetNextWindowSize({std::min(scaled(640), window.x - 20), std::min(scaled(480), window.y - 20)});
   if (std::exchange(begins_, false)) ImGui::OpenPopup("##browser");
   const Palette& p = palette();
-  if (!ImGui::BeginPopupModal("##browser", nullptr, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoTitleBar)) {
+  if (!ImGui::BeginPopupModal("##browser", nullptr,
+                              ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoTitleBar)) {
     is_open_ = false;
     return;
   }
@@ -145,7 +147,8 @@ void FileBrowser::show() {
   }
   ImGui::SetNextItemWidth(width);
   if (is_saving_ && ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
-  const bool is_entered = ImGui::InputTextWithHint("##name", "Name or path", &name_, ImGuiInputTextFlags_EnterReturnsTrue);
+  const bool is_entered =
+      ImGui::InputTextWithHint("##name", "Name or path", &name_, ImGuiInputTextFlags_EnterReturnsTrue);
   ImGui::AlignTextToFramePadding();
   ImGui::TextColored(p.warning, "%s", fault_.c_str());
   const float buttons = scaled(100);
@@ -153,7 +156,8 @@ void FileBrowser::show() {
   const bool is_cancelled = ui::button("Cancel##browser", ui::Emphasis::quiet, buttons) ||
                             ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
   ImGui::SameLine();
-  const bool is_taken = ui::button(is_saving_ ? "Save##browser" : "Open##browser", ui::Emphasis::strong, buttons);
+  const bool is_taken =
+      ui::button(is_saving_ ? "Save##browser" : "Open##browser", ui::Emphasis::strong, buttons);
   if (is_taken || is_entered || is_double)
     accept(name_);
   else if (is_cancelled)

@@ -15,7 +15,8 @@ class FileBrowser {
   /// Asks for a file that ends in one of `endings` (lower case, with dot; none: any).
   void ask_to_open(const std::string& title, std::vector<std::string> endings, Chosen chosen);
   /// Asks where to write; `name` is proposed.
-  void ask_to_save(const std::string& title, const std::string& name, std::vector<std::string> endings, Chosen chosen);
+  void ask_to_save(const std::string& title, const std::string& name, std::vector<std::string> endings,
+                   Chosen chosen);
 
   /// Draws the dialog while it is open.
   void show();

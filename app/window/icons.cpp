@@ -18,7 +18,11 @@ constexpr float pi = 3.14159265F;
 class Pen {
  public:
   Pen(ImDrawList* list, ImVec2 centre, float size, ImU32 colour)
-      : list_(list), centre_(centre), half_(0.5F * size), colour_(colour), width_(std::max(1.3F, size / 13.0F)) {}
+      : list_(list),
+        centre_(centre),
+        half_(0.5F * size),
+        colour_(colour),
+        width_(std::max(1.3F, size / 13.0F)) {}
 
   void line(std::initializer_list<ImVec2> points, bool is_closed = false) {
     std::vector<ImVec2> placed;

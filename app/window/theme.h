@@ -6,7 +6,8 @@ namespace fascia::app {
 
 /// The window's colours, in a dark and a light dress.
 struct Palette {
-  ImVec4 window, panel, raised, hover, line, text, faint, accent, accent_text, left, right, good, warning, bad;
+  ImVec4 window, panel, raised, hover, line, text, faint, accent, accent_text, left, right, good, warning,
+      bad;
   ImVec4 viewport;
 };
 
@@ -18,8 +19,8 @@ struct Fonts {
 };
 const Fonts& fonts();
 
-/// Loads the fonts (Lato, else DejaVu Sans, else the built-in one) and sets colours, spacing and rounding, all times
-/// `scale`. To be called between frames; the caller renews the font texture.
+/// Loads the fonts (Lato, else DejaVu Sans, else the built-in one) and sets colours, spacing and rounding,
+/// all times `scale`. To be called between frames; the caller renews the font texture.
 void apply_theme(bool is_light, float scale);
 
 /// The scale in use: lengths in panels are given for 1 and multiplied by it.

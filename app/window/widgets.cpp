@@ -65,7 +65,8 @@ bool chip(const std::string& name, bool& is_on) {
   ImDrawList* list = ImGui::GetWindowDrawList();
   const ImVec4 fill = is_on ? p.accent : ImGui::IsItemHovered() ? p.hover : p.raised;
   list->AddRectFilled(at, {at.x + box.x, at.y + box.y}, colour_of(fill, is_on ? 1.0F : 0.92F), 0.5F * box.y);
-  list->AddText({at.x + scaled(11), at.y + scaled(5)}, colour_of(is_on ? p.accent_text : p.text), text.c_str());
+  list->AddText({at.x + scaled(11), at.y + scaled(5)}, colour_of(is_on ? p.accent_text : p.text),
+                text.c_str());
   return is_pressed;
 }
 
@@ -91,9 +92,11 @@ bool choice(const char* const* names, int count, int& chosen, float width) {
     }
     note(names[i]);
     if (chosen == i)
-      list->AddRectFilled({x + 2, at.y + 2}, {x + cell - 2, at.y + height - 2}, colour_of(p.accent), scaled(5));
+      list->AddRectFilled({x + 2, at.y + 2}, {x + cell - 2, at.y + height - 2}, colour_of(p.accent),
+                          scaled(5));
     else if (ImGui::IsItemHovered())
-      list->AddRectFilled({x + 2, at.y + 2}, {x + cell - 2, at.y + height - 2}, colour_of(p.hover), scaled(5));
+      list->AddRectFilled({x + 2, at.y + 2}, {x + cell - 2, at.y + height - 2}, colour_of(p.hover),
+                          scaled(5));
     list->AddText({x + 0.5F * room, at.y + 0.5F * (height - text.y)},
                   colour_of(chosen == i ? p.accent_text : p.text), names[i]);
     x += cell;
@@ -191,8 +194,10 @@ bool star(const std::string& name, bool is_on) {
   note(name);
   ImVec2 points[10];
   for (int i = 0; i < 10; ++i) {
-    const float angle = 0.6283185F * static_cast<float>(i) - 1.5707963F, radius = (i % 2 ? 0.2F : 0.46F) * size;
-    points[i] = {at.x + 0.5F * size + radius * std::cos(angle), at.y + 0.5F * size + radius * std::sin(angle)};
+    const float angle = 0.6283185F * static_cast<float>(i) - 1.5707963F,
+                radius = (i % 2 ? 0.2F : 0.46F) * size;
+    points[i] = {at.x + 0.5F * size + radius * std::cos(angle),
+                 at.y + 0.5F * size + radius * std::sin(angle)};
   }
   ImDrawList* list = ImGui::GetWindowDrawList();
   const ImU32 colour = colour_of(is_on ? palette().warning : palette().faint, is_on ? 1.0F : 0.6F);
@@ -210,7 +215,8 @@ bool star(const std::string& name, bool is_on) {
 
 bool search(const char* hint_text, std::string& text, float width) {
   ImGui::SetNextItemWidth(width);
-  const bool has_changed = ImGui::InputTextWithHint((std::string("##") + hint_text).c_str(), hint_text, &text);
+  const bool has_changed =
+      ImGui::InputTextWithHint((std::string("##") + hint_text).c_str(), hint_text, &text);
   note(hint_text);
   return has_changed;
 }

@@ -5,8 +5,8 @@
 #include <map>
 #include <string>
 
-/// The few widgets that the panels are made of. Each puts where it stands under its name, so that a script finds it as a
-/// hand would.
+/// The few widgets that the panels are made of. Each puts where it stands under its name, so that a script
+/// finds it as a hand would.
 namespace fascia::app::ui {
 
 /// Where the items of the last whole frame were, in pixels, by name.
@@ -30,8 +30,9 @@ bool choice(const char* const* names, int count, int& chosen, float width);
 /// A checkbox.
 bool check(const std::string& name, bool& is_on);
 
-/// A slider that fills from `rest`; `tint` colours the filling, `tag` stands before it (L, R, or nothing). A double click
-/// brings it back to rest, a click with Ctrl lets the value be typed. `has_ended` when the hand lets go.
+/// A slider that fills from `rest`; `tint` colours the filling, `tag` stands before it (L, R, or nothing). A
+/// double click brings it back to rest, a click with Ctrl lets the value be typed. `has_ended` when the hand
+/// lets go.
 struct SliderLook {
   float minimum = 0.0F, maximum = 1.0F, rest = 0.0F;
   ImVec4 tint;

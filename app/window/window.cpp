@@ -40,7 +40,8 @@ void apply(const SyntheticInput& input) {
 
 Window::Window(int width, int height, const std::string& title) {
   if (!glfwInit())
-    throw Error("the window needs a display, and there is none (" + reason() + "): run it on a desktop, or under xvfb-run");
+    throw Error("the window needs a display, and there is none (" + reason() +
+                "): run it on a desktop, or under xvfb-run");
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
@@ -49,7 +50,8 @@ Window::Window(int width, int height, const std::string& title) {
   if (!window_) {
     const std::string why = reason();
     glfwTerminate();
-    throw Error("no window with OpenGL 3.3 is to be had: " + why + "; install a newer graphics driver or Mesa");
+    throw Error("no window with OpenGL 3.3 is to be had: " + why +
+                "; install a newer graphics driver or Mesa");
   }
   glfwMakeContextCurrent(window_);
   glfwSwapInterval(1);
@@ -95,6 +97,10 @@ void Window::end_frame(const std::function<void()>& before_swap) {
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
   if (before_swap) before_swap();
   glfwSwapBuffers(window_);
+}
+
+void Window::drop_frame() {
+  ImGui::EndFrame();
 }
 
 bool Window::wants_to_close() const {

@@ -28,11 +28,14 @@ class Window {
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
 
-  /// Takes events in, waiting for one up to `seconds`, and begins a frame. `synthetic` stands in for the hand when it is
-  /// not null; the frame then lasts a sixtieth of a second.
+  /// Takes events in, waiting for one up to `seconds`, and begins a frame. `synthetic` stands in for the hand
+  /// when it is not null; the frame then lasts a sixtieth of a second.
   void begin_frame(double seconds, const SyntheticInput* synthetic);
-  /// Draws what Dear ImGui has and shows it; `before_swap` sees the whole picture in the window's framebuffer.
+  /// Draws what Dear ImGui has and shows it; `before_swap` sees the whole picture in the window's
+  /// framebuffer.
   void end_frame(const std::function<void()>& before_swap);
+  /// Ends a frame that nobody sees.
+  void drop_frame();
 
   bool wants_to_close() const;
   void resize(int width, int height);

@@ -24,8 +24,10 @@ const std::map<std::string, std::set<std::string>> rooms = {
     {"runtime", {"rig/model", "rig/read", "gltf/read", "sim", "geometry"}},
     {"check", {"geometry", "anatomy", "rig/model", "rig/read", "builder/spatial"}},
     {"view", {"geometry", "rig"}},
+    {"app", {"geometry", "formats", "anatomy", "rig", "builder", "view"}},
     {"cli",
-     {"geometry", "gltf", "formats", "anatomy", "rig", "sim", "builder", "check", "fit", "runtime", "view"}},
+     {"app", "geometry", "gltf", "formats", "anatomy", "rig", "sim", "builder", "check", "fit", "runtime",
+      "view"}},
     {"samples", {}},
 };
 
