@@ -6,7 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/common.h"
+#include "cli/fit_landmarks.h"
 #include "cli/fit_output.h"
+#include "cli/fit_scan.h"
 #include "cli/fit_target.h"
 #include "fit/fit.h"
 #include "formats/scene.h"
@@ -17,7 +19,7 @@ namespace fascia::cli {
 namespace {
 
 struct Request {
-  std::filesystem::path rig, target, output, report;
+  std::filesystem::path rig, target, neutral, output, report;
   std::string level, shape;
   FitTargetOptions reading;
   fit::FitOptions fitting;
@@ -58,17 +60,49 @@ nlohmann::ordered_json summary(const std::vector<fit::FitResult>& results,
   return {{"share", whole > 0.0 ? 1.0 - left / whole : 1.0}, {"error_mm", error}, {"iterations", iterations}};
 }
 
-void run(const Common& common, const Request& request) {
-  const auto started = std::chrono::steady_clock::now();
-  check_output(request.output, {request.rig, request.target});
-  if (!request.report.empty()) make_output_folder(request.report);
-  fit::Subject subject(rig::read(formats::read_bytes(request.rig), request.rig.string()), request.level);
-  FitTargets targets = open_fit_targets(common, request.target, subject, request.reading);
+bool is_landmark_file(const std::filesystem::path& path) {
+  return path.extension() == ".json";
+}
+
+/// One mesh of another topology than the rig's, or one that is said to be a scan.
+bool is_scan(const Request& request, const fit::Subject& subject) {
+  if (request.reading.as != "auto") return request.reading.as == "scan";
+  const std::filesystem::path& path = request.target;
+  const std::string extension = path.extension().string();
+  if (std::filesystem::is_directory(path) || extension == ".pc2" || extension == ".mdd" ||
+      is_landmark_file(path))
+    return false;
+  return !has_rig_topology(subject, formats::read(path));
+}
+
+void fit_one_scan(const Common& common, const Request& request, fit::Subject& subject, FitTargets& targets,
+                  std::vector<fit::FitResult>& results, std::vector<double>& motion,
+                  nlohmann::ordered_json& figures) {
+  targets.names = {request.target.filename().string()};
+  check_fit_output(request.output, targets);
+  common.progress("reading the scan");
+  const bool may_move = request.reading.head_pose != "fixed";
+  const PlacedScan scan = place_scan(subject, formats::read(request.target), may_move);
+  for (const std::string& warning : scan.warnings)
+    common.warn(warning);
+  common.progress("fit " + targets.names.front());
+  fit::ScanOptions options;
+  options.moves_head = may_move;
+  const fit::ScanFit fitted = fit::fit_scan(subject, scan.mesh, request.fitting, options);
+  targets.target = [target = fitted.target](size_t) { return target; };
+  results = {fitted.result};
+  motion = {1.0};
+  figures = {{"matched_share", fitted.matched_share}};
+}
+
+void fit_targets(const Common& common, const Request& request, fit::Subject& subject, FitTargets& targets,
+                 std::vector<fit::FitResult>& results, std::vector<double>& motion) {
+  targets = is_landmark_file(request.target)
+                ? landmark_targets(common, request.target, request.neutral, subject, request.reading)
+                : open_fit_targets(common, request.target, subject, request.reading);
   choose_shape(request, targets);
   check_fit_output(request.output, targets);
   fit::Fitter fitter(subject, request.fitting);
-  std::vector<fit::FitResult> results;
-  std::vector<double> motion;
   for (size_t i = 0; i < targets.names.size(); ++i) {
     common.progress("fit " + targets.names[i]);
     const fit::Target target = targets.target(i);
@@ -78,10 +112,26 @@ void run(const Common& common, const Request& request) {
       common.warn(targets.names[i] + ": still falling after " + std::to_string(results.back().iterations) +
                   " steps; what is found so far is written");
   }
+}
+
+void run(const Common& common, const Request& request) {
+  const auto started = std::chrono::steady_clock::now();
+  check_output(request.output, {request.rig, request.target});
+  if (!request.report.empty()) make_output_folder(request.report);
+  fit::Subject subject(rig::read(formats::read_bytes(request.rig), request.rig.string()), request.level);
+  FitTargets targets;
+  std::vector<fit::FitResult> results;
+  std::vector<double> motion;
+  nlohmann::ordered_json scan_figures;
+  if (is_scan(request, subject))
+    fit_one_scan(common, request, subject, targets, results, motion, scan_figures);
+  else
+    fit_targets(common, request, subject, targets, results, motion);
   write_fit(request.output, subject, targets, results, request.reading.fps);
   if (!request.report.empty()) write_fit_report(request.report, subject, targets, results);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   nlohmann::ordered_json report = {{"output", request.output.string()}, {"level", subject.level_name()}};
+  if (!scan_figures.is_null()) report.update(scan_figures);
   if (results.size() == 1) {
     report.update(figures(subject, results[0]));
   } else {
@@ -111,7 +161,8 @@ void add_fit(const Command& tool, Common& common) {
       .option(
           "--target", &request->target,
           "Mesh of the rig's topology (.glb, .gltf, .obj, .ply, .stl), its morph targets or their animation, "
-          "a cache (.pc2, .mdd) or a folder of meshes, one a frame")
+          "a cache (.pc2, .mdd), a folder of meshes, one a frame, a scan of any topology, or landmarks "
+          "(.json)")
       .required();
   command
       .option("-o,--output", &request->output,
@@ -123,7 +174,11 @@ void add_fit(const Command& tool, Common& common) {
   add_level_option(command, request->level);
   command.option("--shape", &request->shape, "Fit one morph target only").default_text("all");
   command.option("--as", &request->reading.as, "What to fit of a file with morph targets")
-      .one_of({"auto", "mesh", "shapes", "take"});
+      .one_of({"auto", "mesh", "shapes", "take", "scan"});
+  command
+      .option("--neutral", &request->neutral,
+              "Landmarks of the face at rest by the same detector, for a target of landmarks (.json)")
+      .default_text("the rig's own landmarks");
   command
       .option("--head-pose", &request->reading.head_pose,
               "auto: the head's own motion is taken out where parts that cannot move have moved")
