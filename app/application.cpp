@@ -42,6 +42,7 @@ class Application {
     screen_ = std::make_unique<Screen>();
     screen_->is_scripted = script_.has_value();
     screen_->browser.folder = work_.settings.export_folder;
+    if (monkey_) screen_->browser.folder = screen_->browser.confined_to = state_;
     window_.on_drop = [this](const std::vector<std::string>& files) {
       for (const std::string& file : files)
         work_.open(file);
@@ -93,7 +94,9 @@ class Application {
   /// How long the loop may sleep until something happens by itself.
   double patience() const {
     if (script_ || monkey_) return 0.0;
-    if (!work_.is_idle() || work_.orbit_moves || !work_.notices.empty()) return 0.001;
+    const double passed = std::chrono::duration<double>(Clock::now() - frame_began_).count();
+    if (!work_.is_idle() || work_.orbit_moves || !work_.notices.empty())
+      return std::max(1.0 / 60.0 - passed, 0.001);
     if (work_.live) return 1.0 / 60.0;
     return screen_->since_motion < 0.5 ? 0.02 : 0.25;
   }
@@ -103,7 +106,7 @@ class Application {
     if (monkey_) monkey_->advance(work_, *screen_, window_);
     const SyntheticInput* hand = script_ ? &script_->input() : monkey_ ? &monkey_->input() : nullptr;
     window_.begin_frame(patience(), hand);
-    const auto started = Clock::now();
+    const auto started = frame_began_ = Clock::now();
     ui::begin_items();
     const double seconds = std::min(static_cast<double>(ImGui::GetIO().DeltaTime), 0.1);
     act_on_keys(work_, *screen_);
@@ -173,6 +176,7 @@ class Application {
   std::optional<ScriptRunner> script_;
   std::optional<Monkey> monkey_;
   std::vector<double> times_;
+  Clock::time_point frame_began_ = Clock::now();
 };
 
 }  // namespace

@@ -1,7 +1,7 @@
 #include "app/monkey.h"
 
+#define GLFW_INCLUDE_NONE  // epoxy has OpenGL
 #include <GLFW/glfw3.h>
-#include <epoxy/gl.h>
 
 #include "app/window/widgets.h"
 

@@ -1,7 +1,7 @@
 #include "app/script_runner.h"
 
+#define GLFW_INCLUDE_NONE  // epoxy has OpenGL
 #include <GLFW/glfw3.h>
-#include <epoxy/gl.h>
 
 #include <algorithm>
 #include <cctype>

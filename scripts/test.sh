@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Sets up, builds with warnings as errors, and runs the tests.
 #   scripts/test.sh [--full]
-# --full: also clang, sanitizers, the glTF validator and the demo.
+# --full: also clang, sanitizers, five minutes of random input in the window, the glTF validator and the demo.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -24,5 +24,8 @@ run_suite ci build
 if [ "$full" = 1 ]; then
   run_suite clang build/clang
   ASAN_OPTIONS=detect_leaks=0 run_suite asan build/asan
+  # Random keys and mouse in the window, five minutes.
+  ASAN_OPTIONS=detect_leaks=0 xvfb-run -a -s '-screen 0 1600x1000x24' \
+    build/asan/bin/fascia view --monkey "$(date +%j)" --seconds 300
   tests/validator/validate.sh build/bin/fascia
 fi

@@ -88,6 +88,9 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 38> regions 
 
 SplitName split_side(std::string_view name) {
   const std::string_view member = set_and_member(name).second;
+  // Motions to one side are no halves of a pair.
+  for (const char* motion : {"jawLeft", "jawRight", "mouthLeft", "mouthRight"})
+    if (member == motion) return {std::string(member), Half::none};
   for (const auto& [ending, half] : {std::pair("_left", Half::left),
                                      {"_right", Half::right},
                                      {"Left", Half::left},
@@ -108,7 +111,6 @@ std::string mirrored(std::string_view name) {
   if (is_number(split.base)) return prefix + (to_right ? "R" : "L") + split.base;
   if (member.find('_') != std::string_view::npos)
     return prefix + split.base + (to_right ? "_right" : "_left");
-  // jawLeft and mouthRight are motions, and mirror as such all the same.
   return prefix + split.base + (to_right ? "Right" : "Left");
 }
 

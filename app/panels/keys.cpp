@@ -1,6 +1,5 @@
-// epoxy comes before GLFW, which would bring its own OpenGL header.
+#define GLFW_INCLUDE_NONE  // epoxy has OpenGL
 #include <GLFW/glfw3.h>
-#include <epoxy/gl.h>
 
 #include <algorithm>
 

@@ -146,13 +146,13 @@ void show_export_panel(Workspace& work, Screen& screen) {
     ui::hint(what);
     ImGui::Dummy({0, scaled(2)});
   };
-  entry("Rig", "The head with its anatomy (.glb), for the runtime and for later.", stem + "_rig.glb",
+  entry("Export rig", "The head with its anatomy (.glb), for the runtime and for later.", stem + "_rig.glb",
         {".glb"}, [&work](const std::filesystem::path& file) { work.save_rig(file); });
-  entry("Pose", "The mesh as it stands, in the file's own vertex order.", stem + "_posed.glb",
+  entry("Export pose", "The mesh as it stands, in the file's own vertex order.", stem + "_posed.glb",
         {".glb", ".obj", ".ply"}, [&work, rig](const std::filesystem::path& file) {
           work.run(pose_command(work.state(), rig, file), "Export " + file.filename().string());
         });
-  entry("ARKit shapes", "52 morph targets with ARKit's names.", stem + "_arkit.glb", {".glb"},
+  entry("Export ARKit shapes", "52 morph targets with ARKit's names.", stem + "_arkit.glb", {".glb"},
         [&work, rig](const std::filesystem::path& file) {
           work.run(bake_command(rig, "arkit", file), "Export " + file.filename().string());
         });
@@ -160,7 +160,7 @@ void show_export_panel(Workspace& work, Screen& screen) {
     ui::SliderLook look{12.0F, 120.0F, 60.0F, palette().accent, "", "%.0f"};
     auto fps = static_cast<float>(screen.export_fps);
     bool has_ended = false;
-    entry("Animation",
+    entry("Export animation",
           "The recording's piece, simulated: morph targets and curves, or a point cache (.pc2, .mdd).",
           stem + "_take.glb", {".glb", ".pc2", ".mdd"},
           [&work, &screen](const std::filesystem::path& file) { work.export_take(file, screen.export_fps); });
@@ -171,13 +171,13 @@ void show_export_panel(Workspace& work, Screen& screen) {
   } else {
     ui::hint("Load a recording in the timeline to export an animation.");
   }
-  entry("Picture", "The pose, 1600 pixels high, with the layers shown.", stem + ".png", {".png"},
+  entry("Draw a picture", "The pose, 1600 pixels high, with the layers shown.", stem + ".png", {".png"},
         [&work, rig](const std::filesystem::path& file) {
           work.run(
               render_command(work.state(), rig, names_of(work.settings.layers), "three-quarter", 1600, file),
               "Draw " + file.filename().string());
         });
-  entry("Turntable", "A film once around the head.", stem + ".mp4", {".mp4"},
+  entry("Film a turntable", "A film once around the head.", stem + ".mp4", {".mp4"},
         [&work, rig](const std::filesystem::path& file) {
           work.run(render_command(work.state(), rig, names_of(work.settings.layers), "turntable", 800, file),
                    "Film " + file.filename().string());

@@ -160,7 +160,6 @@ void show_pose_panel(Workspace& work, Screen& screen) {
   if (!work.rig) return ui::hint("Open a head to pose it.");
   const FaceAsset& asset = *work.rig->asset;
   const float width = ImGui::GetContentRegionAvail().x;
-  std::vector<const char*> names = {"Muscles##vocabulary"};
   std::vector<const char*> titles = {"Muscles"};
   std::vector<int> numbers = {0};
   for (size_t s = 0; s < asset.sets.size(); ++s)
@@ -172,7 +171,7 @@ void show_pose_panel(Workspace& work, Screen& screen) {
   for (size_t i = 0; i < numbers.size(); ++i)
     if (numbers[i] == screen.vocabulary) chosen = static_cast<int>(i);
   ImGui::PushFont(fonts().small);
-  ui::choice(titles.data(), static_cast<int>(titles.size()), chosen, width);
+  ui::choice("set", titles.data(), static_cast<int>(titles.size()), chosen, width);
   ImGui::PopFont();
   screen.vocabulary = numbers[static_cast<size_t>(chosen)];
   ui::search("Search", screen.pose_search, width);

@@ -57,6 +57,8 @@ void show_top_bar(Workspace& work, Screen& screen, const Area& area);
 void show_rail(Workspace& work, Screen& screen, const Area& area);
 void show_side_panel(Workspace& work, Screen& screen, const Area& area);
 void show_viewport(Workspace& work, Screen& screen, const Area& area);
+/// Draws the face into the screen's picture when it has changed, or can be drawn with more care than it is.
+void renew_picture(Workspace& work, Screen& screen, const Area& area);
 void show_timeline(Workspace& work, Screen& screen, const Area& area);
 void show_status(Workspace& work, Screen& screen, const Area& area);
 void show_start(Workspace& work, Screen& screen, const Area& area);

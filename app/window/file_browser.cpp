@@ -90,6 +90,11 @@ bool FileBrowser::accept(const std::string& name) {
     fault_ = "The folder is not there";
     return false;
   }
+  if (is_saving_ && !confined_to.empty() &&
+      fs::weakly_canonical(path.parent_path(), status) != fs::canonical(confined_to, status)) {
+    fault_ = "Nothing is written here";
+    return false;
+  }
   if (is_saving_ && fs::exists(path, status) && !asks_to_replace_) {
     asks_to_replace_ = true;
     fault_ = "It is there already: press again to replace it";

@@ -22,7 +22,8 @@ class FileBrowser {
   void show();
   bool is_open() const { return is_open_; }
 
-  std::filesystem::path folder;  ///< where it looks, kept from one time to the next
+  std::filesystem::path confined_to;  ///< nothing is written outside of this folder; empty: anywhere
+  std::filesystem::path folder;       ///< where it looks, kept from one time to the next
 
  private:
   struct Entry {

@@ -70,7 +70,7 @@ bool chip(const std::string& name, bool& is_on) {
   return is_pressed;
 }
 
-bool choice(const char* const* names, int count, int& chosen, float width) {
+bool choice(const char* kind, const char* const* names, int count, int& chosen, float width) {
   const Palette& p = palette();
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float height = ImGui::GetFrameHeight();
@@ -90,7 +90,7 @@ bool choice(const char* const* names, int count, int& chosen, float width) {
       chosen = i;
       has_changed = true;
     }
-    note(names[i]);
+    note(std::string(kind) + " " + names[i]);
     if (chosen == i)
       list->AddRectFilled({x + 2, at.y + 2}, {x + cell - 2, at.y + height - 2}, colour_of(p.accent),
                           scaled(5));

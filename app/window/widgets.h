@@ -24,8 +24,9 @@ bool button(const std::string& name, Emphasis emphasis = Emphasis::plain, float 
 /// A rounded switch that is filled while it is on.
 bool chip(const std::string& name, bool& is_on);
 
-/// A row of buttons of which one is pressed in; returns whether another was chosen.
-bool choice(const char* const* names, int count, int& chosen, float width);
+/// A row of buttons of which one is pressed in; returns whether another was chosen. Scripts know them as KIND
+/// NAME.
+bool choice(const char* kind, const char* const* names, int count, int& chosen, float width);
 
 /// A checkbox.
 bool check(const std::string& name, bool& is_on);

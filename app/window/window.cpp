@@ -1,8 +1,9 @@
 #include "app/window/window.h"
 
-#include <epoxy/gl.h>
-// epoxy comes before GLFW, which would bring its own OpenGL header.
+#define GLFW_INCLUDE_NONE  // epoxy has OpenGL
 #include <GLFW/glfw3.h>
+
+#include <epoxy/gl.h>
 #include <imgui.h>
 #include <imgui_impl_glfw.h>
 #include <imgui_impl_opengl3.h>
@@ -58,7 +59,6 @@ Window::Window(int width, int height, const std::string& title) {
   glfwSetWindowSizeLimits(window_, 640, 420, GLFW_DONT_CARE, GLFW_DONT_CARE);
   ImGui::CreateContext();
   ImGui::GetIO().IniFilename = nullptr;
-  ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
   glfwSetWindowUserPointer(window_, this);
   glfwSetDropCallback(window_, [](GLFWwindow* handle, int count, const char** paths) {
     const auto* self = static_cast<Window*>(glfwGetWindowUserPointer(handle));

@@ -124,7 +124,7 @@ TEST(Names, SidesComeOffAndOn) {
   EXPECT_EQ(mirrored("zygomaticus_major_left"), "zygomaticus_major_right");
   EXPECT_EQ(mirrored("arkit:mouthSmileRight"), "arkit:mouthSmileLeft");
   EXPECT_EQ(mirrored("au:R12"), "au:L12");
-  for (const char* name : {"jaw_open", "arkit:jawOpen", "au:12", "viseme:PP", "nasion"})
+  for (const char* name : {"jaw_open", "arkit:jawOpen", "au:12", "viseme:PP", "nasion", "arkit:jawLeft"})
     EXPECT_EQ(mirrored(name), name);
   for (const char* name : {"frontalis_medial_left", "arkit:browDownRight", "au:L4"})
     EXPECT_EQ(mirrored(mirrored(name)), name);
