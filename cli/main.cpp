@@ -7,6 +7,7 @@
 #include <new>
 #include <nlohmann/json.hpp>
 
+#include "cli/calibrate.h"
 #include "cli/check.h"
 #include "cli/common.h"
 #include "cli/face.h"
@@ -52,6 +53,7 @@ void declare(const fascia::cli::Command& tool, fascia::cli::Common& common) {
   add_render(tool, common);
   add_check(tool, common);
   add_demo(tool, common);
+  add_calibrate(tool, common);
   add_face(tool, common);
   add_fit(tool, common);
   add_view(tool, common);

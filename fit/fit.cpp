@@ -225,7 +225,7 @@ Eigen::VectorXd Fitter::step(const Eigen::VectorXd& slope, const std::vector<flo
   return move;
 }
 
-FitResult Fitter::solve(const Target& target, bool is_next) {
+void Fitter::take_weights(const Target& target) {
   Eigen::VectorXd weights = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(subject_->vertex_count()));
   for (size_t v = 0; v < subject_->vertex_count(); ++v)
     if (subject_->follows(v)) weights[static_cast<Eigen::Index>(v)] = target.trust[v];
@@ -235,7 +235,42 @@ FitResult Fitter::solve(const Target& target, bool is_next) {
   if (target.normals.size() > 0 || slide_normals_.size() > 0) linear_at_.clear();
   vertex_weights_ = weights;
   slide_normals_ = target.normals;
+}
 
+Eigen::VectorXd Fitter::slope_of(const Eigen::VectorXd& difference, bool by_columns) const {
+  Eigen::MatrixXd pulls(vertex_weights_.size(), 3);
+  for (Eigen::Index v = 0; v < pulls.rows(); ++v)
+    pulls.row(v) = square_mm * weighted(v, difference.segment<3>(3 * v)).transpose();
+  const Eigen::MatrixXd by_node = subject_->weights().transpose() * pulls;
+  Eigen::VectorXd slope_by_node(node_columns_.rows());
+  for (Eigen::Index n = 0; n < by_node.rows(); ++n)
+    slope_by_node.segment<3>(3 * n) = by_node.row(n).transpose();
+  Eigen::VectorXd slope = by_columns ? Eigen::VectorXd(node_columns_.transpose() * slope_by_node)
+                                     : sensitivity_.adjoint(slope_by_node, driven_);
+  for (int axis = 0; axis < 3; ++axis)
+    slope.tail<3>() += axis_rows(jaw_slopes_, axis).transpose() * pulls.col(axis);
+  return slope;
+}
+
+Linearised Fitter::linearised(const Target& target, const std::vector<float>& values) {
+  take_weights(target);
+  last_.clear();
+  is_sequence_ = false;
+  Eigen::VectorXd difference;
+  objective(target, values, false, difference);
+  if (!linearise(values)) throw Error("the pose has no derivative: its stiffness has no factor");
+  Linearised out{fitted_, hessian_, slope_of(difference, false), 0.0, 0.0};
+  for (Eigen::Index v = 0; v < vertex_weights_.size(); ++v) {
+    if (!(vertex_weights_[v] > 0.0)) continue;
+    const Vec3 gap = difference.segment<3>(3 * v), wanted = target.displacements.segment<3>(3 * v);
+    out.mean_square += square_mm * gap.dot(weighted(v, gap));
+    out.target_square += square_mm * wanted.dot(weighted(v, wanted));
+  }
+  return out;
+}
+
+FitResult Fitter::solve(const Target& target, bool is_next) {
+  take_weights(target);
   std::vector<float> values;
   for (const rig::Channel& channel : subject_->channels())
     values.push_back(channel.rest);
@@ -257,17 +292,7 @@ FitResult Fitter::solve(const Target& target, bool is_next) {
         is_fresh ? linearise(values)
                  : is_next || sensitivity_.linearise(subject_->controls(values), subject_->nodes(), true);
     if (!is_linear) break;
-    Eigen::MatrixXd pulls(vertex_weights_.size(), 3);
-    for (Eigen::Index v = 0; v < pulls.rows(); ++v)
-      pulls.row(v) = square_mm * weighted(v, difference.segment<3>(3 * v)).transpose();
-    const Eigen::MatrixXd by_node = subject_->weights().transpose() * pulls;
-    Eigen::VectorXd slope_by_node(node_columns_.rows());
-    for (Eigen::Index n = 0; n < by_node.rows(); ++n)
-      slope_by_node.segment<3>(3 * n) = by_node.row(n).transpose();
-    Eigen::VectorXd slope = is_next ? Eigen::VectorXd(node_columns_.transpose() * slope_by_node)
-                                    : sensitivity_.adjoint(slope_by_node, driven_);
-    for (int axis = 0; axis < 3; ++axis)
-      slope.tail<3>() += axis_rows(jaw_slopes_, axis).transpose() * pulls.col(axis);
+    Eigen::VectorXd slope = slope_of(difference, is_next);
     for (Eigen::Index i = 0; i < slope.size(); ++i) {
       const uint32_t c = fitted_[static_cast<size_t>(i)];
       slope[i] += options_.ridge * dearness_[c] * static_cast<double>(values[c]);

@@ -45,6 +45,15 @@ struct FitResult {
   std::vector<std::pair<uint32_t, uint32_t>> alike;
 };
 
+/// A pose and how its mean squared distance from a target answers activations.
+struct Linearised {
+  std::vector<uint32_t> channels;  ///< that rows and columns below stand for
+  Eigen::MatrixXd hessian;         ///< Gauss-Newton, of half the mean squared distance, mm^2
+  Eigen::VectorXd slope;           ///< of the same
+  double mean_square = 0.0;        ///< mm^2, over trusted vertices
+  double target_square = 0.0;      ///< of the target's own motion, mm^2
+};
+
 /// Finds the activations whose static pose comes nearest to targets: Gauss-Newton steps on the full
 /// simulation, with contact, in the channels' ranges (Sifakis, Neverov & Fedkiw 2005, "Automatic
 /// determination of facial muscle activations from sparse motion capture marker data", section 4), gradients
@@ -61,11 +70,18 @@ class Fitter {
   /// The next frame of a take: begins at the last result and keeps near it.
   FitResult follow(const Target& target);
 
+  /// The pose of `values` beside `target`; costs do not count. Throws fascia::Error when the target trusts no
+  /// vertex that the rig moves, or the pose has no derivative.
+  Linearised linearised(const Target& target, const std::vector<float>& values);
+
   /// Other costs and steps from now on.
   void set_options(const FitOptions& options) { options_ = options; }
 
  private:
   FitResult solve(const Target& target, bool is_next);
+  void take_weights(const Target& target);
+  /// Half the gradient of the mean squared distance, by the adjoint or by the columns at hand.
+  Eigen::VectorXd slope_of(const Eigen::VectorXd& difference, bool by_columns) const;
   /// Mean squared error and cost of `values`; poses the subject.
   double objective(const Target& target, const std::vector<float>& values, bool warm,
                    Eigen::VectorXd& difference);

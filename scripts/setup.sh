@@ -22,7 +22,7 @@ packages=(
 )
 [ "$tier" = demo ] || packages+=(libgtest-dev libgmock-dev libvalijson-dev binutils clang-format abigail-tools valgrind xvfb xauth)
 [ "$tier" != full ] || packages+=(
-  clang clang-tidy libbenchmark-dev zlib1g-dev libvtk9-dev libcgal-dev python3-numpy python3-pil python3-scipy
+  clang clang-tidy doxygen libbenchmark-dev zlib1g-dev libvtk9-dev libcgal-dev python3-numpy python3-pil python3-scipy
   nodejs npm
 )
 

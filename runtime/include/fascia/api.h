@@ -14,7 +14,7 @@ extern "C" {
 
 /* Grows at the end only while the major version stays. */
 typedef struct fascia_api {
-  uint32_t struct_size; /* of the library's own table: members beyond it are not there */
+  uint32_t struct_size;     /* of the library's own table: members beyond it are not there */
   uint32_t library_version; /* as fascia_version gives it */
   uint32_t (*version)(void);
   const char* (*result_name)(fascia_result result);
