@@ -60,18 +60,6 @@ void make_output_folder(const std::filesystem::path& folder) {
                 "' cannot be made: " + (status ? status.message() : "a file bears its name"));
 }
 
-void add_to_come(const Command& tool) {
-  for (const auto& [name, what] :
-       {std::pair{"view", "the window"}}) {
-    const Command command = tool.command(name, std::string(what) + " (to come)");
-    const auto unread = std::make_shared<std::vector<std::string>>();
-    command.positional("ARGUMENTS", unread.get(), "Not read yet").default_text("none");
-    command.run([unread, name = std::string(name), what = std::string(what)] {
-      throw Error("'fascia " + name + "' is yet to come: " + what + " is not in this version");
-    });
-  }
-}
-
 void add_rig_argument(const Command& command, std::filesystem::path& rig) {
   command.positional("RIG", &rig, "Rig (.glb)").required();
 }

@@ -135,7 +135,8 @@ PlayFigures play_file(const Common& common, const PlayRequest& request) {
   const bool wants_cache = is_cache(request.output, kind);
   if (!wants_cache && request.output.extension() != ".glb")
     throw Error("'" + request.output.string() + "': an animation is written as .glb, .pc2 or .mdd");
-  const Curves curves(request.curves, request.curve_frames_per_second, request.time_unit);
+  Curves curves(request.curves, request.curve_frames_per_second, request.time_unit);
+  curves.trim(request.from, request.to);
   PlayFigures figures;
   Face face(request.rig,
             {wants_cache ? FASCIA_SPACE_INPUT : FASCIA_SPACE_MESH, request.solver, request.level});

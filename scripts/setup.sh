@@ -18,7 +18,7 @@ packages=(
   libcli11-dev nlohmann-json3-dev
   libembree-dev libtbb-dev libmeshoptimizer-dev libnanoflann-dev libxxhash-dev zlib1g-dev
   libepoxy-dev libegl-dev libgl-dev libegl1 libgl1-mesa-dri libimgui-dev libstb-dev
-  ffmpeg fonts-dejavu-core
+  ffmpeg fonts-dejavu-core fonts-lato
 )
 [ "$tier" = demo ] || packages+=(libgtest-dev libgmock-dev libvalijson-dev binutils clang-format abigail-tools valgrind xvfb xauth)
 [ "$tier" != full ] || packages+=(

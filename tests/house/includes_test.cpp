@@ -26,9 +26,10 @@ const std::map<std::string, std::set<std::string>> rooms = {
     {"batch", {"geometry", "formats"}},
     {"snapshot", {"geometry", "formats", "rig/model", "rig/read"}},
     {"view", {"geometry", "gltf", "rig"}},
+    {"app", {"geometry", "formats", "anatomy", "rig", "builder", "view"}},
     {"cli",
-     {"geometry", "gltf", "formats", "anatomy", "rig", "sim", "builder", "batch", "check", "fit", "runtime",
-      "snapshot", "view"}},
+     {"app", "geometry", "gltf", "formats", "anatomy", "rig", "sim", "builder", "batch", "check", "fit",
+      "runtime", "snapshot", "view"}},
     {"samples", {}},
     // Beside the product: it may not include any of these.
     {"tools", {"geometry", "formats", "anatomy", "rig", "builder", "view"}},
