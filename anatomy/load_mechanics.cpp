@@ -156,8 +156,6 @@ void read(const Section& in, mechanics::Lips& out) {
   in.value("roll_depth", "mm", out.roll_depth);
   in.value("roll_in", "deg", out.roll_in);
   in.value("roll_out", "deg", out.roll_out);
-  in.value("seal_hold", "N/m", out.seal_hold);
-  in.value("seal_reach", "mm", out.seal_reach);
 }
 
 void read(const Section& in, mechanics::Vestibule& out) {

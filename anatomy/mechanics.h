@@ -168,8 +168,6 @@ struct Lips {
   double roll_depth = 0.0;  ///< metres: of the axis of roll: above (below) the edge and behind it
   double roll_in = 0.0;     ///< radians: turn at lip_roll = 1
   double roll_out = 0.0;    ///< radians: turn at lip_roll = -1
-  double seal_hold = 0.0;   ///< newton per metre: with which the lips of one side are drawn onto each other
-  double seal_reach = 0.0;  ///< metres: from the lips' edge: how much of each lip is drawn onto the other
 };
 
 /// The vestibule of the mouth: where lips and cheeks lie on air and mucosa instead of bone.

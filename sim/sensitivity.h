@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/SparseCholesky>
 #include <memory>
 #include <vector>
