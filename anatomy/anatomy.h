@@ -55,7 +55,8 @@ struct TissueDepth {
 
 struct TissueDepthTable {
   std::string name;
-  std::string population;  ///< whom it was measured on
+  std::string population;          ///< whom it was measured on
+  std::string sex, age, ancestry;  ///< the same in single words, such as female, adult; empty: not told apart
   std::string source;
   std::vector<TissueDepth> depths;
 
@@ -243,6 +244,11 @@ GenericAnatomy load_generic(const std::filesystem::path& directory);
 
 /// Which data files of `directory`, by name, stand in for those built in and are not the same to the byte.
 std::vector<std::string> corrected_files(const std::filesystem::path& directory);
+
+/// Adds the tables of a file of the form of anatomy/data/tissue_depths.json and returns their names. A table
+/// that bears the name of one there is takes its place. Throws fascia::Error naming the file and the entry at
+/// fault.
+std::vector<std::string> add_depth_tables(GenericAnatomy& anatomy, const std::filesystem::path& file);
 
 /// Adds a muscle with its channel, and its name to its whole's members. One that bears the name of a muscle
 /// there is takes its place. Throws fascia::Error when the name is that of a channel or whole of another

@@ -1,3 +1,5 @@
+#include <fstream>
+
 #include "anatomy/fields.h"
 
 namespace fascia::anatomy {
@@ -62,26 +64,57 @@ void load_landmarks(const DataFiles& files, GenericAnatomy& anatomy) {
       add_curve(entry, anatomy.curves);
 }
 
+namespace {
+
+TissueDepthTable depth_table_of(const Fields& entry) {
+  TissueDepthTable table;
+  table.name = entry.text("name");
+  table.population = entry.text("population");
+  table.source = entry.text("source");
+  const auto word = [&](const char* name) { return entry.has(name) ? entry.text(name) : std::string(); };
+  table.sex = word("sex");
+  table.age = word("age");
+  table.ancestry = word("ancestry");
+  for (const Fields& row : entry.list("depths")) {
+    TissueDepth depth;
+    depth.key = row.text("key");
+    depth.mean = row.number("mean_mm") * 1e-3;
+    depth.deviation = row.number_or("sd_mm", 0.0) * 1e-3;
+    if (!(depth.mean > 0.0 && depth.mean < 0.2) || depth.deviation < 0.0 || depth.deviation > 0.2)
+      row.fail("depths lie between 0 and 200 mm");
+    if (table.find(depth.key)) row.fail("the key \"" + depth.key + "\" stands twice in " + table.name);
+    table.depths.push_back(depth);
+  }
+  return table;
+}
+
+}  // namespace
+
 void load_tissue_depths(const DataFiles& files, GenericAnatomy& anatomy) {
   const Json document = files.json("tissue_depths.json");
   const Fields root(document, files.place("tissue_depths.json"));
-  for (const Fields& entry : root.list("tables")) {
-    TissueDepthTable table;
-    table.name = entry.text("name");
-    table.population = entry.text("population");
-    table.source = entry.text("source");
-    for (const Fields& row : entry.list("depths")) {
-      TissueDepth depth;
-      depth.key = row.text("key");
-      depth.mean = row.number("mean_mm") * 1e-3;
-      depth.deviation = row.number_or("sd_mm", 0.0) * 1e-3;
-      if (depth.mean <= 0.0 || depth.deviation < 0.0) row.fail("depths are positive");
-      if (table.find(depth.key)) row.fail("the key \"" + depth.key + "\" stands twice in " + table.name);
-      table.depths.push_back(depth);
-    }
-    anatomy.depth_tables.push_back(table);
-  }
+  for (const Fields& entry : root.list("tables"))
+    anatomy.depth_tables.push_back(depth_table_of(entry));
   if (anatomy.depth_tables.empty()) root.fail("holds no table");
+}
+
+std::vector<std::string> add_depth_tables(GenericAnatomy& anatomy, const std::filesystem::path& file) {
+  const std::string where = "'" + file.string() + "'";
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw Error(where + " cannot be read");
+  const Json document = Json::parse(stream, nullptr, false);
+  if (document.is_discarded()) throw Error(where + " is not JSON");
+  const Fields root(document, where);
+  std::vector<std::string> names;
+  for (const Fields& entry : root.list("tables")) {
+    TissueDepthTable table = depth_table_of(entry);
+    names.push_back(table.name);
+    std::erase_if(anatomy.depth_tables,
+                  [&](const TissueDepthTable& other) { return other.name == table.name; });
+    anatomy.depth_tables.push_back(std::move(table));
+  }
+  if (names.empty()) root.fail("holds no table");
+  return names;
 }
 
 }  // namespace fascia::anatomy

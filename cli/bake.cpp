@@ -1,6 +1,6 @@
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "cli/bake_file.h"
 #include "cli/common.h"
@@ -40,34 +40,29 @@ void run(const Common& common, const BakeRequest& request) {
 
 }  // namespace
 
-void add_bake(CLI::App& app, Common& common) {
+void add_bake(const Command& tool, Common& common) {
   auto request = std::make_shared<BakeRequest>();
-  CLI::App* command = app.add_subcommand("bake", "Bake simulated shapes into morph targets");
-  command->add_option("RIG", request->rig, "Rig (.glb)")->required();
+  const Command command = tool.command("bake", "Bake simulated shapes into morph targets");
+  add_rig_argument(command, request->rig);
   command
-      ->add_option(
-          "--shapes", request->sets,
-          "Which shapes, one set or several: arkit, visemes, vrm, faces, au, muscles (every channel), or "
-          "another of the rig's vocabularies")
-      ->delimiter(',')
-      ->capture_default_str();
-  command
-      ->add_option("--format", request->format,
-                   "glb, obj-sequence (a folder) or pc2 (default: by the output)")
-      ->check(CLI::IsMember({"glb", "obj-sequence", "pc2"}));
-  command->add_flag(
-      "--correctives", request->correctives,
-      "Also what pairs of ARKit shapes lack together, as A_B, for a weight of A times B (default: no)");
-  command->add_flag("--replace", request->replaces,
-                    "A shape takes the place of a morph target of its name (default: it gets another name)");
-  command->add_flag("--keep-rig", request->keeps_rig, "Keep the FASCIA extensions in the file (default: no)");
-  command->add_option("--solver", request->solver, "Solver")
-      ->check(CLI::IsMember({"own", "reference", "bullet"}))
-      ->capture_default_str();
-  command->add_option("--level", request->level,
-                      "Level of detail: low, medium or high (default: the rig's finest)");
-  command->add_option("-o,--output", request->output, "File to write (.glb, .pc2), or folder")->required();
-  command->callback([request, &common] { run(common, *request); });
+      .option("--shapes", &request->sets,
+              "Which shapes, one set or several with commas between: arkit, visemes, vrm, faces, au, muscles "
+              "(every "
+              "channel), or another of the rig's vocabularies")
+      .separated_by_commas()
+      .value("SET,...");
+  command.option("--format", &request->format, "What to write; obj-sequence is a folder")
+      .one_of({"glb", "obj-sequence", "pc2"})
+      .default_text("by the output's name");
+  command.flag("--correctives", request->correctives,
+               "Also what pairs of ARKit shapes lack together, as A_B, for a weight of A times B");
+  command.flag("--replace", request->replaces,
+               "A shape takes the place of a morph target of its name instead of another name");
+  command.flag("--keep-rig", request->keeps_rig, "Keep the FASCIA extensions in the file");
+  add_solver_option(command, request->solver);
+  add_level_option(command, request->level);
+  command.option("-o,--output", &request->output, "File to write (.glb, .pc2), or folder").required();
+  command.run([request, &common] { run(common, *request); });
 }
 
 }  // namespace fascia::cli

@@ -11,6 +11,7 @@
 #include "cli/take/point_cache.h"
 #include "formats/scene.h"
 #include "geometry/error.h"
+#include "geometry/nearest_names.h"
 #include "rig/write/write.h"
 
 namespace fascia::cli {
@@ -31,7 +32,8 @@ std::string vocabulary(const Face& face, const std::string& word) {
   std::string list = "muscles";
   for (const std::string& name : known)
     list += ", " + name;
-  throw Error("--shapes " + word + ": the rig has no such vocabulary; it has " + list);
+  throw Error("--shapes " + word + ": the rig has no such vocabulary" + did_you_mean(word, known) +
+              "; it has " + list);
 }
 
 std::string prefix_of(const std::string& set) {
@@ -116,7 +118,7 @@ void write_glb(const Common& common, const BakeRequest& request, const Face& fac
 
 void write_sequence(const Common& common, const BakeRequest& request, Face& face,
                     const std::vector<ShapeToBake>& shapes, BakeFigures& figures) {
-  std::filesystem::create_directories(request.output);
+  make_output_folder(request.output);
   const auto write = [&](const std::string& name) {
     figures.files.push_back(request.output / (name + ".obj"));
     write_posed_mesh(request.rig, face, figures.files.back());

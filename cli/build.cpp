@@ -1,7 +1,7 @@
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <map>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "builder/rigging/build_rig.h"
 #include "builder/rigging/gltf_source.h"
@@ -166,14 +166,17 @@ anatomy::GenericAnatomy anatomy_for(const std::filesystem::path& directory) {
   return directory.empty() ? anatomy::load_generic() : anatomy::load_generic(directory);
 }
 
-void add_anatomy_option(CLI::App& command, std::filesystem::path& directory) {
-  command.add_option("--anatomy", directory,
-                     "Folder with corrected copies of anatomy/data's files; those it lacks are the built-in "
-                     "ones, the default for all");
+void add_anatomy_option(const Command& command, std::filesystem::path& directory) {
+  command
+      .option("--anatomy", &directory,
+              "Folder with corrected copies of files of anatomy/data; those it lacks are built in")
+      .value("DIR")
+      .default_text("all built in");
 }
 
 rigging::BuildReport build_file(const Common& common, const BuildRequest& request, int* failed_checks) {
   check_output(request.output, {request.head, request.landmarks, request.edits});
+  if (!request.report.empty()) make_output_folder(request.report);
   if (request.output.extension() != ".glb")
     throw Error("'" + request.output.string() + "': a rig is a .glb file; give -o NAME.glb");
   const anatomy::GenericAnatomy anatomy = anatomy_for(request.anatomy);
@@ -185,8 +188,10 @@ rigging::BuildReport build_file(const Common& common, const BuildRequest& reques
   options.edits.muscle_files = request.muscles;
   for (const std::string& variant : request.variants)
     rigging::set_variant(options.edits, variant);
-  if (request.fibre_spacing_mm > 0.0) options.edits.fibre_spacing = 1e-3 * request.fibre_spacing_mm;
-  if (request.least_prevalence >= 0.0) options.edits.least_prevalence = request.least_prevalence;
+  if (request.fibre_spacing_mm) options.edits.fibre_spacing = 1e-3 * *request.fibre_spacing_mm;
+  if (request.least_prevalence) options.edits.least_prevalence = *request.least_prevalence;
+  if (request.smas_galea) options.smas.reach.galea = request.smas_galea;
+  if (request.smas_neck_mm) options.smas.reach.neck = 1e-3 * *request.smas_neck_mm;
   options.progress = [&](const std::string& stage) { common.progress(stage); };
   rigging::BuildResult result = rigging::build_rig(scene, landmarks, anatomy, options);
   if (!request.anatomy.empty()) result.report.corrected = anatomy::corrected_files(request.anatomy);
@@ -208,79 +213,110 @@ rigging::BuildReport build_file(const Common& common, const BuildRequest& reques
   if (failed_checks) *failed_checks = static_cast<int>(failures.size());
   if (!request.report.empty()) {
     common.progress("report");
-    std::filesystem::create_directories(request.report);
     write_report(request.report, request.head, request.output, result.report);
   }
   return result.report;
 }
 
-void add_build(CLI::App& app, Common& common) {
+namespace {
+
+void add_detail_options(const Command& command, BuildRequest& request) {
+  command
+      .option("--smas-galea", &request.smas_galea,
+              "How far the SMAS follows the galea: 0 the hairline, 1 the vertex")
+      .range(0.0, 1.0)
+      .default_text("as the anatomy says, 0.35");
+  command
+      .option("--smas-neck", &request.smas_neck_mm,
+              "How far it follows the platysma below the chin's angle, in mm of an adult")
+      .range(0.0, 80.0)
+      .default_text("as the anatomy says, 30");
+  command.flag("--smas-nostrils", request.options.smas.reach.nostrils,
+               "Whether the SMAS is open under the nose", true);
+  command.option("--fibre-spacing", &request.fibre_spacing_mm, "Millimetres between fibres")
+      .range(0.1, 20.0)
+      .default_text("as the edits say, or 2");
+  command
+      .option("--least-prevalence", &request.least_prevalence,
+              "Leave out muscles that fewer people have, as a share")
+      .range(0.0, 1.0)
+      .default_text("as the edits say, or 0");
+  command.option("--tissue-scale", &request.options.tissue_scale, "Scales every tissue depth")
+      .range(0.2, 3.0);
+}
+
+void add_input_options(const Command& command, BuildRequest& request) {
+  command.option("--landmarks", &request.landmarks, "Landmarks on the skin: .mrk.json or JSON")
+      .default_text("found on the mesh");
+  command
+      .option("--units", &request.options.prepare.units,
+              "Unit of the file: auto, m, cm, mm, or metres a unit")
+      .value("UNIT");
+  command.option("--up", &request.options.prepare.up, "Up axis of the file").one_of({"auto", "y", "z"});
+  command.option("--skin", &request.options.prepare.skin, "Name of the mesh that is the skin")
+      .default_text("found by its shape");
+  add_anatomy_option(command, request.anatomy);
+  command.flag("--allow-outside", request.allow_outside,
+               "Open files that a glTF names outside its own folder");
+}
+
+void add_anatomy_options(const Command& command, BuildRequest& request) {
+  command.option("--open", &request.options.openings.open, "Part lips and lids that are one closed surface")
+      .one_of({"auto", "never"});
+  command
+      .option(
+          "--add", &request.options.openings.add,
+          "Generic parts to fit to a head without, with commas between; auto: what lies behind parted lips "
+          "and lids")
+      .one_of({"auto", "none", "mouth", "teeth", "tongue", "eyes"})
+      .separated_by_commas()
+      .value("PART,...");
+  command
+      .option("--edits", &request.edits,
+              "Your own landmarks, regions, strengths and muscles (.json), kept over every rebuild")
+      .default_text("none");
+  command
+      .option("--muscles", &request.muscles,
+              "More muscles on the generic head: a file like anatomy/data/muscles.json")
+      .default_text("none");
+  command
+      .option("--variant", &request.variants,
+              "A muscle in another of its forms, such as risorius=absent; may be repeated")
+      .value("MUSCLE=VARIANT")
+      .default_text("the usual forms");
+}
+
+/// Builds, says what was built, and ends with exit_check when --strict finds a fault.
+void run(const Common& common, const BuildRequest& request) {
+  int failed_checks = 0;
+  const rigging::BuildReport report = build_file(common, request, &failed_checks);
+  if (common.json)
+    common.report(report_json(report));
+  else
+    say_report(common, report, request.output);
+  if (!request.report.empty()) common.say("wrote " + (request.report / report_name).string());
+  if (request.is_strict && failed_checks > 0) throw Exit{exit_check};
+}
+
+}  // namespace
+
+void add_build(const Command& tool, Common& common) {
   auto request = std::make_shared<BuildRequest>();
-  CLI::App* command = app.add_subcommand("build", "Build the rig of a head: skull, SMAS, muscles, tissue");
-  command->add_option("HEAD", request->head, "Head mesh: GLB, glTF, OBJ, PLY or STL")->required();
-  command->add_option("-o,--output", request->output, "Rig to write (.glb)")->required();
-  command->add_option("--landmarks", request->landmarks, "Landmarks on the skin: .mrk.json or JSON");
-  command->add_option("--units", request->options.prepare.units, "auto, m, cm, mm, or metres a unit");
-  command->add_option("--up", request->options.prepare.up, "Up axis of the file")
-      ->check(CLI::IsMember({"auto", "y", "z"}));
-  command->add_option("--skin", request->options.prepare.skin, "Name of the mesh that is the skin");
-  add_anatomy_option(*command, request->anatomy);
-  command->add_option("--tissue-scale", request->options.tissue_scale, "Scales every tissue depth")
-      ->check(CLI::Range(0.2, 3.0));
-  smas::ReachOptions& reach = request->options.smas.reach;
+  const Command command = tool.command("build", "Build the rig of a head: skull, SMAS, muscles, tissue");
+  command.positional("HEAD", &request->head, "Head mesh: GLB, glTF, OBJ, PLY or STL").required();
+  command.option("-o,--output", &request->output, "Rig to write (.glb)").required();
+  command.option("--detail", &request->options.detail, "Finest lattice").one_of({"low", "medium", "high"});
+  add_input_options(command, *request);
+  add_anatomy_options(command, *request);
+  add_detail_options(command, *request);
   command
-      ->add_option_function<double>(
-          "--smas-galea", [&reach](double share) { reach.galea = share; },
-          "How far the SMAS follows the galea: 0 the hairline, 1 the vertex; else as the anatomy says (0.35)")
-      ->check(CLI::Range(0.0, 1.0));
-  command
-      ->add_option_function<double>(
-          "--smas-neck", [&reach](double millimetres) { reach.neck = 1e-3 * millimetres; },
-          "How far it follows the platysma below the chin's angle, mm of an adult; else as the anatomy says "
-          "(30)")
-      ->check(CLI::Range(0.0, 80.0));
-  command->add_flag("--smas-nostrils,!--no-smas-nostrils", reach.nostrils,
-                    "Open under the nose, the default, or not");
-  command->add_option("--detail", request->options.detail, "Finest lattice")
-      ->check(CLI::IsMember({"low", "medium", "high"}));
-  command
-      ->add_option("--open", request->options.openings.open,
-                   "Part lips and lids that are one closed surface: auto, the default, or never")
-      ->check(CLI::IsMember({"auto", "never"}));
-  command
-      ->add_option(
-          "--add", request->options.openings.add,
-          "Generic parts to fit to a head without: none, or any of mouth,teeth,tongue,eyes; auto, the "
-          "default: what lies behind parted lips and lids")
-      ->delimiter(',')
-      ->check(CLI::IsMember({"auto", "none", "mouth", "teeth", "tongue", "eyes"}));
-  command->add_option("--edits", request->edits,
-                      "Your own landmarks, regions, strengths and muscles (.json), kept over every rebuild");
-  command->add_option("--muscles", request->muscles,
-                      "More muscles on the generic head: a file like anatomy/data/muscles.json");
-  command->add_option("--variant", request->variants, "MUSCLE=VARIANT, such as risorius=absent")->take_all();
-  command->add_option("--fibre-spacing", request->fibre_spacing_mm, "Millimetres between fibres (2)")
-      ->check(CLI::Range(0.1, 20.0));
-  command
-      ->add_option("--least-prevalence", request->least_prevalence,
-                   "Leave out muscles that fewer people have, 0..1")
-      ->check(CLI::Range(0.0, 1.0));
-  command->add_flag("--allow-outside", request->allow_outside,
-                    "Open files that a glTF names outside its own folder (default: refused)");
-  command->add_option("--report", request->report,
-                      "Folder for report.html: one page with pictures of every stage and figures");
-  command->add_flag("--strict", request->is_strict,
-                    "Exit with 4 when the check at the end finds a fault; the rig is written all the same");
-  command->callback([request, &common] {
-    int failed_checks = 0;
-    const rigging::BuildReport report = build_file(common, *request, &failed_checks);
-    if (common.json)
-      common.report(report_json(report));
-    else
-      say_report(common, report, request->output);
-    if (!request->report.empty()) common.say("wrote " + (request->report / report_name).string());
-    if (request->is_strict && failed_checks > 0) throw CLI::RuntimeError(exit_check);
-  });
+      .option("--report", &request->report,
+              "Folder for report.html: one page with pictures of every stage and figures")
+      .value("DIR")
+      .default_text("none");
+  command.flag("--strict", request->is_strict,
+               "End with 4 when the check at the end finds a fault; the rig is written all the same");
+  command.run([request, &common] { run(common, *request); });
 }
 
 }  // namespace fascia::cli

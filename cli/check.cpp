@@ -1,9 +1,9 @@
 #include "cli/check.h"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "anatomy/checks.h"
 #include "check/rig_head.h"
@@ -83,7 +83,7 @@ void run(const Common& common, const Request& request) {
                          : std::to_string(failed) + " of " + std::to_string(rows.size()) + " rows fail");
   if (!request.sheet.empty()) common.say("wrote " + request.sheet.string());
   common.report({{"rows", rows_json(rows)}, {"failed", failed}});
-  if (failed > 0) throw CLI::RuntimeError(exit_check);
+  if (failed > 0) throw Exit{exit_check};
 }
 
 }  // namespace
@@ -120,18 +120,18 @@ std::vector<std::string> quick_check(const std::vector<uint8_t>& rig, const std:
   return warnings;
 }
 
-void add_check(CLI::App& app, Common& common) {
+void add_check(const Command& tool, Common& common) {
   auto request = std::make_shared<Request>();
-  CLI::App* command = app.add_subcommand(
-      "check", "Play a fixed list of poses and measure whether the rig holds; exit 4 when a row fails");
-  command->add_option("RIG", request->rig, "Rig (.glb)")->required();
-  command->add_option(
-      "--sheet", request->sheet,
-      "Picture of every pose, from the front and at three quarters, with failing places marked (.png; "
-      "default: none)");
-  command->add_option("--level", request->level,
-                      "Level of detail: low, medium or high (default: the finest)");
-  command->callback([request, &common] { run(common, *request); });
+  const Command command = tool.command(
+      "check", "Play a fixed list of poses and measure whether the rig holds; ends with 4 when a row fails");
+  add_rig_argument(command, request->rig);
+  command
+      .option(
+          "--sheet", &request->sheet,
+          "Picture of every pose, from the front and at three quarters, with failing places marked (.png)")
+      .default_text("none");
+  add_level_option(command, request->level);
+  command.run([request, &common] { run(common, *request); });
 }
 
 }  // namespace fascia::cli

@@ -9,12 +9,12 @@
 
 namespace fascia::cli {
 
-/// Exit code of a check that found a fault, and of `build --strict`: thrown as CLI::RuntimeError when all
-/// else is done.
+/// Exit code of a check that found a fault, and of `build --strict`: thrown as Exit when all else is
+/// done.
 inline constexpr int exit_check = 4;
 
 /// Adds `fascia check`.
-void add_check(CLI::App& app, Common& common);
+void add_check(const Command& tool, Common& common);
 
 /// The short form of `fascia check` that a build ends with: the poses marked quick in
 /// anatomy/data/checks.json at the coarsest level. One sentence for each row that fails, with what to do, or

@@ -2,11 +2,10 @@
 
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <iostream>
 #include <memory>
-#include <vector>
+#include <nlohmann/json.hpp>
 
 #include "geometry/error.h"
 
@@ -41,16 +40,52 @@ void check_output(const std::filesystem::path& path, const std::vector<std::file
       throw Error("'" + path.string() + "' is the input as well as the output: give another name with -o");
 }
 
-void add_to_come(CLI::App& app) {
+void make_output_folder(const std::filesystem::path& folder) {
+  std::error_code status;
+  std::filesystem::path whole = std::filesystem::absolute(folder).lexically_normal();
+  if (!whole.has_filename()) whole = whole.parent_path();  // written with a slash at the end
+  check_output(whole);
+  if (std::filesystem::is_directory(folder, status)) return;
+  if (!std::filesystem::create_directory(folder, status))
+    throw Error("the folder '" + folder.string() +
+                "' cannot be made: " + (status ? status.message() : "a file bears its name"));
+}
+
+void add_to_come(const Command& tool) {
   for (const auto& [name, what] :
        {std::pair{"batch", "building many heads"}, std::pair{"view", "the window"}}) {
-    CLI::App* command = app.add_subcommand(name, std::string(what) + " (to come)");
+    const Command command = tool.command(name, std::string(what) + " (to come)");
     const auto unread = std::make_shared<std::vector<std::string>>();
-    command->add_option("ARGUMENTS", *unread, "Not read yet");
-    command->callback([unread, name = std::string(name), what = std::string(what)] {
+    command.positional("ARGUMENTS", unread.get(), "Not read yet").default_text("none");
+    command.run([unread, name = std::string(name), what = std::string(what)] {
       throw Error("'fascia " + name + "' is yet to come: " + what + " is not in this version");
     });
   }
+}
+
+void add_rig_argument(const Command& command, std::filesystem::path& rig) {
+  command.positional("RIG", &rig, "Rig (.glb)").required();
+}
+
+void add_set_options(const Command& command, std::vector<std::string>& set,
+                     std::filesystem::path& activations) {
+  command
+      .option("--set", &set,
+              "One channel's or shape's value: an actuator, arkit:NAME, au:N or viseme:NAME; may be "
+              "repeated, and "
+              "goes before --activations")
+      .value("NAME=VALUE")
+      .default_text("the face at rest");
+  command.option("--activations", &activations, "Values of many (.json)").default_text("none");
+}
+
+void add_solver_option(const Command& command, std::string& solver) {
+  command.option("--solver", &solver, "Solver").one_of({"own", "reference", "bullet"});
+}
+
+void add_level_option(const Command& command, std::string& level) {
+  command.option("--level", &level, "Level of detail: low, medium or high, where the rig has it")
+      .default_text("the rig's finest");
 }
 
 }  // namespace fascia::cli

@@ -1,13 +1,11 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
-namespace CLI {
-class App;
-}
+#include "cli/options.h"
 
 namespace fascia::cli {
 
@@ -30,22 +28,34 @@ struct Common {
   void report(const nlohmann::ordered_json& object) const;
 };
 
-/// Adds a command with its options and what it does to `app`. `run` is called after parsing.
-void add_build(CLI::App& app, Common& common);
-void add_info(CLI::App& app, Common& common);
-void add_export(CLI::App& app, Common& common);
-void add_pose(CLI::App& app, Common& common);
-void add_play(CLI::App& app, Common& common);
-void add_bake(CLI::App& app, Common& common);
-void add_render(CLI::App& app, Common& common);
-void add_demo(CLI::App& app, Common& common);
-void add_manual(CLI::App& app);
+/// Each adds a command to the tool: its options and what it does.
+void add_build(const Command& tool, Common& common);
+void add_info(const Command& tool, Common& common);
+void add_export(const Command& tool, Common& common);
+void add_pose(const Command& tool, Common& common);
+void add_play(const Command& tool, Common& common);
+void add_bake(const Command& tool, Common& common);
+void add_render(const Command& tool, Common& common);
+void add_demo(const Command& tool, Common& common);
+/// `tool` must outlive the run of the command, which prints what all commands say of themselves.
+void add_manual(const Command& tool);
 
-/// Commands that are yet to come: they say so and exit with 1.
-void add_to_come(CLI::App& app);
+/// Commands that are yet to come: they say so and end with 1.
+void add_to_come(const Command& tool);
 
 /// Throws fascia::Error when the folder of `path` is not there, or when `path` is one of `inputs`, which it
 /// would destroy.
 void check_output(const std::filesystem::path& path, const std::vector<std::filesystem::path>& inputs = {});
+
+/// The options several commands share, worded alike.
+void add_rig_argument(const Command& command, std::filesystem::path& rig);
+void add_set_options(const Command& command, std::vector<std::string>& set,
+                     std::filesystem::path& activations);
+void add_solver_option(const Command& command, std::string& solver);
+void add_level_option(const Command& command, std::string& level);
+
+/// Makes `folder` for a command's results unless it is there. Throws fascia::Error when the folder it would
+/// lie in is not there, or when a file bears its name.
+void make_output_folder(const std::filesystem::path& folder);
 
 }  // namespace fascia::cli

@@ -1,7 +1,7 @@
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <cmath>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "anatomy/anatomy.h"
 #include "cli/bake_file.h"
@@ -141,7 +141,7 @@ void film(const std::filesystem::path& rig_path, const rig::Rig& rig,
 
 void run(const Common& common, const std::filesystem::path& folder,
          const std::filesystem::path& anatomy_folder) {
-  std::filesystem::create_directories(folder);
+  make_output_folder(folder);
   Clock clock(common);
   const std::filesystem::path head = folder / "head.obj", landmarks = folder / "head_landmarks.json",
                               rig_path = folder / "rig.glb", curves = folder / "curves.csv";
@@ -191,13 +191,13 @@ void run(const Common& common, const std::filesystem::path& folder,
 
 }  // namespace
 
-void add_demo(CLI::App& app, Common& common) {
+void add_demo(const Command& tool, Common& common) {
   auto folder = std::make_shared<std::filesystem::path>("out");
-  CLI::App* command = app.add_subcommand("demo", "The embedded head, end to end");
-  command->add_option("--out", *folder, "Folder for the results");
   auto anatomy_folder = std::make_shared<std::filesystem::path>();
-  add_anatomy_option(*command, *anatomy_folder);
-  command->callback([=, &common] { run(common, *folder, *anatomy_folder); });
+  const Command command = tool.command("demo", "The embedded head, end to end");
+  command.option("--out", folder.get(), "Folder for the results").value("DIR");
+  add_anatomy_option(command, *anatomy_folder);
+  command.run([=, &common] { run(common, *folder, *anatomy_folder); });
 }
 
 }  // namespace fascia::cli

@@ -1,6 +1,6 @@
-#include <CLI/CLI.hpp>
 #include <Eigen/LU>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "builder/rigging/gltf_source.h"
 #include "cli/common.h"
@@ -131,18 +131,17 @@ void run(const Common& common, const Request& request) {
 
 }  // namespace
 
-void add_export(CLI::App& app, Common& common) {
+void add_export(const Command& tool, Common& common) {
   auto request = std::make_shared<Request>();
-  CLI::App* command = app.add_subcommand("export", "Write one part of a rig as a mesh of its own");
-  command->add_option("RIG", request->rig, "Rig (.glb)")->required();
-  command->add_option("--part", request->part, "What to write")
-      ->required()
-      ->check(CLI::IsMember(
-          {"skin", "cranium", "mandible", "teeth", "eyes", "smas", "muscles", "landmarks", "all"}));
-  command
-      ->add_option("-o,--output", request->output, "File to write: .ply, .obj, .stl or .glb; landmarks .json")
-      ->required();
-  command->callback([request, &common] { run(common, *request); });
+  const Command command = tool.command("export", "Write one part of a rig as a mesh of its own");
+  add_rig_argument(command, request->rig);
+  command.option("--part", &request->part, "What to write")
+      .required()
+      .one_of({"skin", "cranium", "mandible", "teeth", "eyes", "smas", "muscles", "landmarks", "all"})
+      .value("PART");
+  command.option("-o,--output", &request->output, "File to write: .ply, .obj, .stl or .glb; landmarks .json")
+      .required();
+  command.run([request, &common] { run(common, *request); });
 }
 
 }  // namespace fascia::cli

@@ -1,12 +1,14 @@
 #include "cli/fit.h"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "cli/common.h"
+#include "cli/fit_landmarks.h"
 #include "cli/fit_output.h"
+#include "cli/fit_scan.h"
 #include "cli/fit_target.h"
 #include "fit/fit.h"
 #include "formats/scene.h"
@@ -17,7 +19,7 @@ namespace fascia::cli {
 namespace {
 
 struct Request {
-  std::filesystem::path rig, target, output, report;
+  std::filesystem::path rig, target, neutral, output, report;
   std::string level, shape;
   FitTargetOptions reading;
   fit::FitOptions fitting;
@@ -58,16 +60,49 @@ nlohmann::ordered_json summary(const std::vector<fit::FitResult>& results,
   return {{"share", whole > 0.0 ? 1.0 - left / whole : 1.0}, {"error_mm", error}, {"iterations", iterations}};
 }
 
-void run(const Common& common, const Request& request) {
-  const auto started = std::chrono::steady_clock::now();
-  check_output(request.output, {request.rig, request.target});
-  fit::Subject subject(rig::read(formats::read_bytes(request.rig), request.rig.string()), request.level);
-  FitTargets targets = open_fit_targets(common, request.target, subject, request.reading);
+bool is_landmark_file(const std::filesystem::path& path) {
+  return path.extension() == ".json";
+}
+
+/// One mesh of another topology than the rig's, or one that is said to be a scan.
+bool is_scan(const Request& request, const fit::Subject& subject) {
+  if (request.reading.as != "auto") return request.reading.as == "scan";
+  const std::filesystem::path& path = request.target;
+  const std::string extension = path.extension().string();
+  if (std::filesystem::is_directory(path) || extension == ".pc2" || extension == ".mdd" ||
+      is_landmark_file(path))
+    return false;
+  return !has_rig_topology(subject, formats::read(path));
+}
+
+void fit_one_scan(const Common& common, const Request& request, fit::Subject& subject, FitTargets& targets,
+                  std::vector<fit::FitResult>& results, std::vector<double>& motion,
+                  nlohmann::ordered_json& figures) {
+  targets.names = {request.target.filename().string()};
+  check_fit_output(request.output, targets);
+  common.progress("reading the scan");
+  const bool may_move = request.reading.head_pose != "fixed";
+  const PlacedScan scan = place_scan(subject, formats::read(request.target), may_move);
+  for (const std::string& warning : scan.warnings)
+    common.warn(warning);
+  common.progress("fit " + targets.names.front());
+  fit::ScanOptions options;
+  options.moves_head = may_move;
+  const fit::ScanFit fitted = fit::fit_scan(subject, scan.mesh, request.fitting, options);
+  targets.target = [target = fitted.target](size_t) { return target; };
+  results = {fitted.result};
+  motion = {1.0};
+  figures = {{"matched_share", fitted.matched_share}};
+}
+
+void fit_targets(const Common& common, const Request& request, fit::Subject& subject, FitTargets& targets,
+                 std::vector<fit::FitResult>& results, std::vector<double>& motion) {
+  targets = is_landmark_file(request.target)
+                ? landmark_targets(common, request.target, request.neutral, subject, request.reading)
+                : open_fit_targets(common, request.target, subject, request.reading);
   choose_shape(request, targets);
   check_fit_output(request.output, targets);
   fit::Fitter fitter(subject, request.fitting);
-  std::vector<fit::FitResult> results;
-  std::vector<double> motion;
   for (size_t i = 0; i < targets.names.size(); ++i) {
     common.progress("fit " + targets.names[i]);
     const fit::Target target = targets.target(i);
@@ -77,10 +112,26 @@ void run(const Common& common, const Request& request) {
       common.warn(targets.names[i] + ": still falling after " + std::to_string(results.back().iterations) +
                   " steps; what is found so far is written");
   }
+}
+
+void run(const Common& common, const Request& request) {
+  const auto started = std::chrono::steady_clock::now();
+  check_output(request.output, {request.rig, request.target});
+  if (!request.report.empty()) make_output_folder(request.report);
+  fit::Subject subject(rig::read(formats::read_bytes(request.rig), request.rig.string()), request.level);
+  FitTargets targets;
+  std::vector<fit::FitResult> results;
+  std::vector<double> motion;
+  nlohmann::ordered_json scan_figures;
+  if (is_scan(request, subject))
+    fit_one_scan(common, request, subject, targets, results, motion, scan_figures);
+  else
+    fit_targets(common, request, subject, targets, results, motion);
   write_fit(request.output, subject, targets, results, request.reading.fps);
   if (!request.report.empty()) write_fit_report(request.report, subject, targets, results);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   nlohmann::ordered_json report = {{"output", request.output.string()}, {"level", subject.level_name()}};
+  if (!scan_figures.is_null()) report.update(scan_figures);
   if (results.size() == 1) {
     report.update(figures(subject, results[0]));
   } else {
@@ -102,50 +153,45 @@ void run(const Common& common, const Request& request) {
 
 }  // namespace
 
-void add_fit(CLI::App& app, Common& common) {
+void add_fit(const Command& tool, Common& common) {
   auto request = std::make_shared<Request>();
-  CLI::App* command = app.add_subcommand("fit", "Find the activations behind a posed mesh, shapes or a take");
-  command->add_option("RIG", request->rig, "Rig (.glb)")->required();
+  const Command command = tool.command("fit", "Find the activations behind a posed mesh, shapes or a take");
+  add_rig_argument(command, request->rig);
   command
-      ->add_option(
-          "--target", request->target,
+      .option(
+          "--target", &request->target,
           "Mesh of the rig's topology (.glb, .gltf, .obj, .ply, .stl), its morph targets or their animation, "
-          "a cache (.pc2, .mdd) or a folder of meshes, one a frame")
-      ->required();
+          "a cache (.pc2, .mdd), a folder of meshes, one a frame, a scan of any topology, or landmarks "
+          "(.json)")
+      .required();
   command
-      ->add_option("-o,--output", request->output,
-                   "Activations (.json), a folder of them for several shapes, or curves (.csv, .json)")
-      ->required();
-  command->add_option("--report", request->report, "Folder for residual.png, residual.ply and report.md");
-  command->add_option("--level", request->level,
-                      "Level of detail: low, medium or high (default: the finest)");
-  command->add_option("--shape", request->shape, "Fit one morph target only");
-  command->add_option("--as", request->reading.as, "What to fit of a file with morph targets")
-      ->check(CLI::IsMember({"auto", "mesh", "shapes", "take"}))
-      ->capture_default_str();
+      .option("-o,--output", &request->output,
+              "Activations (.json), a folder of them for several shapes, or curves (.csv, .json)")
+      .required();
+  command.option("--report", &request->report, "Folder for residual.png, residual.ply and report.md")
+      .value("DIR")
+      .default_text("none");
+  add_level_option(command, request->level);
+  command.option("--shape", &request->shape, "Fit one morph target only").default_text("all");
+  command.option("--as", &request->reading.as, "What to fit of a file with morph targets")
+      .one_of({"auto", "mesh", "shapes", "take", "scan"});
   command
-      ->add_option("--head-pose", request->reading.head_pose,
-                   "auto: the head's own motion is taken out where parts that cannot move have moved")
-      ->check(CLI::IsMember({"auto", "fixed"}))
-      ->capture_default_str();
-  command->add_option("--fps", request->reading.fps, "Frames a second of what holds no times")
-      ->check(CLI::Range(1.0, 1000.0))
-      ->capture_default_str();
-  const auto price = CLI::Range(0.0, 1e3);
+      .option("--neutral", &request->neutral,
+              "Landmarks of the face at rest by the same detector, for a target of landmarks (.json)")
+      .default_text("the rig's own landmarks");
   command
-      ->add_option("--ridge", request->fitting.ridge,
-                   "Cost of squared activations, mm^2 of mean squared error")
-      ->check(price)
-      ->capture_default_str();
-  command->add_option("--sparsity", request->fitting.sparsity, "Cost of activations' sizes, mm^2")
-      ->check(price)
-      ->capture_default_str();
+      .option("--head-pose", &request->reading.head_pose,
+              "auto: the head's own motion is taken out where parts that cannot move have moved")
+      .one_of({"auto", "fixed"});
+  command.option("--fps", &request->reading.fps, "Frames a second of what holds no times").range(1.0, 1000.0);
   command
-      ->add_option("--smoothness", request->fitting.smoothness,
-                   "Cost of squared changes between frames, mm^2")
-      ->check(price)
-      ->capture_default_str();
-  command->callback([request, &common] { run(common, *request); });
+      .option("--ridge", &request->fitting.ridge, "Cost of squared activations, mm^2 of mean squared error")
+      .range(0.0, 1e3);
+  command.option("--sparsity", &request->fitting.sparsity, "Cost of activations' sizes, mm^2")
+      .range(0.0, 1e3);
+  command.option("--smoothness", &request->fitting.smoothness, "Cost of squared changes between frames, mm^2")
+      .range(0.0, 1e3);
+  command.run([request, &common] { run(common, *request); });
 }
 
 }  // namespace fascia::cli

@@ -5,6 +5,6 @@
 namespace fascia::cli {
 
 /// `fascia fit`: see add_build and its like in common.h.
-void add_fit(CLI::App& app, Common& common);
+void add_fit(const Command& tool, Common& common);
 
 }  // namespace fascia::cli

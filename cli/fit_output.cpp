@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 
@@ -218,6 +219,7 @@ void write_fit(const std::filesystem::path& path, const fit::Subject& subject, c
     return;
   }
   if (targets.kind == FitTargets::Kind::shapes && path.extension().empty()) {
+    make_output_folder(path);
     std::set<std::string> words;
     for (size_t i = 0; i < results.size(); ++i) {
       std::string word = file_word(targets.names[i]);
@@ -241,7 +243,6 @@ void write_fit_report(const std::filesystem::path& folder, const fit::Subject& s
   for (size_t i = 1; i < results.size(); ++i)
     if (results[i].rms_mm > results[worst].rms_mm) worst = i;
   const fit::Target target = targets.target(worst);
-  std::filesystem::create_directories(folder);
   write_picture(folder / "residual.png", subject, target, results[worst], targets.names[worst]);
   write_residual_ply(folder / "residual.ply", subject, target, results[worst]);
   formats::write_text(folder / "report.md", report_text(subject, targets, results, worst));

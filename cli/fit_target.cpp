@@ -39,13 +39,13 @@ std::vector<uint32_t> counted(size_t first, size_t count) {
   throw Error("'" + path.string() + "' " + holds + ", but the rig's meshes have " +
               std::to_string(subject.vertex_count()) + " vertices in " +
               std::to_string(subject.file().primitives.size()) +
-              " parts: give meshes of the rig's own topology, as `fascia pose` writes them (scans of another "
-              "topology and landmarks alone are not fitted in this version)");
+              " parts: give meshes of the rig's own topology, as `fascia pose` writes them, or one scan with "
+              "--as scan");
 }
 
 /// Finds each of the rig's primitives in a scene: by its place in the file, by its name, or in one mesh of
-/// all.
-std::vector<Match> matches(const formats::Scene& scene, const fit::Subject& subject) {
+/// all. Empty when there are none.
+std::vector<Match> matches_or_none(const formats::Scene& scene, const fit::Subject& subject) {
   const auto& primitives = subject.file().primitives;
   const bool is_gltf = scene.kind == formats::FileKind::glb || scene.kind == formats::FileKind::gltf;
   std::vector<Match> found;
@@ -69,6 +69,11 @@ std::vector<Match> matches(const formats::Scene& scene, const fit::Subject& subj
   if (found.empty() && scene.meshes.size() == 1 && scene.meshes[0].positions.size() == subject.vertex_count())
     for (size_t p = 0; p < primitives.size(); ++p)
       found.push_back({p, 0, counted(subject.first_vertex(p), primitives[p].positions.size())});
+  return found;
+}
+
+std::vector<Match> matches(const formats::Scene& scene, const fit::Subject& subject) {
+  std::vector<Match> found = matches_or_none(scene, subject);
   if (found.empty()) {
     size_t vertices = 0;
     for (const formats::SceneMesh& mesh : scene.meshes)
@@ -98,16 +103,7 @@ class TargetMaker {
     put_metres(target, vertex, transform_point(to_metres_, place - offset_));
   }
 
-  /// From a scene's axes and units to the rig's. A glTF that was written for a head of another format stands
-  /// in the rig's own, by the node that was made for it.
-  Mat4 to_metres(const formats::Scene& scene) const {
-    const bool is_gltf = scene.kind == formats::FileKind::glb || scene.kind == formats::FileKind::gltf;
-    const std::string& source = subject_.file().source.format;
-    if (is_gltf && (source == "obj" || source == "ply" || source == "stl")) return Mat4::Identity();
-    Mat4 map = to_metres_;
-    map.topRightCorner<3, 1>() += to_metres_.topLeftCorner<3, 3>() * (scene.offset - offset_);
-    return map;
-  }
+  Mat4 to_metres(const formats::Scene& scene) const { return scene_to_metres(subject_, scene); }
 
   /// The target with the head's own motion taken out where asked for. Throws fascia::Error when it is another
   /// place or size than the rig's head.
@@ -395,6 +391,20 @@ struct MorphTargets {
 
 }  // namespace
 
+Mat4 scene_to_metres(const fit::Subject& subject, const formats::Scene& scene) {
+  const bool is_gltf = scene.kind == formats::FileKind::glb || scene.kind == formats::FileKind::gltf;
+  const std::string& source = subject.file().source.format;
+  if (is_gltf && (source == "obj" || source == "ply" || source == "stl")) return Mat4::Identity();
+  Mat4 map = subject.file().rig.input_to_metres.cast<double>();
+  const Vec3 apart = scene.offset - rigging::input_offset(subject.file().source);
+  map.topRightCorner<3, 1>() += map.topLeftCorner<3, 3>() * apart;
+  return map;
+}
+
+bool has_rig_topology(const fit::Subject& subject, const formats::Scene& scene) {
+  return !matches_or_none(scene, subject).empty();
+}
+
 FitTargets open_fit_targets(const Common& common, const std::filesystem::path& path,
                             const fit::Subject& subject, const FitTargetOptions& options) {
   const TargetMaker maker(subject, options.head_pose != "fixed");
@@ -403,10 +413,6 @@ FitTargets open_fit_targets(const Common& common, const std::filesystem::path& p
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (std::filesystem::is_directory(path)) return sequence_targets(path, maker, options.fps);
   if (extension == ".pc2" || extension == ".mdd") return cache_targets(path, maker, options.fps);
-  if (extension == ".json" || extension == ".csv")
-    throw Error(
-        "'" + path.string() +
-        "': landmarks alone are not fitted in this version; give a posed mesh, morph targets or a cache");
   const auto scene = std::make_shared<formats::Scene>(formats::read(path));
   const std::vector<Shape> shapes = morph_shapes(*scene);
   FitTargets targets;

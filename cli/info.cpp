@@ -1,5 +1,5 @@
-#include <CLI/CLI.hpp>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "anatomy/anatomy.h"
 #include "cli/common.h"
@@ -115,7 +115,7 @@ void list_names(const Common& common) {
 
 void run(const Common& common, const Request& request) {
   if (request.names) return list_names(common);
-  if (request.rig.empty()) throw CLI::RequiredError("RIG");
+  if (request.rig.empty()) throw UsageError("RIG is required; 'fascia info --help' explains");
   // Reading checks every index, accessor and fingerprint; what is unsound does not come through.
   const std::vector<uint8_t> bytes = formats::read_bytes(request.rig);
   const rig::RigFile file = rig::read(bytes, request.rig.string());
@@ -132,15 +132,14 @@ void run(const Common& common, const Request& request) {
 
 }  // namespace
 
-void add_info(CLI::App& app, Common& common) {
+void add_info(const Command& tool, Common& common) {
   auto request = std::make_shared<Request>();
-  CLI::App* command = app.add_subcommand("info", "Say what is in a rig, and whether it is sound");
-  command->add_option("RIG", request->rig, "Rig (.glb)");
-  command->add_flag("--names", request->names,
-                    "List the names of other programs that rigs know; needs no rig");
-  command->add_flag("--channels", request->channels, "List every channel and vocabulary");
-  command->add_flag("--validate", request->validate, "Say whether the rig is sound");
-  command->callback([request, &common] { run(common, *request); });
+  const Command command = tool.command("info", "Say what is in a rig, and whether it is sound");
+  command.positional("RIG", &request->rig, "Rig (.glb)").default_text("none, which only --names allows");
+  command.flag("--names", request->names, "List the names of other programs that rigs know; needs no rig");
+  command.flag("--channels", request->channels, "List every channel and vocabulary");
+  command.flag("--validate", request->validate, "Say whether the rig is sound");
+  command.run([request, &common] { run(common, *request); });
 }
 
 }  // namespace fascia::cli

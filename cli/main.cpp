@@ -1,14 +1,16 @@
 #include <tbb/global_control.h>
 #include <unistd.h>
-#include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdio>
 #include <iostream>
 #include <memory>
 #include <new>
+#include <nlohmann/json.hpp>
 
+#include "cli/calibrate.h"
 #include "cli/check.h"
 #include "cli/common.h"
+#include "cli/face.h"
 #include "cli/fit.h"
 #include "formats/partial.h"
 #include "geometry/error.h"
@@ -33,6 +35,30 @@ int fail(const fascia::cli::Common& common, const std::string& message, int code
   return code;
 }
 
+/// The options of every command, and all commands in the order in which help lists them.
+void declare(const fascia::cli::Command& tool, fascia::cli::Common& common) {
+  using namespace fascia::cli;
+  tool.flag("--json", common.json, "Print one JSON object on stdout, and nothing else there");
+  tool.flag("--quiet", common.quiet, "Print errors only");
+  tool.option("--threads", &common.threads, "Threads to use")
+      .range(1, 1024)
+      .default_text("all the machine has");
+  add_build(tool, common);
+  add_info(tool, common);
+  add_export(tool, common);
+  add_pose(tool, common);
+  add_play(tool, common);
+  add_bake(tool, common);
+  add_render(tool, common);
+  add_check(tool, common);
+  add_demo(tool, common);
+  add_calibrate(tool, common);
+  add_face(tool, common);
+  add_fit(tool, common);
+  add_to_come(tool);
+  add_manual(tool);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -42,39 +68,21 @@ int main(int argc, char** argv) {
   for (const int signal : {SIGXFSZ, SIGPIPE})
     std::signal(signal, SIG_IGN);
   fascia::cli::Common common;
-  CLI::App app{"Fascia: anatomical face rigs for any head, simulated in real time", "fascia"};
-  app.set_version_flag("--version", "fascia " FASCIA_VERSION_TEXT);
-  app.require_subcommand(1);
-  app.fallthrough();
-  app.add_flag("--json", common.json, "Print one JSON object on stdout");
-  app.add_flag("--quiet", common.quiet, "Print errors only");
-  app.add_option("--threads", common.threads, "Threads to use (default: all)")->check(CLI::Range(1, 1024));
+  using namespace fascia::cli;
+  const Command tool("fascia", "Fascia: anatomical face rigs for any head, simulated in real time",
+                     "fascia " FASCIA_VERSION_TEXT);
   std::unique_ptr<tbb::global_control> limit;
-  app.parse_complete_callback([&] {
+  try {
+    declare(tool, common);
+    const std::function<void()> action = tool.parse(argc, argv);
     if (common.threads > 0)
       limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
                                                     static_cast<size_t>(common.threads));
-  });
-  using namespace fascia::cli;
-  add_build(app, common);
-  add_info(app, common);
-  add_export(app, common);
-  add_pose(app, common);
-  add_play(app, common);
-  add_bake(app, common);
-  add_render(app, common);
-  add_check(app, common);
-  add_demo(app, common);
-  add_fit(app, common);
-  add_to_come(app);
-  add_manual(app);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::RuntimeError& error) {
-    return error.get_exit_code();
-  } catch (const CLI::ParseError& error) {
-    const int code = app.exit(error);
-    return code == 0 ? 0 : exit_usage;
+    if (action) action();
+  } catch (const Exit& end) {
+    return end.code;
+  } catch (const UsageError& error) {
+    return fail(common, error.what(), exit_usage);
   } catch (const fascia::Error& error) {
     return fail(common, error.what(), exit_input);
   } catch (const std::bad_alloc&) {

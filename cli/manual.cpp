@@ -1,36 +1,18 @@
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "cli/common.h"
+#include "cli/help.h"
 
 namespace fascia::cli {
 
 namespace {
 
-using Commands = std::vector<const CLI::App*>;
-
-/// The commands people call, in the order they were added.
-Commands commands_of(const CLI::App& app) {
-  return app.get_subcommands(
-      [](const CLI::App* command) { return !command->get_name().empty() && !command->get_group().empty(); });
-}
-
-std::vector<const CLI::Option*> options_of(const CLI::App& app) {
-  return app.get_options([](const CLI::Option* option) { return !option->get_group().empty(); });
-}
-
-bool takes_value(const CLI::Option& option) {
-  return option.get_items_expected_max() > 0;
-}
-
-/// "--threads INT" or "HEAD".
-std::string usage_of(const CLI::Option& option) {
-  const std::string name = option.get_name(false, true);
-  if (option.get_positional() || !takes_value(option) || option.get_type_name().empty()) return name;
-  return name + " " + option.get_type_name();
+/// Names with their dashes; none of a positional one.
+std::vector<std::string> flags_of(const OptionFacts& option) {
+  return option.is_positional ? std::vector<std::string>() : option.names;
 }
 
 std::string replaced(std::string text, const std::string& what, const std::string& with) {
@@ -47,25 +29,22 @@ std::string roff(const std::string& text) {
   return escaped;
 }
 
-std::string roff_options(const CLI::App& app) {
+std::string roff_options(const Command& command) {
   std::string page;
-  for (const CLI::Option* option : options_of(app)) {
-    page += ".TP\n.B " + roff(usage_of(*option)) + "\n" + roff(option->get_description());
-    if (!option->get_default_str().empty()) page += " (default: " + roff(option->get_default_str()) + ")";
-    page += "\n";
-  }
+  for (const OptionFacts& option : command.options())
+    page += ".TP\n.B " + roff(usage_of(option)) + "\n" + roff(meaning_of(option)) + "\n";
   return page;
 }
 
 /// The page for man(1).
-std::string man_page(const CLI::App& app) {
+std::string man_page(const Command& tool) {
   std::string page = ".TH FASCIA 1 \"\" \"fascia\" \"User commands\"\n.SH NAME\nfascia \\- " +
-                     roff(app.get_description()) + "\n.SH SYNOPSIS\n.B fascia\n.I COMMAND\n[options]\n";
-  page += ".SH OPTIONS\nEvery command takes these.\n" + roff_options(app);
+                     roff(tool.description()) + "\n.SH SYNOPSIS\n.B fascia\n.I COMMAND\n[options]\n";
+  page += ".SH OPTIONS\nEvery command takes these.\n" + roff_options(tool);
   page += ".SH COMMANDS\n";
-  for (const CLI::App* command : commands_of(app))
-    page += ".SS fascia " + roff(command->get_name()) + "\n" + roff(command->get_description()) + "\n" +
-            roff_options(*command);
+  for (const Command& command : tool.commands())
+    page += ".SS fascia " + roff(command.name()) + "\n" + roff(command.description()) + "\n" +
+            roff_options(command);
   page +=
       ".SH EXIT STATUS\n"
       ".TP\n.B 0\ndone\n.TP\n.B 1\nthe input is at fault; the message names it and the remedy\n"
@@ -74,15 +53,12 @@ std::string man_page(const CLI::App& app) {
   return page;
 }
 
-/// All long and short names of an app's options, such as "--json --quiet -o".
-std::vector<std::string> flags_of(const CLI::App& app) {
+/// The flags of all of a command's options, such as "--json --quiet -o".
+std::vector<std::string> flags_of(const Command& command) {
   std::vector<std::string> names;
-  for (const CLI::Option* option : options_of(app)) {
-    for (const std::string& name : option->get_lnames())
-      names.push_back("--" + name);
-    for (const std::string& name : option->get_snames())
-      names.push_back("-" + name);
-  }
+  for (const OptionFacts& option : command.options())
+    for (const std::string& name : flags_of(option))
+      names.push_back(name);
   return names;
 }
 
@@ -93,29 +69,44 @@ std::string joined(const std::vector<std::string>& words) {
   return line;
 }
 
-std::string names_of(const Commands& commands) {
+std::string names_of(const std::vector<Command>& commands) {
   std::vector<std::string> names;
-  for (const CLI::App* command : commands)
-    names.push_back(command->get_name());
+  for (const Command& command : commands)
+    names.push_back(command.name());
   return joined(names);
 }
 
-std::string bash_completion(const CLI::App& app) {
-  const Commands commands = commands_of(app);
-  const std::string common = joined(flags_of(app));
+/// After an option with few words to choose from the shell offers those.
+std::string bash_choices(const Command& command) {
+  std::string cases;
+  for (const OptionFacts& option : command.options())
+    if (!option.choices.empty() && !option.is_positional) {
+      std::string names;
+      for (const std::string& name : option.names)
+        names += (names.empty() ? "" : "|") + name;
+      cases += "      " + command.name() + ":" + names + ") COMPREPLY=($(compgen -W '" +
+               joined(option.choices) + "' -- \"$word\")); return ;;\n";
+    }
+  return cases;
+}
+
+std::string bash_completion(const Command& tool) {
   std::string script =
       "_fascia() {\n"
       "  local word=\"${COMP_WORDS[COMP_CWORD]}\" flags='" +
-      common +
+      joined(flags_of(tool)) +
       "'\n"
       "  COMPREPLY=()\n"
       "  if [ \"$COMP_CWORD\" -eq 1 ]; then\n"
       "    COMPREPLY=($(compgen -W '" +
-      names_of(commands) +
+      names_of(tool.commands()) +
       "' -- \"$word\"))\n    return\n  fi\n"
-      "  case \"${COMP_WORDS[1]}\" in\n";
-  for (const CLI::App* command : commands)
-    script += "    " + command->get_name() + ") flags=\"$flags " + joined(flags_of(*command)) + "\" ;;\n";
+      "  case \"${COMP_WORDS[1]}:${COMP_WORDS[COMP_CWORD-1]}\" in\n";
+  for (const Command& command : tool.commands())
+    script += bash_choices(command);
+  script += "  esac\n  case \"${COMP_WORDS[1]}\" in\n";
+  for (const Command& command : tool.commands())
+    script += "    " + command.name() + ") flags=\"$flags " + joined(flags_of(command)) + "\" ;;\n";
   script +=
       "  esac\n"
       "  case \"$word\" in -*) COMPREPLY=($(compgen -W \"$flags\" -- \"$word\")) ;; esac\n"
@@ -130,70 +121,67 @@ std::string quoted(const std::string& text) {
   return replaced(first_line, "'", "'\\''");
 }
 
-std::string zsh_completion(const CLI::App& app) {
-  const auto spec = [](const std::string& flag, const CLI::Option& option) {
-    std::string text = replaced(replaced(quoted(option.get_description()), "[", "("), "]", ")");
-    return "'" + flag + "[" + replaced(text, ":", "\\:") + "]" +
-           (takes_value(option) ? ":value:_files" : "") + "'";
-  };
-  const auto specs = [&](const CLI::App& of) {
-    std::string all;
-    for (const CLI::Option* option : options_of(of)) {
-      for (const std::string& name : option->get_lnames())
-        all += " " + spec("--" + name, *option);
-      for (const std::string& name : option->get_snames())
-        all += " " + spec("-" + name, *option);
+std::string zsh_specs(const Command& command) {
+  std::string all;
+  for (const OptionFacts& option : command.options())
+    for (const std::string& flag : flags_of(option)) {
+      const std::string text = replaced(replaced(quoted(meaning_of(option)), "[", "("), "]", ")");
+      const std::string after = option.value.empty()     ? ""
+                                : option.choices.empty() ? ":value:_files"
+                                                         : ":value:(" + joined(option.choices) + ")";
+      all += " '" + flag + "[" + replaced(text, ":", "\\:") + "]" + after + "'";
     }
-    return all;
-  };
+  return all;
+}
+
+std::string zsh_completion(const Command& tool) {
   std::string script = "#compdef fascia\nlocal -a commands=(\n";
-  for (const CLI::App* command : commands_of(app))
-    script +=
-        "  '" + command->get_name() + ":" + replaced(quoted(command->get_description()), ":", "\\:") + "'\n";
+  for (const Command& command : tool.commands())
+    script += "  '" + command.name() + ":" + replaced(quoted(command.description()), ":", "\\:") + "'\n";
   script += ")\nif (( CURRENT == 2 )); then _describe command commands; return; fi\ncase $words[2] in\n";
-  for (const CLI::App* command : commands_of(app))
-    script +=
-        "  " + command->get_name() + ") _arguments '*:file:_files'" + specs(app) + specs(*command) + " ;;\n";
+  for (const Command& command : tool.commands())
+    script += "  " + command.name() + ") _arguments '*:file:_files'" + zsh_specs(tool) + zsh_specs(command) +
+              " ;;\n";
   return script + "esac\n";
 }
 
-std::string fish_completion(const CLI::App& app) {
-  const auto lines = [](const CLI::App& of, const std::string& condition) {
-    std::string all;
-    for (const CLI::Option* option : options_of(of)) {
-      std::string names;
-      for (const std::string& name : option->get_lnames())
-        names += " -l " + name;
-      for (const std::string& name : option->get_snames())
-        names += " -s " + name;
-      if (!names.empty())
-        all += "complete -c fascia" + condition + names + (takes_value(*option) ? " -r" : "") + " -d '" +
-               quoted(option->get_description()) + "'\n";
-    }
-    return all;
-  };
-  std::string script = lines(app, "");
-  for (const CLI::App* command : commands_of(app)) {
-    script += "complete -c fascia -n __fish_use_subcommand -a " + command->get_name() + " -d '" +
-              quoted(command->get_description()) + "'\n";
-    script += lines(*command, " -n '__fish_seen_subcommand_from " + command->get_name() + "'");
+std::string fish_lines(const Command& command, const std::string& condition) {
+  std::string all;
+  for (const OptionFacts& option : command.options()) {
+    std::string names;
+    for (const std::string& flag : flags_of(option))
+      names += flag.rfind("--", 0) == 0 ? " -l " + flag.substr(2) : " -s " + flag.substr(1);
+    if (names.empty()) continue;
+    const std::string choices =
+        option.choices.empty() ? std::string() : " -f -a '" + joined(option.choices) + "'";
+    all += "complete -c fascia" + condition + names + (option.value.empty() ? "" : " -r" + choices) +
+           " -d '" + quoted(meaning_of(option)) + "'\n";
+  }
+  return all;
+}
+
+std::string fish_completion(const Command& tool) {
+  std::string script = fish_lines(tool, "");
+  for (const Command& command : tool.commands()) {
+    script += "complete -c fascia -n __fish_use_subcommand -a " + command.name() + " -d '" +
+              quoted(command.description()) + "'\n";
+    script += fish_lines(command, " -n '__fish_seen_subcommand_from " + command.name() + "'");
   }
   return script;
 }
 
 }  // namespace
 
-void add_manual(CLI::App& app) {
-  auto* command = app.add_subcommand("manual", "Print the manual page, or the completions of a shell");
+void add_manual(const Command& tool) {
   auto kind = std::make_shared<std::string>("man");
-  command->add_option("KIND", *kind, "man, bash, zsh or fish")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"man", "bash", "zsh", "fish"}));
-  command->callback([&app, kind] {
-    const std::string text = *kind == "man"    ? man_page(app)
-                             : *kind == "bash" ? bash_completion(app)
-                             : *kind == "zsh"  ? zsh_completion(app)
-                                               : fish_completion(app);
+  const Command command = tool.command("manual", "Print the manual page, or the completions of a shell");
+  command.positional("KIND", kind.get(), "Which").one_of({"man", "bash", "zsh", "fish"});
+  // By reference: a copy kept by one of the tool's own commands would never be freed.
+  command.run([&tool, kind] {
+    const std::string text = *kind == "man"    ? man_page(tool)
+                             : *kind == "bash" ? bash_completion(tool)
+                             : *kind == "zsh"  ? zsh_completion(tool)
+                                               : fish_completion(tool);
     std::fwrite(text.data(), 1, text.size(), stdout);
   });
 }

@@ -7,6 +7,7 @@
 
 #include "cli/picture.h"
 #include "geometry/error.h"
+#include "geometry/nearest_names.h"
 #include "view/renderer.h"
 
 namespace fascia::cli {
@@ -65,8 +66,12 @@ std::vector<std::string> muscles_from(const std::string& list, const rig::Rig& r
           if (std::find(names.begin(), names.end(), muscle.name) == names.end()) names.push_back(muscle.name);
           found = true;
         }
-    if (!found)
-      throw Error("there is no muscle '" + wanted + "'; 'fascia info RIG.glb --channels' lists them");
+    if (found) return;
+    std::vector<std::string> known;
+    for (const rig::Muscle& muscle : rig.muscles)
+      known.push_back(muscle.name);
+    throw Error("there is no muscle '" + wanted + "'" + did_you_mean(wanted, known) +
+                "; 'fascia info RIG.glb --channels' lists them");
   };
   for (std::string word; std::getline(words, word, ',');)
     add(word);

@@ -1,6 +1,6 @@
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "cli/common.h"
 #include "cli/play_file.h"
@@ -41,40 +41,33 @@ void run(const Common& common, const PlayRequest& request) {
 
 }  // namespace
 
-void add_play(CLI::App& app, Common& common) {
+void add_play(const Command& tool, Common& common) {
   auto request = std::make_shared<PlayRequest>();
-  CLI::App* command = app.add_subcommand("play", "Simulate a rig along curves and write the animation");
-  command->add_option("RIG", request->rig, "Rig (.glb)")->required();
-  command->add_option("--curves", request->curves, "Curves: a table (.csv), .json or .glb")->required();
-  command->add_option("--fps", request->frames_per_second, "Frames a second to simulate and write")
-      ->check(CLI::Range(1.0, 1000.0))
-      ->capture_default_str();
+  const Command command = tool.command("play", "Simulate a rig along curves and write the animation");
+  add_rig_argument(command, request->rig);
+  command.option("--curves", &request->curves, "Curves: a table (.csv), .json or .glb").required();
+  command.option("--fps", &request->frames_per_second, "Frames a second to simulate and write")
+      .range(1.0, 1000.0);
   command
-      ->add_option("--fps-in", request->curve_frames_per_second,
-                   "Frames a second of the curves' rows or timecodes (default: as their file says)")
-      ->check(CLI::Range(1.0, 1000.0));
+      .option("--fps-in", &request->curve_frames_per_second,
+              "Frames a second of the curves' rows or timecodes")
+      .range(1.0, 1000.0)
+      .default_text("as their file says");
   command
-      ->add_option(
-          "--time-unit", request->time_unit,
-          "Unit of the curves' times: s, ms, us or seconds in one unit (default: as their file says)")
-      ->transform(
-          CLI::CheckedTransformer(std::map<std::string, double>{{"s", 1.0}, {"ms", 1e-3}, {"us", 1e-6}}) |
-          CLI::Range(1e-9, 3600.0));
-  command->add_option("--targets", request->most_targets, "Morph targets a mesh at most")
-      ->check(CLI::Range(1, 4096))
-      ->capture_default_str();
-  command->add_flag(
-      "--head", request->keeps_head,
-      "Keep the captured rotation of the head as motion of the file's nodes (default: left out)");
-  command->add_option("--solver", request->solver, "Solver")
-      ->check(CLI::IsMember({"own", "reference", "bullet"}))
-      ->capture_default_str();
-  command->add_option("--level", request->level,
-                      "Level of detail: low, medium or high (default: the rig's finest)");
-  command
-      ->add_option("-o,--output", request->output, "Animation to write: .glb, or a point cache, .pc2 or .mdd")
-      ->required();
-  command->callback([request, &common] { run(common, *request); });
+      .option("--time-unit", &request->time_unit,
+              "Unit of the curves' times: s, ms, us or seconds in one unit")
+      .units({{"s", 1.0}, {"ms", 1e-3}, {"us", 1e-6}})
+      .range(1e-9, 3600.0)
+      .value("UNIT")
+      .default_text("as their file says");
+  command.option("--targets", &request->most_targets, "Morph targets a mesh at most").range(1, 4096);
+  command.flag("--head", request->keeps_head,
+               "Keep the captured rotation of the head as motion of the file's nodes");
+  add_solver_option(command, request->solver);
+  add_level_option(command, request->level);
+  command.option("-o,--output", &request->output, "Animation to write: .glb, or a point cache, .pc2 or .mdd")
+      .required();
+  command.run([request, &common] { run(common, *request); });
 }
 
 }  // namespace fascia::cli

@@ -1,5 +1,5 @@
-#include <CLI/CLI.hpp>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "cli/common.h"
 #include "cli/posed_output.h"
@@ -40,18 +40,15 @@ void run(const Common& common, const Request& request) {
 
 }  // namespace
 
-void add_pose(CLI::App& app, Common& common) {
+void add_pose(const Command& tool, Common& common) {
   auto request = std::make_shared<Request>();
-  CLI::App* command = app.add_subcommand("pose", "Pose a rig statically and write the posed mesh");
-  command->add_option("RIG", request->rig, "Rig (.glb)")->required();
-  command->add_option("--set", request->set, "NAME=VALUE: an actuator, arkit:NAME, au:N or viseme:NAME")
-      ->take_all();
-  command->add_option("--activations", request->file, "Activations (.json)");
-  command->add_option("--solver", request->solver, "Solver")
-      ->check(CLI::IsMember({"own", "reference", "bullet"}));
-  command->add_option("--level", request->level, "Level of detail: low, medium or high");
-  command->add_option("-o,--output", request->output, "Mesh to write: .glb, .obj or .ply")->required();
-  command->callback([request, &common] { run(common, *request); });
+  const Command command = tool.command("pose", "Pose a rig statically and write the posed mesh");
+  add_rig_argument(command, request->rig);
+  add_set_options(command, request->set, request->file);
+  add_solver_option(command, request->solver);
+  add_level_option(command, request->level);
+  command.option("-o,--output", &request->output, "Mesh to write: .glb, .obj or .ply").required();
+  command.run([request, &common] { run(common, *request); });
 }
 
 }  // namespace fascia::cli

@@ -35,24 +35,6 @@ int decimals_for(const formats::Scene& scene) {
   return std::clamp(static_cast<int>(std::ceil(7.0 - std::log10(box.size().maxCoeff()))), 0, 15);
 }
 
-/// The OBJ text with the `v` lines in `moved` (by number, from 0) put in new places, and all else as it was.
-std::string patched_obj(const std::vector<uint8_t>& bytes, const std::map<int, Vec3>& moved, int decimals) {
-  const std::string_view before(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  const std::vector<formats::ObjVertex> vertices = formats::obj_vertices(before);
-  std::string text;
-  size_t copied = 0;
-  for (const auto& [vertex, place] : moved)
-    for (int k = 0; k < 3; ++k) {
-      const auto [begin, end] = vertices.at(static_cast<size_t>(vertex)).coordinates[static_cast<size_t>(k)];
-      char digits[64];
-      std::snprintf(digits, sizeof digits, "%.*f", decimals, place[k]);
-      text += before.substr(copied, begin - copied);
-      text += digits;
-      copied = end;
-    }
-  return text.append(before.substr(copied));
-}
-
 /// The `v` line of each vertex of each mesh: as the rig's notes have it, else as the file is read.
 std::vector<std::vector<int>> source_vertices(const rig::SourceRecord& source, const formats::Scene& scene) {
   std::vector<std::vector<int>> lines;
@@ -89,7 +71,8 @@ std::string obj_like_source(const rig::SourceRecord& source, const Face& face) {
         moved[line_of[v]] = original->second + scene.offset + posed[v] - rest[v];
     }
   }
-  return patched_obj(source.bytes, moved, decimals_for(scene));
+  return formats::with_vertices({reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size()},
+                                moved, decimals_for(scene));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "formats/scene.h"
 #include "geometry/error.h"
+#include "geometry/nearest_names.h"
 
 namespace fascia::cli {
 
@@ -127,12 +128,26 @@ std::vector<std::string> Face::channel_names() const {
   return {channels.names, channels.names + channels.count};
 }
 
+std::string Face::suggestion(const std::string& name) const {
+  std::vector<std::string> known = channel_names();
+  for (const std::string& set : set_names())
+    for (const std::string& member : set_members(set))
+      known.push_back(set == "whole" ? member : set + ":" + member);  // muscles go by their bare names
+  std::string suggested = did_you_mean(name, known);
+  // A member written without its set is nearest to members, not to words that are as long with the set's
+  // name.
+  if (suggested.empty() && name.find(':') == std::string::npos)
+    for (const std::string& set : set_names())
+      if (suggested.empty()) suggested = did_you_mean(name, set_members(set));
+  return suggested;
+}
+
 void Face::set(const std::string& name, double value) {
   const fascia_result result = fascia_face_set(face_.get(), name.c_str(), static_cast<float>(value));
   if (result == FASCIA_ERROR_NAME)
     throw Error(
-        "the rig has no channel or shape '" + name +
-        "'; 'fascia info RIG --channels' lists them, 'fascia info --names' what other programs call them");
+        "the rig has no channel or shape '" + name + "'" + suggestion(name) +
+        "; 'fascia info RIG --channels' lists them, 'fascia info --names' what other programs call them");
   check(result, "'" + name + "'");
 }
 

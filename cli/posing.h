@@ -40,6 +40,9 @@ class Face {
   std::vector<std::string> set_members(const std::string& set) const;
   std::vector<std::string> channel_names() const;
 
+  /// " (did you mean ...?)" with the channels and members of sets that look most like `name`, or nothing.
+  std::string suggestion(const std::string& name) const;
+
   /// Sets a channel or a set's member; throws when there is none of that name.
   void set(const std::string& name, double value);
   void clear();

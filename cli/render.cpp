@@ -1,5 +1,5 @@
-#include <CLI/CLI.hpp>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "cli/common.h"
 #include "cli/muscle_sheet.h"
@@ -77,26 +77,29 @@ void run(const Common& common, const Request& request) {
 
 }  // namespace
 
-void add_render(CLI::App& app, Common& common) {
+void add_render(const Command& tool, Common& common) {
   auto request = std::make_shared<Request>();
-  CLI::App* command = app.add_subcommand("render", "Draw a rig to a picture, no display needed");
-  command->add_option("RIG", request->rig, "Rig (.glb)")->required();
-  command->add_option("--set", request->set, "NAME=VALUE: an actuator, arkit:NAME, au:N or viseme:NAME")
-      ->take_all();
-  command->add_option("--activations", request->file, "Activations (.json)");
-  command->add_option("--layers", request->layers, "Of skin, eyes, teeth, skull, smas, muscles, landmarks");
-  command->add_option("--solver", request->solver, "Solver")
-      ->check(CLI::IsMember({"own", "reference", "bullet"}));
-  command->add_option(
-      "--view", request->view,
+  const Command command = tool.command("render", "Draw a rig to a picture, no display needed");
+  add_rig_argument(command, request->rig);
+  add_set_options(command, request->set, request->file);
+  command
+      .option("--layers", &request->layers,
+              "Any of skin, eyes, teeth, skull, smas, muscles, landmarks, with commas between")
+      .value("LAYER,...");
+  command.option(
+      "--view", &request->view,
       "front, side, right, three-quarter, back, turntable, or sheet: muscles in four views with a legend");
-  command->add_option("--muscles", request->muscles,
-                      "Draw these muscles only: names of parts or wholes, with a side or without");
-  command->add_option("--level", request->level, "Level of detail: low, medium or high");
-  command->add_option("--size", request->size, "Width and height in pixels")->check(CLI::Range(16, 4096));
-  command->add_option("-o,--output", request->output, "Picture to write (.png; a turntable also .mp4)")
-      ->required();
-  command->callback([request, &common] { run(common, *request); });
+  command
+      .option("--muscles", &request->muscles,
+              "Draw these muscles only: names of parts or wholes, with a side or without")
+      .value("NAME,...")
+      .default_text("all");
+  add_solver_option(command, request->solver);
+  add_level_option(command, request->level);
+  command.option("--size", &request->size, "Width and height in pixels").range(16, 4096);
+  command.option("-o,--output", &request->output, "Picture to write (.png; a turntable also .mp4)")
+      .required();
+  command.run([request, &common] { run(common, *request); });
 }
 
 }  // namespace fascia::cli

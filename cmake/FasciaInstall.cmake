@@ -62,6 +62,7 @@ install(TARGETS fascia_runtime EXPORT fascia_runtime_targets
 install(TARGETS fascia_runtime_static EXPORT fascia_runtime_targets ARCHIVE COMPONENT development)
 install(EXPORT fascia_runtime_targets NAMESPACE fascia:: DESTINATION ${package_folder} COMPONENT development)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/runtime/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/runtime/shaders/ DESTINATION ${CMAKE_INSTALL_DATADIR}/fascia/shaders COMPONENT development)
 # The module lies beside the library that loads it.
 if(TARGET fascia_bullet_module)
   install(TARGETS fascia_bullet_module LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT runtime)

@@ -11,7 +11,8 @@
 namespace fascia::fit {
 namespace {
 
-constexpr double square_mm = 1e6;  // of a square metre
+constexpr double square_mm = 1e6;       // of a square metre
+constexpr double along_surface = 0.03;  // what a vertex that may slide costs along the surface, of across it
 
 /// How much more a channel costs than one that the expression tables use to the full: 1 to 4.
 std::vector<double> dearness_of(const rig::Actuation& actuation) {
@@ -89,8 +90,39 @@ double Fitter::objective(const Target& target, const std::vector<float>& values,
   difference = subject_->displacements(values) - target.displacements;
   double sum = 0.0;
   for (Eigen::Index v = 0; v < vertex_weights_.size(); ++v)
-    if (vertex_weights_[v] > 0.0) sum += vertex_weights_[v] * difference.segment<3>(3 * v).squaredNorm();
+    if (vertex_weights_[v] > 0.0) {
+      const Vec3 gap = difference.segment<3>(3 * v);
+      sum += gap.dot(weighted(v, gap));
+    }
   return square_mm * sum + cost(values);
+}
+
+/// The metric of a vertex times how far it is off.
+Vec3 Fitter::weighted(Eigen::Index vertex, const Vec3& difference) const {
+  if (slide_normals_.size() == 0) return vertex_weights_[vertex] * difference;
+  const Vec3 normal = slide_normals_.segment<3>(3 * vertex);
+  if (normal.isZero(0)) return vertex_weights_[vertex] * difference;
+  return vertex_weights_[vertex] *
+         (along_surface * difference + (1.0 - along_surface) * normal.dot(difference) * normal);
+}
+
+void Fitter::gather_sliding() {
+  std::vector<Eigen::Index> used;
+  for (Eigen::Index v = 0; v < vertex_weights_.size(); ++v)
+    if (vertex_weights_[v] > 0.0) used.push_back(v);
+  const auto count = node_columns_.cols();
+  Eigen::MatrixXd slopes(3 * static_cast<Eigen::Index>(used.size()), count), scaled(slopes.rows(), count);
+  for (size_t i = 0; i < used.size(); ++i) {
+    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(3, count);
+    for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator it(subject_->weights(), used[i]); it;
+         ++it)
+      rows += it.value() * node_columns_.middleRows<3>(3 * it.col());
+    rows.rightCols<3>() += jaw_slopes_.middleRows<3>(3 * used[i]);
+    slopes.middleRows<3>(3 * static_cast<Eigen::Index>(i)) = rows;
+    for (Eigen::Index c = 0; c < count; ++c)
+      scaled.block<3, 1>(3 * static_cast<Eigen::Index>(i), c) = weighted(used[i], rows.col(c));
+  }
+  hessian_.noalias() = slopes.transpose() * scaled;
 }
 
 bool Fitter::linearise(const std::vector<float>& values) {
@@ -100,6 +132,11 @@ bool Fitter::linearise(const std::vector<float>& values) {
   node_columns_.resize(own.rows(), own.cols() + 3);
   node_columns_ << own, sensitivity_.jaw_columns();
   jaw_slopes_ = subject_->jaw_slopes(values);
+  if (slide_normals_.size() > 0) {
+    gather_sliding();
+    hessian_ *= square_mm;
+    return true;
+  }
   const auto& weights = subject_->weights();
   const Eigen::SparseMatrix<double> trusted = weights.transpose() * vertex_weights_.asDiagonal();
   const Eigen::SparseMatrix<double> between = trusted * weights;
@@ -163,10 +200,14 @@ Eigen::VectorXd Fitter::step(const Eigen::VectorXd& slope, const std::vector<flo
     curvature(i, i) += damping * hessian_(i, i) +
                        options_.ridge * dearness_[fitted_[static_cast<size_t>(i)]] +
                        (last_.empty() ? 0.0 : options_.smoothness) + 1e-12;
+  std::vector<bool> is_held(static_cast<size_t>(count), false);
+  for (size_t i = 0; i < is_held.size(); ++i)
+    is_held[i] = std::find(options_.held.begin(), options_.held.end(), fitted_[i]) != options_.held.end();
   Eigen::VectorXd move = Eigen::VectorXd::Zero(count), pull = slope;  // pull = slope + curvature move
   for (int sweep = 0; sweep < 400; ++sweep) {
     double largest = 0.0;
     for (Eigen::Index i = 0; i < count; ++i) {
+      if (is_held[static_cast<size_t>(i)]) continue;
       const uint32_t c = fitted_[static_cast<size_t>(i)];
       const rig::Channel& channel = subject_->channels()[c];
       const double value = values[c];
@@ -184,15 +225,52 @@ Eigen::VectorXd Fitter::step(const Eigen::VectorXd& slope, const std::vector<flo
   return move;
 }
 
-FitResult Fitter::solve(const Target& target, bool is_next) {
+void Fitter::take_weights(const Target& target) {
   Eigen::VectorXd weights = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(subject_->vertex_count()));
   for (size_t v = 0; v < subject_->vertex_count(); ++v)
     if (subject_->follows(v)) weights[static_cast<Eigen::Index>(v)] = target.trust[v];
   if (!(weights.sum() > 0.0)) throw Error("the target tells nothing of the parts of the face that move");
   weights /= weights.sum();
   if (vertex_weights_.size() != weights.size() || vertex_weights_ != weights) linear_at_.clear();
+  if (target.normals.size() > 0 || slide_normals_.size() > 0) linear_at_.clear();
   vertex_weights_ = weights;
+  slide_normals_ = target.normals;
+}
 
+Eigen::VectorXd Fitter::slope_of(const Eigen::VectorXd& difference, bool by_columns) const {
+  Eigen::MatrixXd pulls(vertex_weights_.size(), 3);
+  for (Eigen::Index v = 0; v < pulls.rows(); ++v)
+    pulls.row(v) = square_mm * weighted(v, difference.segment<3>(3 * v)).transpose();
+  const Eigen::MatrixXd by_node = subject_->weights().transpose() * pulls;
+  Eigen::VectorXd slope_by_node(node_columns_.rows());
+  for (Eigen::Index n = 0; n < by_node.rows(); ++n)
+    slope_by_node.segment<3>(3 * n) = by_node.row(n).transpose();
+  Eigen::VectorXd slope = by_columns ? Eigen::VectorXd(node_columns_.transpose() * slope_by_node)
+                                     : sensitivity_.adjoint(slope_by_node, driven_);
+  for (int axis = 0; axis < 3; ++axis)
+    slope.tail<3>() += axis_rows(jaw_slopes_, axis).transpose() * pulls.col(axis);
+  return slope;
+}
+
+Linearised Fitter::linearised(const Target& target, const std::vector<float>& values) {
+  take_weights(target);
+  last_.clear();
+  is_sequence_ = false;
+  Eigen::VectorXd difference;
+  objective(target, values, false, difference);
+  if (!linearise(values)) throw Error("the pose has no derivative: its stiffness has no factor");
+  Linearised out{fitted_, hessian_, slope_of(difference, false), 0.0, 0.0};
+  for (Eigen::Index v = 0; v < vertex_weights_.size(); ++v) {
+    if (!(vertex_weights_[v] > 0.0)) continue;
+    const Vec3 gap = difference.segment<3>(3 * v), wanted = target.displacements.segment<3>(3 * v);
+    out.mean_square += square_mm * gap.dot(weighted(v, gap));
+    out.target_square += square_mm * wanted.dot(weighted(v, wanted));
+  }
+  return out;
+}
+
+FitResult Fitter::solve(const Target& target, bool is_next) {
+  take_weights(target);
   std::vector<float> values;
   for (const rig::Channel& channel : subject_->channels())
     values.push_back(channel.rest);
@@ -214,17 +292,7 @@ FitResult Fitter::solve(const Target& target, bool is_next) {
         is_fresh ? linearise(values)
                  : is_next || sensitivity_.linearise(subject_->controls(values), subject_->nodes(), true);
     if (!is_linear) break;
-    Eigen::MatrixXd pulls(vertex_weights_.size(), 3);
-    for (Eigen::Index v = 0; v < pulls.rows(); ++v)
-      pulls.row(v) = square_mm * vertex_weights_[v] * difference.segment<3>(3 * v).transpose();
-    const Eigen::MatrixXd by_node = subject_->weights().transpose() * pulls;
-    Eigen::VectorXd slope_by_node(node_columns_.rows());
-    for (Eigen::Index n = 0; n < by_node.rows(); ++n)
-      slope_by_node.segment<3>(3 * n) = by_node.row(n).transpose();
-    Eigen::VectorXd slope = is_next ? Eigen::VectorXd(node_columns_.transpose() * slope_by_node)
-                                    : sensitivity_.adjoint(slope_by_node, driven_);
-    for (int axis = 0; axis < 3; ++axis)
-      slope.tail<3>() += axis_rows(jaw_slopes_, axis).transpose() * pulls.col(axis);
+    Eigen::VectorXd slope = slope_of(difference, is_next);
     for (Eigen::Index i = 0; i < slope.size(); ++i) {
       const uint32_t c = fitted_[static_cast<size_t>(i)];
       slope[i] += options_.ridge * dearness_[c] * static_cast<double>(values[c]);

@@ -12,6 +12,9 @@ namespace fascia::fit {
 struct Target {
   Eigen::VectorXd displacements;  ///< 3 x #vertices of the subject, metres from rest
   std::vector<double> trust;      ///< #vertices, 0 where nothing is known of a vertex
+  /// 3 x #vertices, unit, or empty. Where given, only the distance along it counts (and a little the rest):
+  /// the vertex may slide over a surface it was matched to (Chen & Medioni 1992).
+  Eigen::VectorXd normals = {};
 };
 
 struct FitOptions {
@@ -21,7 +24,8 @@ struct FitOptions {
   double sparsity = 2e-4;
   /// The same for the square of a change from one frame to the next.
   double smoothness = 2e-3;
-  int iterations = 30;  ///< Gauss-Newton steps at most
+  int iterations = 30;         ///< Gauss-Newton steps at most
+  std::vector<uint32_t> held;  ///< channels that stay where they are
 };
 
 struct FitResult {
@@ -41,6 +45,15 @@ struct FitResult {
   std::vector<std::pair<uint32_t, uint32_t>> alike;
 };
 
+/// A pose and how its mean squared distance from a target answers activations.
+struct Linearised {
+  std::vector<uint32_t> channels;  ///< that rows and columns below stand for
+  Eigen::MatrixXd hessian;         ///< Gauss-Newton, of half the mean squared distance, mm^2
+  Eigen::VectorXd slope;           ///< of the same
+  double mean_square = 0.0;        ///< mm^2, over trusted vertices
+  double target_square = 0.0;      ///< of the target's own motion, mm^2
+};
+
 /// Finds the activations whose static pose comes nearest to targets: Gauss-Newton steps on the full
 /// simulation, with contact, in the channels' ranges (Sifakis, Neverov & Fedkiw 2005, "Automatic
 /// determination of facial muscle activations from sparse motion capture marker data", section 4), gradients
@@ -57,14 +70,27 @@ class Fitter {
   /// The next frame of a take: begins at the last result and keeps near it.
   FitResult follow(const Target& target);
 
+  /// The pose of `values` beside `target`; costs do not count. Throws fascia::Error when the target trusts no
+  /// vertex that the rig moves, or the pose has no derivative.
+  Linearised linearised(const Target& target, const std::vector<float>& values);
+
+  /// Other costs and steps from now on.
+  void set_options(const FitOptions& options) { options_ = options; }
+
  private:
   FitResult solve(const Target& target, bool is_next);
+  void take_weights(const Target& target);
+  /// Half the gradient of the mean squared distance, by the adjoint or by the columns at hand.
+  Eigen::VectorXd slope_of(const Eigen::VectorXd& difference, bool by_columns) const;
   /// Mean squared error and cost of `values`; poses the subject.
   double objective(const Target& target, const std::vector<float>& values, bool warm,
                    Eigen::VectorXd& difference);
   double cost(const std::vector<float>& values) const;
   bool linearise(const std::vector<float>& values);
   void find_eyes(const Target& target, std::vector<float>& values) const;
+  /// Half the Hessian of the mean squared error where vertices may slide along a surface.
+  void gather_sliding();
+  Vec3 weighted(Eigen::Index vertex, const Vec3& difference) const;
   Eigen::VectorXd step(const Eigen::VectorXd& slope, const std::vector<float>& values, double damping) const;
   void finish(const Target& target, FitResult& result);
 
@@ -80,6 +106,7 @@ class Fitter {
   Eigen::MatrixXd jaw_slopes_;      ///< 3 #vertices x 3
   Eigen::MatrixXd hessian_;         ///< #fitted square: of the mean squared error in mm^2, halved
   Eigen::VectorXd vertex_weights_;  ///< #vertices: trust over its sum
+  Eigen::VectorXd slide_normals_;   ///< of the target; empty: distances count in all directions
   bool is_sequence_ = false;
 };
 

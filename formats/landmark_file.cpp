@@ -13,7 +13,10 @@ using nlohmann::json;
 
 class Reader {
  public:
-  explicit Reader(const std::filesystem::path& path) : path_(path) {}
+  Reader(const std::filesystem::path& path, LandmarkSurface surface)
+      : path_(path),
+        key_(surface == LandmarkSurface::skin ? "skin" : "bone"),
+        other_(key_ == "skin" ? "bone" : "skin") {}
 
   LandmarkFile read() {
     const std::vector<uint8_t> bytes = read_bytes(path_);
@@ -55,8 +58,11 @@ class Reader {
         fail("the units '" + file_.units + "' are unknown: use \"m\", \"cm\" or \"mm\"");
     }
     if (!content["landmarks"].is_object()) fail("'landmarks' must be an object of NAME: [x, y, z]");
-    for (const auto& [name, value] : content["landmarks"].items())
-      file_.points[name] = point(name, value.is_object() && value.contains("skin") ? value["skin"] : value);
+    for (const auto& [name, value] : content["landmarks"].items()) {
+      const bool has_both = value.is_object();
+      if (has_both && !value.contains(key_) && value.contains(other_)) continue;
+      file_.points[name] = point(name, has_both && value.contains(key_) ? value[key_] : value);
+    }
   }
 
   void read_markups(const json& markups) {
@@ -79,13 +85,14 @@ class Reader {
   }
 
   std::filesystem::path path_;
+  std::string key_, other_;  ///< of the surface asked for, and of the other one
   LandmarkFile file_;
 };
 
 }  // namespace
 
-LandmarkFile read_landmarks(const std::filesystem::path& path) {
-  return Reader(path).read();
+LandmarkFile read_landmarks(const std::filesystem::path& path, LandmarkSurface surface) {
+  return Reader(path, surface).read();
 }
 
 }  // namespace fascia::formats

@@ -8,18 +8,22 @@
 
 namespace fascia::formats {
 
-/// Landmarks as a file gives them: points on the skin in the head file's axes.
+/// Landmarks as a file gives them: points on the skin, or on the bone, in the head file's axes.
 struct LandmarkFile {
   std::string units;  ///< "m", "cm", "mm", metres a unit, or empty when the file does not say
   std::map<std::string, Vec3> points;
 };
 
+enum class LandmarkSurface { skin, bone };
+
 /// Reads 3D Slicer Markups (`.mrk.json`; LPS taken as is, RAS with x and y negated) or
-/// `{"units":"mm","landmarks":{NAME:[x,y,z]}}`, where a landmark may also be `{"skin":[x,y,z]}` as `fascia
-/// export` writes it.
+/// `{"units":"mm","landmarks":{NAME:[x,y,z]}}`, where a landmark may also be
+/// `{"skin":[x,y,z],"bone":[x,y,z]}` as `fascia export` writes it; then the point on `surface` is taken, and
+/// a landmark without it is passed over.
 ///
 /// Throws fascia::Error naming the file and the entry when it is missing, not JSON, of another form,
 /// or a coordinate is not a finite number.
-LandmarkFile read_landmarks(const std::filesystem::path& path);
+LandmarkFile read_landmarks(const std::filesystem::path& path,
+                            LandmarkSurface surface = LandmarkSurface::skin);
 
 }  // namespace fascia::formats

@@ -1,5 +1,6 @@
 #include "formats/obj_lines.h"
 
+#include <cstdio>
 #include <string>
 
 namespace fascia::formats {
@@ -95,6 +96,22 @@ std::string plain_obj(std::string_view text) {
     }
   }
   return plain;
+}
+
+std::string with_vertices(std::string_view before, const std::map<int, Vec3>& moved, int decimals) {
+  const std::vector<ObjVertex> vertices = obj_vertices(before);
+  std::string text;
+  size_t copied = 0;
+  for (const auto& [vertex, place] : moved)
+    for (int k = 0; k < 3; ++k) {
+      const auto [begin, end] = vertices.at(static_cast<size_t>(vertex)).coordinates[static_cast<size_t>(k)];
+      char digits[64];
+      std::snprintf(digits, sizeof digits, "%.*f", decimals, place[k]);
+      text += before.substr(copied, begin - copied);
+      text += digits;
+      copied = end;
+    }
+  return text.append(before.substr(copied));
 }
 
 }  // namespace fascia::formats

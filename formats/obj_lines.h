@@ -2,10 +2,13 @@
 
 #include <array>
 #include <cstddef>
+#include <map>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
+
+#include "geometry/mesh.h"
 
 namespace fascia::formats {
 
@@ -20,6 +23,10 @@ struct ObjVertex {
 /// it into the next; a byte order mark at the beginning is passed over. Coordinates that are not there have
 /// begin and end alike.
 std::vector<ObjVertex> obj_vertices(std::string_view text);
+
+/// The text with the `v` lines in `moved` (by number, from 0) put in new places, `decimals` behind the point,
+/// and all else as it was.
+std::string with_vertices(std::string_view text, const std::map<int, Vec3>& moved, int decimals);
 
 /// The text with folded lines unfolded, the byte order mark gone and every line ended by LF, for readers that
 /// know only those.

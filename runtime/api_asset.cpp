@@ -1,23 +1,8 @@
-#include "runtime/asset.h"
+#include "runtime/api.h"
 
-using fascia::runtime::Asset;
-using fascia::runtime::Failure;
-using fascia::runtime::guarded;
-using fascia::runtime::hand_out;
-using fascia::runtime::require;
+using namespace fascia::runtime;
 
 namespace {
-
-const Asset& checked(const fascia_asset* asset) {
-  require(asset != nullptr, "the asset is null");
-  return *asset->asset;
-}
-
-void check_index(uint32_t index, std::size_t count, const char* what) {
-  if (index >= count)
-    throw Failure(FASCIA_ERROR_ARGUMENT, std::string("there is no ") + what + " " + std::to_string(index) +
-                                             ": the asset has " + std::to_string(count));
-}
 
 const fascia::rig::Surface& surface_named(const Asset& asset, const std::string& name) {
   const fascia::rig::Rig& rig = asset.rig();
@@ -140,6 +125,23 @@ int32_t fascia_asset_find_channel(const fascia_asset* handle, const char* name) 
     return FASCIA_OK;
   });
   return index;
+}
+
+fascia_result fascia_asset_find_member(const fascia_asset* handle, const char* name, uint32_t* set,
+                                       uint32_t* member) {
+  return guarded([&] {
+    require(name != nullptr && set != nullptr && member != nullptr, "the name, set or member is null");
+    const Asset& asset = checked(handle);
+    const auto target = asset.find(name);
+    if (!target || target->kind != Target::Kind::member)
+      throw Failure(FASCIA_ERROR_NAME, "no set of the rig has a member \"" + std::string(name) + "\"");
+    uint32_t rest = target->index, found = 0;
+    for (; rest >= asset.set_members[found].size(); ++found)
+      rest -= count32(asset.set_members[found].size());
+    *set = found;
+    *member = rest;
+    return FASCIA_OK;
+  });
 }
 
 fascia_result fascia_asset_surface(const fascia_asset* handle, const char* name, fascia_surface* surface) {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "rig/read/read.h"
+#include "runtime/allocator.h"
 #include "runtime/mesh_shape.h"
 #include "runtime/message.h"
 #include "sim/face_model.h"
@@ -109,4 +110,5 @@ std::string lower_case(std::string_view text);
 /// Behind the C handle: the asset lives as long as anything uses it.
 struct fascia_asset {
   std::shared_ptr<const fascia::runtime::Asset> asset;
+  fascia::runtime::CountedHandle counted{};
 };

@@ -1,11 +1,33 @@
 #include "runtime/bound_mesh.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 
 namespace fascia::runtime {
 
-void BoundMesh::follow(const BonePose& pose) {
+void BoundMesh::change_shape(const MeshShape& shape, const BonePose& pose, bool fades) {
+  shape_ = &shape;
   if (!is_wanted_) return;
+  const std::vector<Vec3f> before = positions_;
+  std::copy(shape_->rest().begin(), shape_->rest().end(), positions_.begin());
+  held_.clear();
+  follow(pose);
+  if (!fades) return;
+  held_ = before;
+  for (std::size_t v = 0; v < positions_.size(); ++v)
+    held_[v] -= positions_[v];
+  std::copy(before.begin(), before.end(), positions_.begin());
+}
+
+void BoundMesh::let_go() {
+  std::fill(held_.begin(), held_.end(), Vec3f::Zero());
+}
+
+void BoundMesh::follow(const BonePose& pose, float held) {
+  if (!is_wanted_) return;
+  const bool fades = held > 0.0F && !held_.empty();
+  if (!held_.empty()) std::copy(shape_->rest().begin(), shape_->rest().end(), positions_.begin());
+  if (!fades) held_.clear();  // keeps its memory
   const Eigen::Matrix3f& from_metres = shape_->from_metres();
   const Eigen::Matrix3f turn = pose.jaw.rotation.cast<float>();
   const Vec3f shift = pose.jaw.translation.cast<float>();
@@ -24,7 +46,9 @@ void BoundMesh::follow(const BonePose& pose) {
     }
     positions_[follower.vertex] = shape_->rest()[follower.vertex] + from_metres * moved;
   }
-  normals_stale_ = true;
+  for (std::size_t v = 0; fades && v < positions_.size(); ++v)
+    positions_[v] += held * held_[v];
+  normals_stale_ = tangents_stale_ = true;
 }
 
 const std::vector<Vec3f>& BoundMesh::positions(const BonePose& pose) {
@@ -52,6 +76,14 @@ const std::vector<Vec3f>& BoundMesh::normals(const BonePose& pose) {
     normals_[v] = (turn * rest.rest[v]).normalized();
   }
   return normals_;
+}
+
+const std::vector<Vec4f>& BoundMesh::tangents(const BonePose& pose) {
+  const std::vector<Vec3f>& normals = this->normals(pose);
+  if (!tangents_stale_) return tangents_;
+  tangents_stale_ = false;
+  shape_->tangents().at(positions_, shape_->rest(), normals, tangents_);
+  return tangents_;
 }
 
 }  // namespace fascia::runtime

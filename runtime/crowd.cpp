@@ -8,7 +8,7 @@ namespace fascia::runtime {
 namespace {
 
 struct Work {
-  std::span<Face* const> faces;
+  std::span<fascia_face* const> faces;
   double seconds;
   std::atomic<std::size_t> diverged{0};
   std::mutex mutex;
@@ -17,7 +17,7 @@ struct Work {
   void run(std::size_t first, std::size_t end) {
     for (std::size_t i = first; i < end && i < faces.size(); ++i)
       try {
-        if (!faces[i]->step(seconds)) ++diverged;
+        if (!faces[i]->face->step(seconds)) ++diverged;
       } catch (...) {
         const std::lock_guard lock(mutex);
         if (!fault) fault = std::current_exception();
@@ -31,7 +31,16 @@ void run_range(uint32_t first, uint32_t end, void* context) {
 
 }  // namespace
 
-std::size_t step_all(std::span<Face* const> faces, double seconds, const fascia_tasks* tasks) {
+bool are_different(std::span<fascia_face* const> faces) {
+  std::size_t marked = 0;
+  while (marked < faces.size() && !faces[marked]->is_listed)
+    faces[marked++]->is_listed = true;
+  for (std::size_t i = 0; i < marked; ++i)
+    faces[i]->is_listed = false;
+  return marked == faces.size();
+}
+
+std::size_t step_all(std::span<fascia_face* const> faces, double seconds, const fascia_tasks* tasks) {
   Work work{faces, seconds, {}, {}, {}};
   if (tasks == nullptr || faces.empty()) {
     work.run(0, faces.size());

@@ -3,20 +3,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 namespace fascia::runtime {
 namespace {
-
-/// Rotation of an eye: yaw to the subject's left about +Y, then pitch upward about the head's lateral axis.
-Eigen::Matrix3f eye_rotation(float yaw, float pitch) {
-  if (yaw == 0.0F && pitch == 0.0F) return Eigen::Matrix3f::Identity();
-  return (Eigen::AngleAxisf(yaw, Vec3f::UnitY()) * Eigen::AngleAxisf(-pitch, Vec3f::UnitX()))
-      .toRotationMatrix();
-}
-
-float finite(float value) {
-  return std::isfinite(value) ? value : 0.0F;
-}
 
 std::size_t chosen_level(const Asset& asset, int32_t level) {
   const std::size_t levels = asset.rig().tissue.levels.size();
@@ -27,100 +17,146 @@ std::size_t chosen_level(const Asset& asset, int32_t level) {
 
 }  // namespace
 
+Eigen::Matrix3f eye_rotation(float yaw, float pitch) {
+  if (yaw == 0.0F && pitch == 0.0F) return Eigen::Matrix3f::Identity();
+  return (Eigen::AngleAxisf(yaw, Vec3f::UnitY()) * Eigen::AngleAxisf(-pitch, Vec3f::UnitX()))
+      .toRotationMatrix();
+}
+
 Face::Face(std::shared_ptr<const Asset> asset, const fascia_face_options& options)
-    : asset_(std::move(asset)), level_(chosen_level(*asset_, options.level)) {
-  const std::size_t channels = asset_->channel_names.size();
-  model_ = &asset_->model(level_);
-  solver_ = make_solver(options, *asset_, level_);
-  values_ = effective_ = asset_->channel_rest;
-  curve_channels_.assign(channels, 0.0F);
-  taken_ = taken_weight_ = curve_channels_;
-  members_.assign(asset_->members().size(), 0.0F);
-  curve_members_ = members_;
-  const rig::Rig& rig = asset_->rig();
-  displacements_.assign(rig.tissue.levels[level_].rest.size(), Vec3f::Zero());
-  fibre_points_ = rig.tissue.levels[level_].fibre_rest;
+    : asset_(std::move(asset)), options_(options), drive_(*asset_) {
+  bones_.eye_centres = {asset_->rig().skull.eye_left.centre, asset_->rig().skull.eye_right.centre};
   touches_.reserve(256);
-  for (const sim::Vec3& place : model_->rest())
-    face_centre_ += place / static_cast<double>(model_->rest().size());
-  bones_.displacements = displacements_;
-  bones_.eye_centres = {rig.skull.eye_left.centre, rig.skull.eye_right.centre};
+  take_level(chosen_level(*asset_, options.level));
   for (const auto& shape : asset_->shapes(level_, options.space))
     meshes_.emplace_back(*shape);
 }
 
-void Face::set(const Target& target, float value) {
-  (target.kind == Target::Kind::channel ? values_ : members_)[target.index] = value;
+void Face::take_level(std::size_t level) {
+  const sim::FaceModel& model = asset_->model(level);
+  asset_->shapes(level, options_.space);  // made before anything changes, as it may fail
+  auto solver = make_solver(options_, *asset_, level);
+  level_ = level;
+  model_ = &model;
+  solver_ = std::move(solver);
+  sensitivity_.reset();
+  is_linearised_ = false;
+  const rig::TissueLevel& tissue = asset_->rig().tissue.levels[level];
+  displacements_.assign(tissue.rest.size(), Vec3f::Zero());
+  nodes_.clear();
+  fibre_points_ = tissue.fibre_rest;
+  touches_.clear();
+  face_centre_.setZero();
+  for (const sim::Vec3& place : model_->rest())
+    face_centre_ += place / static_cast<double>(model_->rest().size());
+  bones_.displacements = displacements_;
 }
 
-float Face::get(const Target& target) const {
-  return (target.kind == Target::Kind::channel ? values_ : members_)[target.index];
+void Face::set_level(int32_t level, float seconds) {
+  const std::size_t chosen = chosen_level(*asset_, level);
+  if (chosen == level_) return;
+  take_level(chosen);
+  solver_->settle(controls());
+  shown_jaw_ = jaw_;
+  head_.known = 0;
+  find_bones();
+  const auto& shapes = asset_->shapes(level_, options_.space);
+  for (std::size_t i = 0; i < meshes_.size(); ++i)
+    meshes_[i].change_shape(*shapes[i], bones_, seconds > 0.0F);
+  fade_length_ = seconds;
+  fade_passed_ = 0.0F;
 }
 
-void Face::clear() {
-  values_ = asset_->channel_rest;
-  std::fill(members_.begin(), members_.end(), 0.0F);
+uint64_t Face::state_kind() const {
+  uint64_t kind = 14695981039346656037ULL;  // FNV-1a, 64 bits
+  const auto add = [&kind](const void* bytes, std::size_t size) {
+    for (std::size_t i = 0; i < size; ++i)
+      kind = (kind ^ static_cast<const uint8_t*>(bytes)[i]) * 1099511628211ULL;
+  };
+  const auto& rest = asset_->rig().tissue.levels[level_].rest;
+  add(rest.data(), rest.size() * sizeof rest.front());
+  for (const char* name : asset_->channel_names)
+    add(name, std::char_traits<char>::length(name));
+  add(&options_.solver, sizeof options_.solver);
+  return kind;
 }
 
-void Face::add(const Target& target, float value, float weight) {
-  if (target.kind == Target::Kind::channel)
-    curve_channels_[target.index] += weight * (value - asset_->channel_rest[target.index]);
-  else
-    curve_members_[target.index] += weight * value;
+bool Face::has_layers_of(const uint8_t* bytes, std::size_t size) const {
+  return drive_.has_layers_of({bytes, size});
 }
 
-void Face::take_over(uint32_t channel, float value, float weight) {
-  taken_[channel] += weight * value;
-  taken_weight_[channel] += weight;
-}
-
-void Face::gather() {
-  for (std::size_t c = 0; c < values_.size(); ++c)
-    effective_[c] =
-        (std::isfinite(values_[c]) ? values_[c] : asset_->channel_rest[c]) + finite(curve_channels_[c]);
-  for (std::size_t m = 0; m < members_.size(); ++m) {
-    const float value = finite(members_[m]) + finite(curve_members_[m]);
-    if (value == 0.0F) continue;
-    for (const auto& [channel, weight] : asset_->members()[m].entries)
-      effective_[channel] += weight * value;
+bool Face::exchange_state(sim::StateBytes& bytes) {
+  if (!drive_.exchange_state(bytes)) return false;
+  bytes.value(jaw_);
+  bytes.value(shown_jaw_);
+  bytes.value(acceleration_);
+  bytes.value(inertia_);
+  bytes.value(head_.place);
+  for (double* number : {&head_.scale, head_.centre.data(), head_.centre.data() + 1, head_.centre.data() + 2,
+                         head_.velocity.data(), head_.velocity.data() + 1, head_.velocity.data() + 2})
+    bytes.value(*number);
+  auto known = static_cast<uint32_t>(head_.known), is_moved = static_cast<uint32_t>(head_.is_moved),
+       touches = static_cast<uint32_t>(touches_.size());
+  for (uint32_t* number : {&known, &is_moved, &touches})
+    bytes.value(*number);
+  if (bytes.reads()) {
+    if (known > 2 || touches > touches_.capacity()) return false;
+    head_.known = static_cast<int>(known);
+    head_.is_moved = is_moved != 0;
+    touches_.resize(touches);
   }
-  for (std::size_t c = 0; c < effective_.size(); ++c) {
-    if (taken_weight_[c] <= 0.0F || !std::isfinite(taken_[c])) continue;
-    const float share = std::min(taken_weight_[c], 1.0F);
-    effective_[c] = (1.0F - share) * effective_[c] + taken_[c] * (share / taken_weight_[c]);
+  for (sim::NodeForce& touch : touches_) {
+    bytes.value(touch.node);
+    bytes.value(touch.force);
   }
-  std::fill(taken_.begin(), taken_.end(), 0.0F);
-  std::fill(taken_weight_.begin(), taken_weight_.end(), 0.0F);
-  for (std::size_t c = 0; c < effective_.size(); ++c)
-    effective_[c] = std::clamp(effective_[c], asset_->channel_minimum[c], asset_->channel_maximum[c]);
-  std::fill(curve_channels_.begin(), curve_channels_.end(), 0.0F);
-  std::fill(curve_members_.begin(), curve_members_.end(), 0.0F);
+  if (!solver_->exchange_state(bytes) || bytes.is_short()) return false;
+  if (!bytes.reads()) return true;
+  for (BoundMesh& mesh : meshes_)
+    mesh.let_go();
+  fade_length_ = fade_passed_ = 0.0F;
+  follow();
+  return std::all_of(displacements_.begin(), displacements_.end(),
+                     [](const Vec3f& moved) { return moved.allFinite(); });
 }
 
-sim::JawPose Face::wanted_jaw() const {
-  const BoneChannels& channels = asset_->bones();
+sim::JawPose Face::wanted_jaw(std::span<const float> channels) const {
+  const BoneChannels& bones = asset_->bones();
+  const auto value = [&](int32_t channel) {
+    return channel < 0 ? 0.0F : channels[static_cast<std::size_t>(channel)];
+  };
   return sim::clamped(asset_->jaw_muscles().moved(
-      {effective(channels.jaw_open), effective(channels.jaw_forward), effective(channels.jaw_lateral)},
-      effective_));
+      {value(bones.jaw_open), value(bones.jaw_forward), value(bones.jaw_lateral)}, channels));
 }
 
 sim::Controls Face::controls() const {
   sim::Controls controls;
-  controls.activations = effective_;
+  controls.activations = drive_.effective();
   controls.jaw = jaw_;
   controls.acceleration = acceleration_ + inertia_;
   controls.touches = touches_;
   return controls;
 }
 
-void Face::follow() {
+void Face::find_bones() {
   solver_->displacements(displacements_);
+  is_linearised_ = false;
   const BoneChannels& channels = asset_->bones();
   bones_.jaw = sim::jaw_transform(model_->jaw(), shown_jaw_);
   for (std::size_t eye = 0; eye < 2; ++eye)
-    bones_.eyes[eye] = eye_rotation(effective(channels.eye_yaw[eye]), effective(channels.eye_pitch[eye]));
+    bones_.eyes[eye] =
+        eye_rotation(drive_.effective(channels.eye_yaw[eye]), drive_.effective(channels.eye_pitch[eye]));
+}
+
+void Face::follow() {
+  find_bones();
   for (BoundMesh& mesh : meshes_)
-    mesh.follow(bones_);
+    mesh.follow(bones_, held_share());
+}
+
+float Face::held_share() const {
+  if (fade_passed_ >= fade_length_) return 0.0F;
+  const float way = fade_passed_ / fade_length_;
+  return 1.0F - way * way * (3.0F - 2.0F * way);
 }
 
 void Face::move_head(const Eigen::Matrix4f& place, float inertia_scale) {
@@ -172,10 +208,11 @@ const std::vector<Vec3f>& Face::compression(std::size_t mesh) {
 }
 
 void Face::pose() {
+  fade_passed_ = fade_length_;
   head_.known = 0;
   inertia_.setZero();
-  gather();
-  jaw_ = wanted_jaw();
+  drive_.gather(0.0);
+  jaw_ = wanted_jaw(drive_.effective());
   solver_->settle(controls());
   shown_jaw_ = jaw_;
   follow();
@@ -183,10 +220,11 @@ void Face::pose() {
 
 bool Face::step(double seconds) {
   inertia_ = inertia(seconds);
-  gather();
+  drive_.gather(std::isfinite(seconds) ? seconds : 0.0);
+  fade_passed_ = std::min(fade_length_, fade_passed_ + static_cast<float>(seconds));
   if (std::isfinite(seconds)) {
     seconds = std::min(seconds, solver_->longest_frame());  // what the solver loses is lost for the jaw too
-    jaw_ = sim::approached(jaw_, wanted_jaw(), seconds);
+    jaw_ = sim::approached(jaw_, wanted_jaw(drive_.effective()), seconds);
   }
   const bool is_sound = solver_->step(seconds, controls()).status == sim::StepStatus::done;
   shown_jaw_ = solver_->shown_jaw(jaw_);
@@ -195,13 +233,33 @@ bool Face::step(double seconds) {
 }
 
 void Face::reset() {
+  fade_passed_ = fade_length_;
   head_.known = 0;
   inertia_.setZero();
-  gather();
-  jaw_ = wanted_jaw();
+  drive_.gather(0.0);
+  jaw_ = wanted_jaw(drive_.effective());
   solver_->reset(controls());
   shown_jaw_ = jaw_;
   follow();
+}
+
+const std::vector<Vec3f>& Face::nodes() {
+  nodes_ = asset_->rig().tissue.levels[level_].rest;
+  for (std::size_t i = 0; i < nodes_.size(); ++i)
+    nodes_[i] += displacements_[i];
+  return nodes_;
+}
+
+const sim::Sensitivity& Face::sensitivity() {
+  if (is_linearised_) return *sensitivity_;
+  if (!sensitivity_) sensitivity_ = std::make_unique<sim::Sensitivity>(*model_);
+  sim::Positions places = model_->rest();
+  for (std::size_t i = 0; i < places.size(); ++i)
+    places[i] += displacements_[i].cast<double>();
+  if (!sensitivity_->linearise(controls(), places))
+    throw Failure(FASCIA_ERROR_DIVERGED, "the pose has no derivatives: its curvature could not be factored");
+  is_linearised_ = true;
+  return *sensitivity_;
 }
 
 const std::vector<Vec3f>& Face::fibre_points() {

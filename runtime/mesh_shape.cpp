@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <algorithm>
 #include <array>
 #include <map>
 
@@ -38,6 +39,9 @@ MeshShape::MeshShape(const rig::Primitive& primitive, const rig::Binding* bindin
     mesh_to_space = to_rig;
   }
   if (!from_metres_.allFinite()) from_metres_.setZero();
+  metres_to_space_ = mesh_to_space * to_rig.inverse();
+  if (!metres_to_space_.allFinite()) metres_to_space_.setIdentity();
+  direction_matrix_ = mesh_to_space.topLeftCorner<3, 3>();
   const Eigen::Matrix3f linear = mesh_to_space.topLeftCorner<3, 3>();
   normal_matrix_ = linear.inverse().transpose() * (linear.determinant() < 0.0F ? -1.0F : 1.0F);
   for (const Vec3f& position : primitive.positions) {
@@ -67,6 +71,35 @@ const MeshShape::Normals& MeshShape::normals() const {
       normals_.rest[v] = (normal_matrix_ * primitive_.normals[v]).normalized();
   });
   return normals_;
+}
+
+const Tangents& MeshShape::tangents() const {
+  std::call_once(tangents_once_, [this] {
+    tangents_ = std::make_unique<Tangents>(primitive_, rest_, normals().rest, direction_matrix_);
+  });
+  return *tangents_;
+}
+
+const MeshShape::Skinning& MeshShape::skinning() const {
+  std::call_once(skinning_once_, [this] {
+    for (const Follower& follower : followers_)
+      skinning_.influences = std::max(skinning_.influences, follower.end - follower.first);
+    skinning_.influences = std::max(4U, (skinning_.influences + 3) / 4 * 4);
+    skinning_.nodes.assign(rest_.size() * skinning_.influences, 0);
+    skinning_.weights.assign(skinning_.nodes.size(), 0.0F);
+    skinning_.jaw.assign(rest_.size(), 0.0F);
+    skinning_.eyes.assign(rest_.size(), 0);
+    for (const Follower& follower : followers_) {
+      skinning_.eyes[follower.vertex] = follower.eye;
+      if (follower.eye == 0) skinning_.jaw[follower.vertex] = follower.jaw_share;
+      for (uint32_t i = follower.first; i < follower.end; ++i) {
+        const std::size_t at = std::size_t{follower.vertex} * skinning_.influences + i - follower.first;
+        skinning_.nodes[at] = nodes_[i];
+        skinning_.weights[at] = weights_[i];
+      }
+    }
+  });
+  return skinning_;
 }
 
 void MeshShape::surface_normals(const std::vector<Vec3f>& positions, const std::vector<uint32_t>& welded,

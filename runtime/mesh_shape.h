@@ -1,14 +1,14 @@
 #pragma once
 
+#include <memory>
 #include <mutex>
 #include <vector>
 
 #include "fascia/fascia.h"
 #include "rig/read/read.h"
+#include "runtime/tangents.h"
 
 namespace fascia::runtime {
-
-using rig::Vec3f;
 
 /// One primitive of the file at rest in one space and what its vertices follow at one level of detail; shared
 /// by all faces.
@@ -45,19 +45,39 @@ class MeshShape {
   };
   const Normals& normals() const;
 
+  /// Tangents, made on first use; any thread may ask.
+  const Tangents& tangents() const;
+
+  /// What moves each vertex, laid out for a vertex shader; made on first use, any thread may ask.
+  struct Skinning {
+    uint32_t influences = 0;      ///< a vertex: 4 or a multiple of it
+    std::vector<uint32_t> nodes;  ///< #vertices * influences
+    std::vector<float> weights;   ///< #vertices * influences; 0 where a vertex has fewer
+    std::vector<float> jaw;       ///< #vertices, the jaw's share
+    std::vector<uint32_t> eyes;   ///< #vertices: 0 none, 1 left, 2 right
+  };
+  const Skinning& skinning() const;
+
+  /// From the rig's metres to the space and back, of places.
+  const rig::Mat4f& metres_to_space() const { return metres_to_space_; }
+
   /// Unit normals of the surface at `positions`, #vertices each.
   void surface_normals(const std::vector<Vec3f>& positions, const std::vector<uint32_t>& welded,
                        std::vector<Vec3f>& normals) const;
 
  private:
   const rig::Primitive& primitive_;
-  Eigen::Matrix3f from_metres_, normal_matrix_;
+  rig::Mat4f metres_to_space_;
+  Eigen::Matrix3f from_metres_, direction_matrix_, normal_matrix_;
   std::vector<Vec3f> rest_metres_, rest_;
   std::vector<Follower> followers_;
   std::vector<uint32_t> nodes_;
   std::vector<float> weights_;
   mutable std::once_flag normals_once_;
   mutable Normals normals_;
+  mutable std::once_flag tangents_once_, skinning_once_;
+  mutable std::unique_ptr<const Tangents> tangents_;
+  mutable Skinning skinning_;
 };
 
 }  // namespace fascia::runtime

@@ -3,18 +3,21 @@
 namespace fascia::runtime {
 namespace {
 
-thread_local std::string last_message;
+// Of a fixed size: a failure to report must not need memory.
+thread_local char last_message[2048];
 fascia_log_function log_function = nullptr;
 void* log_user = nullptr;
 
 }  // namespace
 
 fascia_result report(fascia_result result, const char* message) noexcept {
-  try {
-    last_message = message;
-  } catch (...) {
-    last_message.clear();
-  }
+  std::size_t length = 0;
+  while (length + 1 < sizeof last_message && message[length] != 0)
+    ++length;
+  while (message[length] != 0 && length > 0 && (message[length] & 0xC0) == 0x80)
+    --length;  // not within a character of UTF-8
+  std::memmove(last_message, message, length);
+  last_message[length] = 0;
   if (log_function != nullptr) log_function(log_user, result, message);
   return result;
 }
@@ -56,7 +59,7 @@ const char* fascia_result_name(fascia_result result) {
 }
 
 const char* fascia_last_message(void) {
-  return fascia::runtime::last_message.c_str();
+  return fascia::runtime::last_message;
 }
 
 void fascia_set_log(fascia_log_function function, void* user) {

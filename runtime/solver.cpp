@@ -61,6 +61,8 @@ std::unique_ptr<sim::Solver> make_solver(const fascia_face_options& options, con
     return std::make_unique<sim::Face>(model, channels, pose);
   }
   require(kind == FASCIA_SOLVER_BULLET, "unknown solver");
+  if (hosts_allocator.allocate != nullptr)
+    throw Failure(FASCIA_ERROR_MODULE, "the module libfascia_bullet cannot use a host's allocator");
   std::unique_ptr<sim::Solver> solver(bullet_entry()(&model, channels));
   if (!solver)
     throw Failure(FASCIA_ERROR_MODULE, "the module libfascia_bullet could not make a solver of this rig");

@@ -20,9 +20,9 @@ packages=(
   libepoxy-dev libegl-dev libgl-dev libegl1 libgl1-mesa-dri libimgui-dev libstb-dev
   ffmpeg
 )
-[ "$tier" = demo ] || packages+=(libgtest-dev libgmock-dev libvalijson-dev binutils clang-format valgrind xvfb xauth)
+[ "$tier" = demo ] || packages+=(libgtest-dev libgmock-dev libvalijson-dev binutils clang-format abigail-tools valgrind xvfb xauth)
 [ "$tier" != full ] || packages+=(
-  clang clang-tidy libbenchmark-dev zlib1g-dev libvtk9-dev libcgal-dev python3-numpy python3-pil python3-scipy
+  clang clang-tidy doxygen libbenchmark-dev zlib1g-dev libvtk9-dev libcgal-dev python3-numpy python3-pil python3-scipy
   nodejs npm
 )
 

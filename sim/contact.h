@@ -51,6 +51,12 @@ struct FacingPair {
   Vec3 normal = Vec3::Zero();  ///< unit, outward of the triangle's side, between its corners' normals
   double margin = 0.0;         ///< gap that must remain
   bool is_found() const { return corners[0] != none; }
+  /// False when it names a node beyond `nodes`.
+  bool fits(size_t nodes) const {
+    const auto known = [nodes](uint32_t index) { return index < nodes; };
+    if (corners[0] == none) return known(node) || node == none;
+    return known(node) && known(corners[0]) && known(corners[1]) && known(corners[2]);
+  }
   double gap(const Vec3* x) const {
     Vec3 place = Vec3::Zero();
     for (size_t k = 0; k < 3; ++k)

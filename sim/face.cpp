@@ -169,6 +169,16 @@ void Face::positions(std::span<Vec3f> out) const {
     out[i] += model_->lattice().rest[i];
 }
 
+bool Face::exchange_state(StateBytes& bytes) {
+  for (Positions* list : {&position_, &previous_, &velocity_, &frame_.carried})
+    bytes.list(list->data(), list->size());
+  bytes.list(frame_.facing.data(), frame_.facing.size());
+  bytes.value(frame_.mandible);
+  if (!time_.exchange_state(bytes) || bytes.is_short()) return false;
+  return std::all_of(frame_.facing.begin(), frame_.facing.end(),
+                     [this](const FacingPair& pair) { return pair.fits(position_.size()); });
+}
+
 double Face::total_energy() {
   double energy = model_->energy(frame_, position_.data(), work_.data());
   for (const uint32_t i : model_->unknowns())

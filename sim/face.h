@@ -84,6 +84,7 @@ class Face final : public Solver {
   double longest_frame() const override {
     return step_options_.largest_number_of_substeps * model_->options().substep;
   }
+  bool exchange_state(StateBytes& bytes) override;
   JawPose shown_jaw(const JawPose&) const override { return time_.shown_jaw(); }
   /// Kinetic plus potential energy of the state, joules.
   double total_energy();

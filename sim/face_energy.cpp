@@ -65,6 +65,17 @@ Vec3 FaceModel::fibre_point(const Frame& frame, size_t point, const Vec3* x) con
   return place;
 }
 
+double FaceModel::fibre_tension(const Frame& frame, uint32_t f, const Vec3* x) const {
+  const double pull = frame.fibre_pulls[f], rest_length = fibre_lengths_[f];
+  if (pull == 0.0 || rest_length <= 0.0) return 0.0;
+  double length = 0.0, energy = 0.0;
+  for (uint32_t p = lattice_.fibre_offsets[f]; p + 1 < lattice_.fibre_offsets[f + 1]; ++p)
+    length += lattice_.fibre_taper[p] *
+              formulas::segment_length(three(fibre_point(frame, p + 1, x) - fibre_point(frame, p, x)));
+  return formulas::fibre_tension(pull, length, rest_length, static_cast<double>(lattice_.fibre_shortest[f]),
+                                 energy);
+}
+
 /// Energy of one fibre; `add_force(node, force)` gets what is to be added to the gradient.
 template <class Force>
 double FaceModel::pull_fibre(const Frame& frame, uint32_t f, double pull, const Vec3* x,
@@ -230,6 +241,27 @@ double FaceModel::balanced(double energy, const Vec3* x, Vec3* gradient) const {
 
 double FaceModel::energy(const Frame& frame, const Vec3* x, Vec3* gradient) const {
   return balanced(raw_energy(frame, x, gradient), x, gradient);
+}
+
+EnergyShares FaceModel::energy_shares(const Frame& frame, const Vec3* x) const {
+  Positions gradient(rest_.size(), Vec3::Zero());
+  EnergyShares shares;
+  for (const Spring& spring : springs_)
+    shares.springs += spring_energy(spring, x, gradient.data());
+  for (const Membrane& membrane : membranes_)
+    shares.membranes += membrane_energy(membrane, x, gradient.data());
+  for (const Hinge& hinge : hinges_)
+    shares.bending += hinge_energy(hinge, x, gradient.data());
+  for (const Prism& prism : prisms_)
+    shares.volume += prism_energy(prism, x, gradient.data());
+  for (size_t t = 0; t < tethers_.size(); ++t)
+    shares.tethers += tether_energy(tethers_[t], frame.carried[tethers_[t].node], frame.tether_normals[t], x,
+                                    gradient.data());
+  shares.fibres = fibre_energy(frame, x, gradient.data());
+  shares.others = balanced(actuator_energy(frame, x, gradient.data()), x, gradient.data());
+  shares.total = shares.springs + shares.membranes + shares.bending + shares.volume + shares.tethers +
+                 shares.fibres + shares.others;
+  return shares;
 }
 
 double FaceModel::energy_beside_links(const Frame& frame, const Vec3* x, Vec3* gradient) const {

@@ -79,6 +79,13 @@ struct Frame {
   std::span<const NodeForce> touches;
 };
 
+/// Joules of a configuration by what holds them; `total` is their sum and what FaceModel::energy returns.
+struct EnergyShares {
+  double springs = 0.0, membranes = 0.0, bending = 0.0, volume = 0.0, tethers = 0.0, fibres = 0.0;
+  double others = 0.0;  ///< carriers, pressure, contact, touches, acceleration, and what balances rest
+  double total = 0.0;
+};
+
 /// A face ready to solve: elements at rest, and the factors every instance shares. Immutable, so any
 /// number of instances and threads may use one. It keeps `lattice`'s spans: their arrays must outlive it.
 class FaceModel {
@@ -103,6 +110,11 @@ class FaceModel {
   /// Joules of the configuration `x` (#nodes), above those of the rest pose; writes the gradient in
   /// newtons (#nodes, zero where a node is prescribed). One set of energies for pose and step.
   double energy(const Frame& frame, const Vec3* x, Vec3* gradient) const;
+
+  /// The same energy by what holds it. Allocates.
+  EnergyShares energy_shares(const Frame& frame, const Vec3* x) const;
+  /// Tension of a fibre at `x`, newton.
+  double fibre_tension(const Frame& frame, uint32_t fibre, const Vec3* x) const;
 
   /// The same without what linear two-sided springs contribute, for a solver that has springs of its own.
   double energy_beside_links(const Frame& frame, const Vec3* x, Vec3* gradient) const;

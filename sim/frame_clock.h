@@ -35,6 +35,15 @@ class FrameClock {
 
   void reset() { ahead_ = 0.0; }
 
+  /// See sim::StateBytes.
+  template <class Bytes>
+  void exchange_state(Bytes& bytes) {
+    bytes.value(substep_);
+    bytes.value(frame_);
+    bytes.value(before_);
+    bytes.value(ahead_);
+  }
+
  private:
   static constexpr double hair = 1e-3;  ///< of a substep
   double substep_ = 0.0, frame_ = 0.0, before_ = 0.0;

@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include "sim/state_bytes.h"
 #include "sim/substeps.h"
 
 namespace fascia::sim {
@@ -23,6 +24,10 @@ class Solver {
   virtual void displacements(std::span<Vec3f> out) const = 0;
   /// Seconds of which a longer frame loses the rest.
   virtual double longest_frame() const = 0;
+  /// Takes all that the next steps depend on out to bytes or back (see StateBytes): afterwards the motion
+  /// goes on to the last bit. False when this solver cannot, or when what was read cannot be a state of its
+  /// model.
+  virtual bool exchange_state(StateBytes& /*bytes*/) { return false; }
   /// The jaw under `displacements`, where the last controls had `jaw`.
   virtual JawPose shown_jaw(const JawPose& jaw) const { return jaw; }
 };

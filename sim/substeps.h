@@ -8,6 +8,7 @@
 #include "sim/face_model.h"
 #include "sim/frame_clock.h"
 #include "sim/quasi_newton.h"
+#include "sim/state_bytes.h"
 
 namespace fascia::sim {
 
@@ -90,6 +91,17 @@ class Substeps {
     last_jaw_ = clamped(controls.jaw);
     last_acceleration_ = controls.acceleration;
     return result;
+  }
+
+  /// See StateBytes. False when what was read is out of all proportion.
+  bool exchange_state(StateBytes& bytes) {
+    bytes.list(last_excitations_.data(), last_excitations_.size());
+    bytes.list(activations_.data(), activations_.size());
+    for (JawPose* jaw : {&last_jaw_, &jaw_before_, &jaw_now_})
+      bytes.value(*jaw);
+    bytes.value(last_acceleration_);
+    clock_.exchange_state(bytes);
+    return !bytes.reads() || (clock_.back() >= 0.0 && clock_.back() <= 1.0);
   }
 
   std::span<const float> activations() const { return activations_; }  ///< after their dynamics

@@ -1,9 +1,9 @@
 #include "builder/rigging/edits.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "geometry/error.h"
+#include "geometry/nearest_names.h"
 
 namespace fascia::rigging {
 
@@ -11,22 +11,6 @@ namespace {
 
 std::string in_file(const Edits& edits) {
   return edits.file.empty() ? "" : "'" + edits.file + "': ";
-}
-
-/// How many letters have to be changed, added or taken away to make `b` of `a`.
-size_t letters_apart(const std::string& a, const std::string& b) {
-  std::vector<size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), size_t{0});
-  for (size_t i = 0; i < a.size(); ++i) {
-    size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (size_t j = 0; j < b.size(); ++j) {
-      const size_t changed = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({changed, row[j] + 1, row[j + 1] + 1});
-    }
-  }
-  return row.back();
 }
 
 /// The muscles that `name` stands for: one, the parts of a whole, or both sides of either.
@@ -40,17 +24,12 @@ std::vector<const anatomy::Muscle*> named(const anatomy::GenericAnatomy& anatomy
 
 [[noreturn]] void refuse_unknown(const Edits& edits, const anatomy::GenericAnatomy& anatomy,
                                  const std::string& name) {
-  std::string nearest;
-  size_t least = name.size() / 2 + 1;
+  std::vector<std::string> known;
   for (const anatomy::Muscle& muscle : anatomy.muscles)
-    for (const std::string& known : {muscle.name, muscle.whole})
-      if (const size_t apart = letters_apart(name, known); apart < least) {
-        least = apart;
-        nearest = known;
-      }
-  throw Error(
-      in_file(edits) + "there is no muscle '" + name + "'; " +
-      (nearest.empty() ? "'fascia info RIG.glb --channels' lists them" : "did you mean '" + nearest + "'?"));
+    for (const std::string& word : {muscle.name, muscle.whole})
+      if (std::find(known.begin(), known.end(), word) == known.end()) known.push_back(word);
+  throw Error(in_file(edits) + "there is no muscle '" + name + "'" + did_you_mean(name, known) +
+              "; 'fascia info RIG.glb --channels' lists them");
 }
 
 const anatomy::Variant* variant_of(const Edits& edits, const anatomy::Muscle& muscle,

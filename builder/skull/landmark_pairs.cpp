@@ -9,6 +9,7 @@
 
 #include "builder/skull/procrustes.h"
 #include "geometry/error.h"
+#include "geometry/nearest_names.h"
 
 namespace fascia::skull {
 
@@ -44,7 +45,11 @@ std::vector<LandmarkPair> match_landmarks(const Generic& generic, const Exterior
   for (const auto& [name, target] : given) {
     const auto at = known.find(name);
     if (at == known.end()) {
-      warnings.push_back("landmark " + name + " is not one of the generic skull's; it is not used");
+      std::vector<std::string> names;
+      for (const GenericLandmark& landmark : generic.landmarks)
+        names.push_back(landmark.name);
+      warnings.push_back("landmark " + name + " is not one of the generic skull's" +
+                         did_you_mean(name, names) + "; it is not used");
       continue;
     }
     if (!target.skin.allFinite()) throw Error("skull: landmark " + name + " is not finite");

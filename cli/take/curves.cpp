@@ -54,7 +54,7 @@ MatchedNames match(const Common& common, const Curves& curves, const Face& face,
   if (!names.unmatched.empty()) {
     std::string list;
     for (size_t i = 0; i < names.unmatched.size() && i < 6; ++i)
-      list += (i > 0 ? ", " : "") + names.unmatched[i];
+      list += (i > 0 ? ", " : "") + names.unmatched[i] + face.suggestion(names.unmatched[i]);
     if (names.unmatched.size() > 6) list += " and " + std::to_string(names.unmatched.size() - 6) + " more";
     common.warn(std::to_string(names.unmatched.size()) + " of " + std::to_string(curves.names().size()) +
                 " curves drive nothing in the rig: " + list);

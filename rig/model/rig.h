@@ -10,7 +10,9 @@
 /// face looking along +Z, in the head's bind pose; single precision, as it is stored and simulated.
 namespace fascia::rig {
 
+using Vec2f = Eigen::Vector2f;
 using Vec3f = Eigen::Vector3f;
+using Vec4f = Eigen::Vector4f;
 using Triangle = std::array<uint32_t, 3>;
 using Mat4f = Eigen::Matrix4f;
 

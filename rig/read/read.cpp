@@ -127,6 +127,29 @@ bool add_default_morphs(const tinygltf::Model& model, const Binding& binding, co
   return any_on;
 }
 
+/// An attribute for shading only, of vectors with as many components as Vector; empty where the file has none
+/// or what it has makes no sense.
+template <class Vector>
+std::vector<Vector> shading_attribute(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
+                                      const char* name, std::size_t count, const std::string& path) {
+  constexpr auto components = static_cast<std::size_t>(Vector::RowsAtCompileTime);
+  const auto found = primitive.attributes.find(name);
+  if (found == primitive.attributes.end()) return {};
+  std::vector<float> numbers;
+  try {
+    if (gltf::accessor_view(model, found->second, path).components == components)
+      numbers = gltf::decode_floats(model, found->second, path);
+  } catch (const Error&) {  // the face moves without
+  }
+  if (numbers.size() != count * components) return {};
+  std::vector<Vector> vectors(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    vectors[i] = Eigen::Map<const Vector>(numbers.data() + i * components);
+    if (!vectors[i].allFinite()) return {};
+  }
+  return vectors;
+}
+
 /// The geometry `binding` names, its fingerprint checked, as it is seen: default weights of morph targets on.
 Primitive bound_primitive(const tinygltf::Model& model, const Binding& binding, const std::string& path) {
   if (binding.mesh >= model.meshes.size() ||
@@ -160,6 +183,8 @@ Primitive bound_primitive(const tinygltf::Model& model, const Binding& binding, 
   if (normal != primitive.attributes.end() &&
       gltf::accessor_view(model, normal->second, path).components == 3)
     result.normals = vec3_attribute(model, normal->second, result.positions.size(), path);
+  result.tangents = shading_attribute<Vec4f>(model, primitive, "TANGENT", result.positions.size(), path);
+  result.texture = shading_attribute<Vec2f>(model, primitive, "TEXCOORD_0", result.positions.size(), path);
   if (add_default_morphs(model, binding, "NORMAL", result.normals, path))
     for (Vec3f& n : result.normals)
       n.normalize();

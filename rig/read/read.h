@@ -38,6 +38,8 @@ struct Primitive {
   std::vector<Vec3f> positions;
   std::vector<Vec3f> normals;  ///< #positions, or none when the file has none
   std::vector<Triangle> triangles;
+  std::vector<Vec4f> tangents;  ///< #positions, xyz and handedness; or none when the file has none
+  std::vector<Vec2f> texture;   ///< #positions, the first set of texture coordinates; or none
 };
 
 /// A rig file, read: the rig, the file's own JSON and binary chunk, and the geometry it binds.

@@ -231,6 +231,18 @@ void Face::positions(std::span<Vec3f> out) const {
     out[i] += model_->face().lattice().rest[i];
 }
 
+bool Face::exchange_state(StateBytes& bytes) {
+  for (Floats* list : {&position_, &velocity_, &carried_, &before_, &last_direction_, &step_scale_})
+    bytes.list(list->data(), list->size());
+  bytes.list(facing_.data(), facing_.size());
+  bytes.list(reach_.data(), reach_.size());
+  bytes.value(last_mandible_);
+  bytes.value(turn_);
+  if (!time_.exchange_state(bytes) || bytes.is_short()) return false;
+  return std::all_of(facing_.begin(), facing_.end(),
+                     [this](const FacingPair& pair) { return pair.fits(model_->face().rest().size()); });
+}
+
 size_t Face::memory() const {
   return sizeof *this +
          sizeof(float) * (position_.size() + velocity_.size() + carried_.size() + before_.size() +

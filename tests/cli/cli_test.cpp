@@ -112,6 +112,27 @@ TEST_F(Tool, WrongUsageIsTwo) {
   EXPECT_EQ(run("render " + at("rig.glb") + " --no-such-flag -o " + at("x.png")).code, 2);
   EXPECT_EQ(run("--help").code, 0);
   EXPECT_EQ(run("--version").code, 0);
+  EXPECT_NE(run("bild").err.find("did you mean 'build'"), std::string::npos);
+}
+
+TEST_F(Tool, EveryCommandExplainsItself) {
+  for (const char* command :
+       {"build", "info", "export", "pose", "play", "bake", "render", "check", "demo", "fit", "manual"}) {
+    const Outcome help = run(std::string(command) + " --help");
+    EXPECT_EQ(help.code, 0) << help.err;
+    EXPECT_NE(help.out.find(std::string("Usage: fascia ") + command), std::string::npos) << help.out;
+    EXPECT_NE(help.out.find("(default: "), std::string::npos) << help.out;
+  }
+}
+
+TEST_F(Tool, FoldersThatAreNotThereAreNotMade) {
+  for (const std::string& arguments :
+       {"build " + at("head.obj") + " -o " + at("no/x.glb"),
+        "build " + at("head.obj") + " -o " + at("x.glb") + " --report " + at("no/x"),
+        "bake " + at("rig.glb") + " --level low --format obj-sequence -o " + at("no/shapes"),
+        "demo --out " + at("no/out")})
+    expect_input_error(arguments, "/no' is not there");
+  EXPECT_FALSE(fs::exists(at("no")));
 }
 
 TEST_F(Tool, FaultyInputIsOneAndNamed) {
@@ -140,6 +161,11 @@ TEST_F(Tool, FaultyInputIsOneAndNamed) {
   expect_input_error(
       "build " + at("head.obj") + " --landmarks " + at("landmarks.json") + " -o " + at("x.fbx"), ".glb");
   expect_input_error("pose " + at("rig.glb") + " --set no_such_muscle=1 -o " + at("x.glb"), "no_such_muscle");
+  expect_input_error("pose " + at("rig.glb") + " --set zigomaticus_major_left=1 -o " + at("x.glb"),
+                     "did you mean 'zygomaticus_major_left'");
+  expect_input_error("pose " + at("rig.glb") + " --set arkit:mouthSmileLeftt=1 -o " + at("x.glb"),
+                     "did you mean 'arkit:mouthSmileLeft'");
+  expect_input_error("bake " + at("rig.glb") + " --shapes arkti -o " + at("x.glb"), "did you mean 'arkit'");
   expect_input_error("pose " + at("rig.glb") + " --set jaw_open -o " + at("x.glb"), "NAME=VALUE");
   expect_input_error(
       "pose " + at("rig.glb") + " --activations " + at("landmarks.json") + " -o " + at("x.glb"),

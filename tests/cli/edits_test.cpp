@@ -189,7 +189,7 @@ TEST_F(Edits, WrongOnesAreRefusedWithAReason) {
   expect_refused("{}", "it changes nothing");
   expect_refused(R"({"muscels":{}})", "\"muscels\" is not known here");
   expect_refused(R"({"units":"feet","muscles":{}})", "units");
-  expect_refused(R"({"muscles":{"zygomaticus_mayor_left":{}}})", "did you mean 'zygomaticus_major_left'?");
+  expect_refused(R"({"muscles":{"zygomaticus_mayor_left":{}}})", "did you mean 'zygomaticus_major_left'");
   expect_refused(R"({"muscles":{"risorius_left":{"strenght":2}}})", "\"strenght\" is not known here");
   expect_refused(R"({"muscles":{"risorius_left":{"strength":-1}}})", "a factor from 0 to 100");
   expect_refused(R"({"muscles":{"risorius_left":{"variant":"threefold"}}})",

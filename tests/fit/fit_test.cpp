@@ -241,7 +241,9 @@ TEST_F(Fit, ToolSaysWhatIsWrong) {
     EXPECT_NE(outcome.err.find(says), std::string::npos) << arguments << outcome.err;
   };
   expect_error("--target " + at("other.obj") + " -o " + at("x.json"), "topology");
-  expect_error("--target " + at("landmarks.json") + " -o " + at("x.json"), "landmarks");
+  std::ofstream(at("strange.json"))
+      << R"({"landmarks": {"a": [0,0,0], "b": [1,0,0], "c": [0,1,0], "d": [0,0,1]}})";
+  expect_error("--target " + at("strange.json") + " -o " + at("x.json"), "landmarks");
   expect_error("--target " + at("bad.pc2") + " -o " + at("x.csv"), "point cache");
   expect_error("--target " + at("head.obj") + " -o " + at("x.csv"), ".json");
   expect_error("--target " + at("head.obj") + " --level none -o " + at("x.json"), "none");

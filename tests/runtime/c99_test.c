@@ -1,5 +1,5 @@
 /* The public header as a C99 program sees it. */
-#include "fascia/fascia.h"
+#include "fascia/api.h"
 
 #include <stdio.h>
 #include <string.h>

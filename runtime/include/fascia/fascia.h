@@ -22,6 +22,10 @@
  * Structures. Each begins with struct_size, which the caller sets to sizeof the structure; later versions
  * grow at the end only. Texts are UTF-8, end with 0, and belong to the asset or curves they came from.
  *
+ * Beside this header there are fascia/gpu.h (vertex data for skinning on the graphics card),
+ * fascia/research.h (nodes, forces, energies, derivatives), fascia/api.h (all functions as one table, for
+ * hosts that load the library themselves) and fascia/fascia.hpp (C++20).
+ *
  * Units and axes. Metres and radians unless a space says otherwise. Left and right are the subject's.
  */
 #ifndef FASCIA_FASCIA_H
@@ -83,6 +87,23 @@ FASCIA_API const char* fascia_last_message(void);
  * threads use the library. */
 typedef void (*fascia_log_function)(void* user, fascia_result result, const char* message);
 FASCIA_API void fascia_set_log(fascia_log_function function, void* user);
+
+/* The host's memory. `allocate` returns `size` bytes at a multiple of `alignment` (a power of two), or NULL;
+ * `release` takes back what it returned. Both may be called on any thread. */
+typedef struct fascia_allocator {
+  uint32_t struct_size;
+  uint32_t reserved;
+  void* (*allocate)(size_t size, size_t alignment, void* user);
+  void (*release)(void* block, void* user);
+  void* user;
+} fascia_allocator;
+
+/* From now on the memory of the library comes from the host; NULL goes back to malloc. (A throw of the C++
+ * library and a table of names of some 30 KB, kept for good, are left out.) FASCIA_ERROR_ARGUMENT
+ * while the library holds any memory: call it before everything else. FASCIA_ERROR_MODULE where the library
+ * was built without it (the static library, and systems other than Linux). The Bullet module has memory of
+ * its own and is refused while a host's allocator is set. */
+FASCIA_API fascia_result fascia_set_allocator(const fascia_allocator* allocator);
 
 /* --- Assets
  * ------------------------------------------------------------------------------------------------------ */
@@ -148,6 +169,11 @@ FASCIA_API fascia_result fascia_asset_get_set(const fascia_asset* asset, uint32_
 
 /* Index of a channel by name, case-insensitive; -1 when there is none. */
 FASCIA_API int32_t fascia_asset_find_channel(const fascia_asset* asset, const char* name);
+
+/* Indices of a set's member by name as in fascia_face_set ("arkit:jawOpen", "jawOpen"); FASCIA_ERROR_NAME
+ * when the name is a channel's or nobody's. */
+FASCIA_API fascia_result fascia_asset_find_member(const fascia_asset* asset, const char* name, uint32_t* set,
+                                                  uint32_t* member);
 
 /* A surface of the anatomy at rest, in metres: "cranium", "mandible", "teeth_upper", "teeth_lower" or "smas".
  * Of no vertices when the rig has none; FASCIA_ERROR_NAME for any other name. For display. */
@@ -224,8 +250,51 @@ FASCIA_API fascia_result fascia_face_set(fascia_face* face, const char* name, fl
 /* The value last set by that name. */
 FASCIA_API fascia_result fascia_face_get(const fascia_face* face, const char* name, float* value);
 
+/* The same for a member of a set by index (see fascia_asset_get_set), without looking for a name. */
+FASCIA_API fascia_result fascia_face_set_member(fascia_face* face, uint32_t set, uint32_t member,
+                                                float value);
+
 /* Puts every channel to its rest value and every member to 0. */
 FASCIA_API fascia_result fascia_face_clear(fascia_face* face);
+
+/* How a layer joins those below it, channel by channel; a departure is a value minus the channel's rest. */
+typedef enum fascia_combine {
+  FASCIA_COMBINE_ADD = 0,      /* the sum of the departures, clamped to the channel's range */
+  FASCIA_COMBINE_MAX = 1,      /* the greater departure: two sources of one motion do not drive it twice */
+  FASCIA_COMBINE_SATURATE = 2, /* 1 - (1 - a)(1 - b) of the way to the range's end: grows, never passes it */
+  FASCIA_COMBINE_OVERRIDE = 3, /* the layer alone, as far as its weight and mask go */
+  FASCIA_COMBINE_32 = 0x7fffffff
+} fascia_combine;
+
+typedef struct fascia_layer {
+  uint32_t struct_size;
+  fascia_combine combine;
+  float weight; /* 0 (no effect) to 1 */
+  uint32_t reserved;
+  const float* mask; /* channel_count weights from 0 to 1, copied; NULL for all channels alike */
+} fascia_layer;
+
+/* Adds layer `index` (1 to 7), or changes how it joins. Layer 0 is the face's own values and members and what
+ * fascia_curves_apply adds; higher layers join it in the order of their indices. Allocates for a new layer.
+ */
+FASCIA_API fascia_result fascia_face_set_layer(fascia_face* face, uint32_t index, const fascia_layer* layer);
+
+/* A layer's own values, as fascia_face_values, which is layer 0's; NULL when there is no such layer. */
+FASCIA_API float* fascia_face_layer_values(fascia_face* face, uint32_t layer);
+
+/* As fascia_face_set and fascia_face_clear, in a layer. */
+FASCIA_API fascia_result fascia_face_layer_set(fascia_face* face, uint32_t layer, const char* name,
+                                               float value);
+FASCIA_API fascia_result fascia_face_layer_clear(fascia_face* face, uint32_t layer);
+
+/* Turns both eyes to a point in metres in the head's frame (the rig's axes), each about its own centre and
+ * within its range, as far as `weight` (0 to 1) goes; from the next pose or step on, until set again. NULL
+ * for none. */
+FASCIA_API fascia_result fascia_face_look_at(fascia_face* face, const float* point, float weight);
+
+/* Over `seconds` of steps, brings the share of everything that drives the face to `share`: 0 lets it come to
+ * rest, as when a capture loses the actor, 1 (where a face begins) lets everything through again. */
+FASCIA_API fascia_result fascia_face_blend(fascia_face* face, float share, float seconds);
 
 /* What the last pose or step used: own values, members and curves added up and clamped. channel_count floats.
  */
@@ -265,6 +334,27 @@ FASCIA_API fascia_result fascia_faces_step(fascia_face* const* faces, uint32_t c
 /* Takes all motion out and stands the face at rest under its present jaw: after a cut or a teleport. */
 FASCIA_API fascia_result fascia_face_reset(fascia_face* face);
 
+/* Goes on at another level of detail (-1 the finest), at the pose of the present values and without velocity.
+ * Vertices stay where they are shown and go over `seconds` of steps to where the new level has them. Vertex
+ * arrays stay where they are; lists of nodes and fibre points change, and touches are cleared. Allocates, and
+ * the first use of a level prepares it. */
+FASCIA_API fascia_result fascia_face_set_level(fascia_face* face, int32_t level, float seconds);
+
+/* The level of detail now; -1 when the face is NULL. */
+FASCIA_API int32_t fascia_face_level(const fascia_face* face);
+
+/* Saves all that the face's next steps depend on, for rewinding and for play over a network: values, layers,
+ * motion, time within the step. A state put back goes on with the same bits, in this or another face of the
+ * same rig, solver, level and layers, on the same build and kind of machine. How the vertices fade after a
+ * change of level is not part of it. `size` gets how many bytes there are; with `to` NULL nothing else
+ * happens. FASCIA_ERROR_ARGUMENT when `capacity` is too small, FASCIA_ERROR_MODULE when the solver (Bullet)
+ * cannot. Allocates nothing. */
+FASCIA_API fascia_result fascia_face_save(fascia_face* face, void* to, size_t capacity, size_t* size);
+
+/* Puts a saved state back. FASCIA_ERROR_FORMAT when the bytes are damaged and FASCIA_ERROR_MISMATCH when they
+ * are another kind of face's: nothing has changed then. */
+FASCIA_API fascia_result fascia_face_restore(fascia_face* face, const void* bytes, size_t size);
+
 /* Acceleration that loose tissue feels in the head's frame, m/s^2 in the rig's axes: minus the head's own,
  * say. NULL for none. Kept until it is set again. */
 FASCIA_API fascia_result fascia_face_set_acceleration(fascia_face* face, const float* acceleration);
@@ -286,7 +376,7 @@ FASCIA_API fascia_result fascia_face_clear_touches(fascia_face* face);
 typedef struct fascia_vectors {
   uint32_t struct_size;
   uint32_t count;
-  uint32_t stride; /* bytes from one to the next: 12 */
+  uint32_t stride; /* bytes from one to the next: 12; 16 for tangents */
   uint32_t reserved;
   const float* data;
 } fascia_vectors;
@@ -298,6 +388,11 @@ FASCIA_API fascia_result fascia_face_positions(fascia_face* face, uint32_t mesh,
  * when the file has none. Computed when asked for. */
 FASCIA_API fascia_result fascia_face_normals(fascia_face* face, uint32_t mesh, fascia_vectors* normals);
 
+/* Tangents for normal maps: 4 floats a vertex, the unit tangent in the face's space and the handedness (1 or
+ * -1), the file's own or else those of its first texture coordinates, going with the surface. None (count 0)
+ * when the file has neither. Computed when asked for. */
+FASCIA_API fascia_result fascia_face_tangents(fascia_face* face, uint32_t mesh, fascia_vectors* tangents);
+
 /* How the skin is compressed at each vertex of a mesh, for wrinkle shaders: the direction of the strongest
  * compression at rest, in the rig's axes, times its share (0.2: one fifth shorter). Zero where nothing is
  * compressed and on other parts. Its sign means nothing; wrinkles run across it. Computed when asked for. */
@@ -308,6 +403,12 @@ FASCIA_API fascia_result fascia_face_compression(fascia_face* face, uint32_t mes
  * when `capacity` vertices are too few. */
 FASCIA_API fascia_result fascia_face_write_positions(fascia_face* face, uint32_t mesh, void* to,
                                                      size_t stride, size_t capacity);
+
+/* The same for normals, and for tangents (4 floats each, stride 16 or more). */
+FASCIA_API fascia_result fascia_face_write_normals(fascia_face* face, uint32_t mesh, void* to, size_t stride,
+                                                   size_t capacity);
+FASCIA_API fascia_result fascia_face_write_tangents(fascia_face* face, uint32_t mesh, void* to, size_t stride,
+                                                    size_t capacity);
 
 /* Points of the level's fibres (see fascia_asset_fibres) as they stand now, in metres. */
 FASCIA_API fascia_result fascia_face_fibre_points(fascia_face* face, fascia_vectors* points);
@@ -368,6 +469,10 @@ FASCIA_API fascia_result fascia_curves_head(const fascia_curves* curves, double 
  * first key and after the last their values hold. Curves the rig has no name for are left out. */
 FASCIA_API fascia_result fascia_curves_apply(const fascia_curves* curves, double seconds, float weight,
                                              fascia_face* face);
+
+/* The same in a layer of the face. */
+FASCIA_API fascia_result fascia_curves_apply_to_layer(const fascia_curves* curves, double seconds,
+                                                      float weight, fascia_face* face, uint32_t layer);
 
 #ifdef __cplusplus
 }

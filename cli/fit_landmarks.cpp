@@ -1,0 +1,305 @@
+#include "cli/fit_landmarks.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "builder/rigging/gltf_source.h"
+#include "builder/skull/procrustes.h"
+#include "builder/spatial/surface_query.h"
+#include "formats/landmark_file.h"
+#include "geometry/error.h"
+
+namespace fascia::cli {
+
+namespace {
+
+using nlohmann::json;
+using Points = std::map<std::string, Vec3>;
+
+/// The points of the 68-point mark-up that have a landmark of ours, from 0. C. Sagonas, G. Tzimiropoulos, S.
+/// Zafeiriou, M. Pantic. 300 faces in-the-wild challenge. 2013. Its right is the subject's.
+const std::vector<std::pair<int, const char*>> ibug_68 = {
+    {8, "menton"},
+    {17, "superciliare_laterale_right"},
+    {19, "superciliare_right"},
+    {21, "superciliare_mediale_right"},
+    {22, "superciliare_mediale_left"},
+    {24, "superciliare_left"},
+    {26, "superciliare_laterale_left"},
+    {27, "sellion"},
+    {29, "rhinion"},
+    {30, "pronasale"},
+    {31, "alare_right"},
+    {33, "subnasale"},
+    {35, "alare_left"},
+    {36, "exocanthion_right"},
+    {37, "palpebrale_superius_right"},
+    {39, "endocanthion_right"},
+    {41, "palpebrale_inferius_right"},
+    {42, "endocanthion_left"},
+    {44, "palpebrale_superius_left"},
+    {45, "exocanthion_left"},
+    {46, "palpebrale_inferius_left"},
+    {48, "cheilion_right"},
+    {50, "crista_philtri_right"},
+    {51, "labiale_superius"},
+    {52, "crista_philtri_left"},
+    {54, "cheilion_left"},
+    {57, "labiale_inferius"},
+};
+
+/// Landmarks by which the head's own motion is told.
+const std::vector<std::string> still_landmarks = {"nasion",
+                                                  "sellion",
+                                                  "rhinion",
+                                                  "exocanthion_left",
+                                                  "exocanthion_right",
+                                                  "endocanthion_left",
+                                                  "endocanthion_right",
+                                                  "tragion_left",
+                                                  "tragion_right",
+                                                  "glabella",
+                                                  "subnasale",
+                                                  "pronasale"};
+
+struct Frame {
+  double time = 0.0;
+  Points points;  ///< file's units
+};
+
+/// Frames of a file of landmarks; one for a file of one face.
+struct LandmarkFrames {
+  std::string units;
+  std::vector<Frame> frames;
+  bool is_take = false;
+};
+
+class Reader {
+ public:
+  explicit Reader(const std::filesystem::path& path) : path_(path) {}
+
+  LandmarkFrames read() const {
+    const std::vector<uint8_t> bytes = formats::read_bytes(path_);
+    const json content = json::parse(bytes.begin(), bytes.end(), nullptr, false);
+    if (!content.is_object()) fail("it is not a JSON object");
+    LandmarkFrames out;
+    if (content.contains("frames")) {
+      out.units =
+          content.value("units", json()).is_string() ? content["units"].get<std::string>() : std::string();
+      out.is_take = true;
+      if (!content["frames"].is_array() || content["frames"].empty())
+        fail("'frames' is not a list with entries");
+      for (const json& entry : content["frames"])
+        out.frames.push_back(frame(entry, "frame " + std::to_string(out.frames.size())));
+      for (size_t f = 1; f < out.frames.size(); ++f)
+        if (!(out.frames[f].time > out.frames[f - 1].time))
+          fail("the times of its frames do not rise at frame " + std::to_string(f));
+    } else if (content.contains("points")) {
+      out.units =
+          content.value("units", json()).is_string() ? content["units"].get<std::string>() : std::string();
+      out.frames = {{0.0, by_number(content["points"], "'points'")}};
+    } else {
+      const formats::LandmarkFile file = formats::read_landmarks(path_);
+      out.units = file.units;
+      out.frames = {{0.0, file.points}};
+    }
+    return out;
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const { throw Error("'" + path_.string() + "': " + what); }
+
+  Vec3 point(const json& value, const std::string& where) const {
+    Vec3 p = Vec3::Zero();
+    if (!value.is_array() || value.size() != 3) fail(where + " is not three numbers");
+    for (size_t k = 0; k < 3; ++k) {
+      if (!value[k].is_number()) fail(where + " is not three numbers");
+      p[static_cast<Eigen::Index>(k)] = value[k].get<double>();
+    }
+    if (!p.allFinite()) fail(where + " is not three finite numbers");
+    return p;
+  }
+
+  Points by_number(const json& list, const std::string& where) const {
+    if (!list.is_array() || list.size() != 68)
+      fail(where + " are not the 68 points of iBUG; give others by our names under 'landmarks'");
+    Points points;
+    for (const auto& [index, name] : ibug_68)
+      if (!list[static_cast<size_t>(index)].is_null())  // one the detector did not see
+        points[name] = point(list[static_cast<size_t>(index)], where + " " + std::to_string(index));
+    return points;
+  }
+
+  Frame frame(const json& entry, const std::string& where) const {
+    if (!entry.is_object() || !entry.contains("time") || !entry["time"].is_number())
+      fail(where + " has no 'time' in seconds");
+    Frame out{entry["time"].get<double>(), {}};
+    if (entry.contains("points"))
+      out.points = by_number(entry["points"], "the points of " + where);
+    else if (entry.contains("landmarks") && entry["landmarks"].is_object())
+      for (const auto& [name, value] : entry["landmarks"].items())
+        out.points[name] = point(value, "landmark '" + name + "' of " + where);
+    else
+      fail(where + " has neither 'points' nor 'landmarks'");
+    return out;
+  }
+
+  std::filesystem::path path_;
+};
+
+/// Where our landmarks lie on the rig's skin.
+class SkinLandmarks {
+ public:
+  struct Place {
+    Vec3 rest = Vec3::Zero();          ///< metres
+    std::array<size_t, 3> vertices{};  ///< of the subject
+    Vec3 shares = Vec3::Zero();
+    bool is_still = false;
+  };
+
+  explicit SkinLandmarks(const fit::Subject& subject) {
+    TriangleMesh skin;
+    for (size_t v = 0; v < subject.vertex_count(); ++v)
+      skin.vertices.push_back(subject.rest().segment<3>(static_cast<Eigen::Index>(3 * v)));
+    const rig::RigFile& file = subject.file();
+    for (const rig::Binding& binding : file.rig.tissue.bindings.front()) {
+      if (binding.part != "skin") continue;
+      const size_t p = file.primitive_of(binding);
+      const int first = static_cast<int>(subject.first_vertex(p));
+      for (const auto& t : file.primitives[p].triangles)
+        skin.triangles.push_back(
+            {static_cast<int>(t[0]) + first, static_cast<int>(t[1]) + first, static_cast<int>(t[2]) + first});
+    }
+    const spatial::SurfaceQuery surface(skin);
+    for (const rig::Landmark& landmark : file.rig.skull.landmarks) {
+      const spatial::ClosestPoint foot = surface.nearest_place(landmark.skin.cast<double>(), 0.01);
+      if (!foot.found()) continue;
+      Place place;
+      place.rest = foot.position;
+      place.shares = foot.surface.barycentric;
+      const Triangle& t = skin.triangles[static_cast<size_t>(foot.surface.triangle)];
+      for (size_t k = 0; k < 3; ++k)
+        place.vertices[k] = static_cast<size_t>(t[k]);
+      place.is_still =
+          std::find(still_landmarks.begin(), still_landmarks.end(), landmark.name) != still_landmarks.end();
+      places_[landmark.name] = place;
+    }
+  }
+
+  const Place* find(const std::string& name) const {
+    const auto at = places_.find(name);
+    return at == places_.end() ? nullptr : &at->second;
+  }
+
+ private:
+  std::map<std::string, Place> places_;
+};
+
+class LandmarkTargetMaker {
+ public:
+  LandmarkTargetMaker(const fit::Subject& subject, bool takes_out_head)
+      : subject_(&subject),
+        places_(subject),
+        takes_out_head_(takes_out_head),
+        offset_(rigging::input_offset(subject.file().source)),
+        to_metres_(subject.file().rig.input_to_metres.cast<double>()) {}
+
+  /// The file's points in metres, those only that the rig's skin has.
+  Points in_metres(const Points& file, const std::string& units) const {
+    double scale = 1.0;  // from the file's units to the head file's
+    const double head_unit = to_metres_.topLeftCorner<3, 1>().norm();
+    for (const auto& [name, value] : {std::pair{"m", 1.0}, {"cm", 0.01}, {"mm", 0.001}})
+      if (units == name) scale = value / head_unit;
+    Points out;
+    for (const auto& [name, p] : file)
+      if (places_.find(name)) out[name] = transform_point(to_metres_, scale * p - offset_);
+    return out;
+  }
+
+  /// `points` against the face at rest: `neutral` where it is given, else the rig's own landmarks.
+  fit::Target target(Points points, const Points& neutral) const {
+    if (takes_out_head_) take_out_head(points, neutral);
+    fit::Target out{Eigen::VectorXd::Zero(subject_->rest().size()),
+                    std::vector<double>(subject_->vertex_count(), 0.0),
+                    {}};
+    for (const auto& [name, p] : points) {
+      const SkinLandmarks::Place& place = *places_.find(name);
+      const auto rest = neutral.find(name);
+      if (!neutral.empty() && rest == neutral.end()) continue;
+      const Vec3 moved = p - (neutral.empty() ? place.rest : rest->second);
+      for (size_t k = 0; k < 3; ++k) {
+        const double share = place.shares[static_cast<Eigen::Index>(k)];
+        if (share <= 0.0) continue;
+        const auto at = static_cast<Eigen::Index>(3 * place.vertices[k]);
+        double& trust = out.trust[place.vertices[k]];
+        out.displacements.segment<3>(at) =
+            (trust * Vec3(out.displacements.segment<3>(at)) + share * moved) / (trust + share);
+        trust += share;
+      }
+    }
+    return out;
+  }
+
+ private:
+  void take_out_head(Points& points, const Points& neutral) const {
+    std::vector<Vec3> from, to;
+    for (const auto& [name, p] : points) {
+      const SkinLandmarks::Place& place = *places_.find(name);
+      if (!place.is_still) continue;
+      const auto rest = neutral.find(name);
+      if (!neutral.empty() && rest == neutral.end()) continue;
+      from.push_back(p);
+      to.push_back(neutral.empty() ? place.rest : rest->second);
+    }
+    if (from.size() < 4) return;
+    const Mat4 back = skull::rigid(from, to);
+    for (auto& [name, p] : points)
+      p = transform_point(back, p);
+  }
+
+  const fit::Subject* subject_;
+  SkinLandmarks places_;
+  bool takes_out_head_;
+  Vec3 offset_;  ///< of the rig's input, in its units
+  Mat4 to_metres_;
+};
+
+}  // namespace
+
+FitTargets landmark_targets(const Common& common, const std::filesystem::path& path,
+                            const std::filesystem::path& neutral, const fit::Subject& subject,
+                            const FitTargetOptions& options) {
+  const auto maker = std::make_shared<LandmarkTargetMaker>(subject, options.head_pose != "fixed");
+  const auto file = std::make_shared<LandmarkFrames>(Reader(path).read());
+  const auto rest = std::make_shared<Points>();
+  if (!neutral.empty()) {
+    const LandmarkFrames at_rest = Reader(neutral).read();
+    *rest = maker->in_metres(at_rest.frames.front().points, at_rest.units);
+    if (rest->size() < 4)
+      throw Error("'" + neutral.string() + "': fewer than four of its landmarks are known");
+  }
+  const size_t known = maker->in_metres(file->frames.front().points, file->units).size();
+  if (known < 4)
+    throw Error("'" + path.string() +
+                "': fewer than four of its landmarks lie on the rig's skin; 'fascia export --part "
+                "landmarks' writes those that do, by name");
+  if (known < file->frames.front().points.size())
+    common.warn(std::to_string(file->frames.front().points.size() - known) +
+                " landmarks are not among the rig's: left out");
+  FitTargets targets;
+  targets.kind = file->is_take ? FitTargets::Kind::take : FitTargets::Kind::mesh;
+  for (size_t f = 0; f < file->frames.size(); ++f) {
+    targets.names.push_back(file->is_take ? "frame " + std::to_string(f) : path.filename().string());
+    if (file->is_take) targets.times.push_back(file->frames[f].time);
+  }
+  targets.target = [maker, file, rest](size_t f) {
+    return maker->target(maker->in_metres(file->frames[f].points, file->units), *rest);
+  };
+  return targets;
+}
+
+}  // namespace fascia::cli

@@ -1,0 +1,25 @@
+#include "runtime/allocator.h"
+
+#include "runtime/message.h"
+
+namespace fascia::runtime {
+
+constinit fascia_allocator hosts_allocator{};
+constinit bool can_redirect_memory = false;
+
+}  // namespace fascia::runtime
+
+extern "C" fascia_result fascia_set_allocator(const fascia_allocator* allocator) {
+  using namespace fascia::runtime;
+  return guarded([&] {
+    if (allocator != nullptr && !can_redirect_memory)
+      throw Failure(FASCIA_ERROR_MODULE, "this build of the library takes its memory from malloc alone");
+    require(live_handles.load() == 0,
+            "assets, faces or curves are loaded already: set the allocator before, or release them");
+    require(allocator == nullptr ||
+                (allocator->struct_size >= sizeof *allocator && allocator->allocate && allocator->release),
+            "the allocator lacks its struct_size, allocate or release");
+    hosts_allocator = allocator != nullptr ? *allocator : fascia_allocator{};
+    return FASCIA_OK;
+  });
+}

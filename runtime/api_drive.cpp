@@ -1,0 +1,117 @@
+#include "runtime/api.h"
+
+using namespace fascia::runtime;
+
+extern "C" {
+
+float* fascia_face_values(fascia_face* face) {
+  return face == nullptr ? nullptr : face->face->drive().values().data();
+}
+
+const float* fascia_face_effective_values(const fascia_face* face) {
+  return face == nullptr ? nullptr : face->face->drive().effective().data();
+}
+
+fascia_result fascia_face_set(fascia_face* handle, const char* name, float value) {
+  return guarded([&] {
+    Face& face = checked(handle);
+    require(std::isfinite(value), "the value is not a finite number");
+    for (const Driven& driven : named(face, name))
+      face.drive().set(0, driven.target, driven.share * value);
+    return FASCIA_OK;
+  });
+}
+
+fascia_result fascia_face_get(const fascia_face* handle, const char* name, float* value) {
+  return guarded([&] {
+    const Face& face = checked(handle);
+    require(value != nullptr, "the value to write is null");
+    const Driven driven = named(face, name).front();
+    *value = face.drive().get(0, driven.target) / driven.share;
+    return FASCIA_OK;
+  });
+}
+
+fascia_result fascia_face_clear(fascia_face* handle) {
+  return guarded([&] {
+    checked(handle).drive().clear(0);
+    return FASCIA_OK;
+  });
+}
+
+fascia_result fascia_face_set_member(fascia_face* handle, uint32_t set, uint32_t member, float value) {
+  return guarded([&] {
+    Face& face = checked(handle);
+    const auto& sets = face.asset().set_members;
+    check_index(set, sets.size(), "set");
+    check_index(member, sets[set].size(), "member");
+    require(std::isfinite(value), "the value is not a finite number");
+    uint32_t first = 0;
+    for (uint32_t i = 0; i < set; ++i)
+      first += static_cast<uint32_t>(sets[i].size());
+    face.drive().set(0, {Target::Kind::member, first + member}, value);
+    return FASCIA_OK;
+  });
+}
+
+fascia_result fascia_face_set_layer(fascia_face* handle, uint32_t index, const fascia_layer* layer) {
+  return guarded([&] {
+    Face& face = checked(handle);
+    require(index >= 1 && index < Drive::most_layers, "layers of a face's own are 1 to 7");
+    require(layer != nullptr, "the layer is null");
+    const fascia_layer chosen = taken(layer, {sizeof(fascia_layer), FASCIA_COMBINE_ADD, 1.0F, 0, nullptr});
+    require(chosen.combine >= FASCIA_COMBINE_ADD && chosen.combine <= FASCIA_COMBINE_OVERRIDE,
+            "unknown way to combine");
+    require(chosen.weight >= 0.0F && chosen.weight <= 1.0F, "the weight must lie between 0 and 1");
+    std::span<const float> mask;
+    if (chosen.mask != nullptr) mask = {chosen.mask, face.asset().channel_names.size()};
+    for (const float share : mask)
+      require(share >= 0.0F && share <= 1.0F, "the mask's weights must lie between 0 and 1");
+    face.drive().set_layer(index, static_cast<Combine>(chosen.combine), chosen.weight, mask);
+    return FASCIA_OK;
+  });
+}
+
+float* fascia_face_layer_values(fascia_face* face, uint32_t layer) {
+  if (face == nullptr || !face->face->drive().has_layer(layer)) return nullptr;
+  return face->face->drive().values(layer).data();
+}
+
+fascia_result fascia_face_layer_set(fascia_face* handle, uint32_t layer, const char* name, float value) {
+  return guarded([&] {
+    Face& face = with_layer(handle, layer);
+    require(std::isfinite(value), "the value is not a finite number");
+    for (const Driven& driven : named(face, name))
+      face.drive().set(layer, driven.target, driven.share * value);
+    return FASCIA_OK;
+  });
+}
+
+fascia_result fascia_face_layer_clear(fascia_face* face, uint32_t layer) {
+  return guarded([&] {
+    with_layer(face, layer).drive().clear(layer);
+    return FASCIA_OK;
+  });
+}
+
+fascia_result fascia_face_look_at(fascia_face* face, const float* point, float weight) {
+  return guarded([&] {
+    require(weight >= 0.0F && weight <= 1.0F, "the weight must lie between 0 and 1");
+    std::optional<Vec3f> target;
+    if (point != nullptr) target = Eigen::Map<const Vec3f>(point);
+    require(!target || target->allFinite(), "the point is not finite");
+    checked(face).drive().look_at(target, weight);
+    return FASCIA_OK;
+  });
+}
+
+fascia_result fascia_face_blend(fascia_face* face, float share, float seconds) {
+  return guarded([&] {
+    require(share >= 0.0F && share <= 1.0F, "the share must lie between 0 and 1");
+    require(std::isfinite(seconds) && seconds >= 0.0F, "seconds must be 0 or more");
+    checked(face).drive().blend(share, seconds);
+    return FASCIA_OK;
+  });
+}
+
+}  // extern "C"
