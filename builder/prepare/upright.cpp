@@ -6,7 +6,8 @@
 namespace fascia::prepare {
 namespace {
 
-/// Left minus right of all landmarks that come in pairs, each pair counting alike.
+/// Left minus right of all landmarks that come in pairs, summed: those far apart tell most, and one that is
+/// misplaced little.
 Vec3 lateral_of(const std::map<std::string, Vec3>& points, int& pairs) {
   Vec3 sum = Vec3::Zero();
   pairs = 0;
@@ -14,7 +15,7 @@ Vec3 lateral_of(const std::map<std::string, Vec3>& points, int& pairs) {
     if (!name.ends_with("_left")) continue;
     const auto right = points.find(name.substr(0, name.size() - 4) + "right");
     if (right == points.end()) continue;
-    sum += (left - right->second).normalized();
+    sum += left - right->second;
     ++pairs;
   }
   return sum;
@@ -46,7 +47,7 @@ double nod_between(const std::map<std::string, Vec3>& here, const Mat3& turned,
 Mat3 uprighting(const std::map<std::string, Vec3>& here, const std::map<std::string, Vec3>& reference) {
   int pairs = 0;
   const Vec3 lateral = lateral_of(here, pairs);
-  if (pairs < 3 || !(lateral.norm() > 0.1 * pairs)) return Mat3::Identity();
+  if (pairs < 3 || !(lateral.norm() > 1e-3 * pairs)) return Mat3::Identity();
   const Mat3 level = Eigen::Quaterniond::FromTwoVectors(lateral, Vec3::UnitX()).toRotationMatrix();
   const double nod = nod_between(here, level, reference);
   return Eigen::AngleAxisd(nod, Vec3::UnitX()).toRotationMatrix() * level;

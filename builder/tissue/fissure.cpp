@@ -32,44 +32,8 @@ Fissure::Fissure(const TissueInputs& inputs, const FaceRegion& region, bool left
   left_ = (b - centre).dot(lateral);
   right_elevation_ = elevation(a);
   left_elevation_ = elevation(b);
-  find_corners(region, left);
   find_gaps(region, left);
   find_closed_lids(region, left);
-}
-
-void Fissure::find_corners(const FaceRegion& region, bool left) {
-  // Where the opening in the skin ends lids meet, a little beyond or before the landmarks: what stays outside
-  // of the corners would stay open.
-  constexpr double off = 0.22, row = 0.04;  // of the width: a corner from its landmark; what is at a corner
-  const auto& distance =
-      region.opening_distance[static_cast<size_t>(left ? Opening::eye_left : Opening::eye_right)];
-  const double width = left_ - right_;
-  std::vector<std::pair<double, double>> edge;  // along the fissure, elevation
-  for (size_t v = 0; v < region.mesh.vertices.size(); ++v) {
-    if (!region.outer[v] || !(distance[v] <= 0.0)) continue;
-    const Vec3& p = region.mesh.vertices[v];
-    const double along = (p - centre).dot(lateral);
-    if (along < right_ - off * width || along > left_ + off * width || std::abs(elevation(p)) > widest)
-      continue;
-    edge.emplace_back(along, elevation(p));
-  }
-  if (edge.size() < 6) return;
-  const auto [first, last] = std::minmax_element(edge.begin(), edge.end());
-  const double from = first->first, to = last->first;
-  if (from > right_ + off * width || to < left_ - off * width) return;
-  const auto height_at = [&](double corner) {
-    double sum = 0.0, count = 0.0;
-    for (const auto& [along, height] : edge)
-      if (std::abs(along - corner) < row * width) {
-        sum += height;
-        count += 1.0;
-      }
-    return sum / count;
-  };
-  right_elevation_ = height_at(from);
-  left_elevation_ = height_at(to);
-  right_ = from;
-  left_ = to;
 }
 
 double Fissure::elevation(const Vec3& p) const {
@@ -140,7 +104,7 @@ void Fissure::find_gaps(const FaceRegion& region, bool left) {
   for (int pass = 0; pass < 2; ++pass) {
     std::vector<double> next = gaps_;
     for (size_t k = 1; k + 1 < steps; ++k)
-      next[k] = std::max(gaps_[k], 0.25 * (gaps_[k - 1] + 2.0 * gaps_[k] + gaps_[k + 1]));
+      next[k] = 0.25 * (gaps_[k - 1] + 2.0 * gaps_[k] + gaps_[k + 1]);
     gaps_ = std::move(next);
   }
 }

@@ -37,7 +37,6 @@ class Fissure {
 
  private:
   double middle(double place) const;
-  void find_corners(const FaceRegion& region, bool left);
   void find_gaps(const FaceRegion& region, bool left);
   void find_closed_lids(const FaceRegion& region, bool left);
 
