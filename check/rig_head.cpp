@@ -1,6 +1,6 @@
 #include "check/rig_head.h"
 
-#include <fascia/fascia.hpp>
+#include <fascia/fascia.h>
 
 #include <Eigen/LU>
 
@@ -13,7 +13,12 @@
 namespace fascia::check {
 namespace {
 
-using api::sized;
+template <class T>
+T sized() {
+  T value = {};
+  value.struct_size = sizeof(T);
+  return value;
+}
 
 /// Where the vertices of a Part come from.
 struct Source {

@@ -1,18 +1,319 @@
 #include "cli/fit_target.h"
 
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
 #include <algorithm>
-#include <cctype>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <map>
 #include <memory>
+#include <set>
 
-#include "cli/fit_cache.h"
-#include "cli/fit_match.h"
+#include "builder/rigging/gltf_source.h"
 #include "cli/fit_shapes.h"
+#include "formats/obj_lines.h"
 #include "formats/scene.h"
 #include "geometry/error.h"
 
 namespace fascia::cli {
 
 namespace {
+
+/// Where the vertices of one of the rig's primitives stand among a target's points.
+struct Match {
+  size_t primitive = 0;
+  size_t mesh = 0;              ///< of the scene
+  std::vector<uint32_t> point;  ///< by vertex of the primitive, into the mesh or the cache
+};
+
+std::vector<uint32_t> counted(size_t first, size_t count) {
+  std::vector<uint32_t> list(count);
+  for (size_t i = 0; i < count; ++i)
+    list[i] = static_cast<uint32_t>(first + i);
+  return list;
+}
+
+[[noreturn]] void fail_topology(const std::filesystem::path& path, const fit::Subject& subject,
+                                const std::string& holds) {
+  throw Error("'" + path.string() + "' " + holds + ", but the rig's meshes have " +
+              std::to_string(subject.vertex_count()) + " vertices in " +
+              std::to_string(subject.file().primitives.size()) +
+              " parts: give meshes of the rig's own topology, as `fascia pose` writes them, or one scan with "
+              "--as scan");
+}
+
+/// Finds each of the rig's primitives in a scene: by its place in the file, by its name, or in one mesh of
+/// all. Empty when there are none.
+std::vector<Match> matches_or_none(const formats::Scene& scene, const fit::Subject& subject) {
+  const auto& primitives = subject.file().primitives;
+  const bool is_gltf = scene.kind == formats::FileKind::glb || scene.kind == formats::FileKind::gltf;
+  std::vector<Match> found;
+  for (size_t p = 0; p < primitives.size(); ++p) {
+    const size_t count = primitives[p].positions.size();
+    int best = -1, best_rank = 0;
+    for (size_t m = 0; m < scene.meshes.size(); ++m) {
+      const formats::SceneMesh& mesh = scene.meshes[m];
+      if (mesh.positions.size() != count) continue;
+      const bool in_place = is_gltf ? mesh.mesh == static_cast<int>(primitives[p].mesh) &&
+                                          mesh.primitive == static_cast<int>(primitives[p].primitive)
+                                    : m == primitives[p].mesh;
+      const int rank = (mesh.name == primitives[p].name ? 2 : 0) + (in_place ? 1 : 0);
+      if (rank > best_rank || (rank == 0 && best < 0 && primitives.size() == 1)) {
+        best = static_cast<int>(m);
+        best_rank = rank;
+      }
+    }
+    if (best >= 0) found.push_back({p, static_cast<size_t>(best), counted(0, count)});
+  }
+  if (found.empty() && scene.meshes.size() == 1 && scene.meshes[0].positions.size() == subject.vertex_count())
+    for (size_t p = 0; p < primitives.size(); ++p)
+      found.push_back({p, 0, counted(subject.first_vertex(p), primitives[p].positions.size())});
+  return found;
+}
+
+std::vector<Match> matches(const formats::Scene& scene, const fit::Subject& subject) {
+  std::vector<Match> found = matches_or_none(scene, subject);
+  if (found.empty()) {
+    size_t vertices = 0;
+    for (const formats::SceneMesh& mesh : scene.meshes)
+      vertices += mesh.positions.size();
+    fail_topology(scene.path, subject,
+                  "has " + std::to_string(vertices) + " vertices in " + std::to_string(scene.meshes.size()) +
+                      " meshes");
+  }
+  return found;
+}
+
+/// Builds targets from points in the rig's input space.
+class TargetMaker {
+ public:
+  TargetMaker(const fit::Subject& subject, bool takes_out_head)
+      : subject_(subject),
+        takes_out_head_(takes_out_head),
+        offset_(rigging::input_offset(subject.file().source)),
+        to_metres_(subject.file().rig.input_to_metres.cast<double>()) {}
+
+  fit::Target none() const {
+    return {Eigen::VectorXd::Zero(subject_.rest().size()), std::vector<double>(subject_.vertex_count(), 0.0)};
+  }
+
+  /// A vertex that should stand at `place`, in the input's axes and units.
+  void put(fit::Target& target, size_t vertex, const Vec3& place) const {
+    put_metres(target, vertex, transform_point(to_metres_, place - offset_));
+  }
+
+  Mat4 to_metres(const formats::Scene& scene) const { return scene_to_metres(subject_, scene); }
+
+  /// The target with the head's own motion taken out where asked for. Throws fascia::Error when it is another
+  /// place or size than the rig's head.
+  fit::Target finished(fit::Target target) const {
+    if (takes_out_head_) target = without_head(std::move(target));
+    double sum = 0.0;
+    size_t count = 0;
+    for (size_t v = 0; v < subject_.vertex_count(); ++v) {
+      if (target.trust[v] <= 0.0) continue;
+      sum += target.displacements.segment<3>(static_cast<Eigen::Index>(3 * v)).norm();
+      ++count;
+    }
+    constexpr double farthest = 0.05;  // metres: no face moves so far on average
+    if (count > 0 && sum > farthest * static_cast<double>(count))
+      throw Error("the target lies " + std::to_string(std::lround(1e3 * sum / static_cast<double>(count))) +
+                  " mm from the rig's head on average: give it in the axes and units of the file the rig was "
+                  "built from");
+    return target;
+  }
+
+  const fit::Subject& subject() const { return subject_; }
+
+  /// Takes the motion out of those vertices that nothing in the face moves (Kabsch 1976).
+  fit::Target without_head(fit::Target target) const {
+    std::vector<Eigen::Index> still;
+    Vec3 from = Vec3::Zero(), to = Vec3::Zero();
+    double moved = 0.0;
+    for (size_t v = 0; v < subject_.vertex_count(); ++v) {
+      if (target.trust[v] <= 0.0 || subject_.eyes()[v] != 0 || subject_.follows(v)) continue;
+      const auto at = static_cast<Eigen::Index>(3 * v);
+      still.push_back(at);
+      from += subject_.rest().segment<3>(at);
+      to += subject_.rest().segment<3>(at) + target.displacements.segment<3>(at);
+      moved += target.displacements.segment<3>(at).squaredNorm();
+    }
+    constexpr size_t enough = 50;
+    constexpr double least = 2e-4;  // metres
+    if (still.size() < enough || moved < least * least * static_cast<double>(still.size())) return target;
+    from /= static_cast<double>(still.size());
+    to /= static_cast<double>(still.size());
+    Mat3 sum = Mat3::Zero();
+    for (const Eigen::Index at : still) {
+      const Vec3 rest = subject_.rest().segment<3>(at);
+      sum += (rest - from) * (rest + Vec3(target.displacements.segment<3>(at)) - to).transpose();
+    }
+    const Eigen::JacobiSVD<Mat3> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    Mat3 flip = Mat3::Identity();
+    flip(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
+    const Mat3 back = svd.matrixU() * flip * svd.matrixV().transpose();
+    for (size_t v = 0; v < subject_.vertex_count(); ++v) {
+      if (target.trust[v] <= 0.0) continue;
+      const auto at = static_cast<Eigen::Index>(3 * v);
+      const Vec3 rest = subject_.rest().segment<3>(at);
+      target.displacements.segment<3>(at) =
+          back * (rest + Vec3(target.displacements.segment<3>(at)) - to) + from - rest;
+    }
+    return target;
+  }
+
+  fit::Target of_scene(const formats::Scene& scene) const {
+    fit::Target target = none();
+    const Mat4 map = to_metres(scene);
+    for (const Match& match : matches(scene, subject_))
+      for (size_t v = 0; v < match.point.size(); ++v)
+        put_metres(target, subject_.first_vertex(match.primitive) + v,
+                   transform_point(map, scene.meshes[match.mesh].positions[match.point[v]]));
+    return finished(std::move(target));
+  }
+
+ private:
+  void put_metres(fit::Target& target, size_t vertex, const Vec3& place) const {
+    const auto at = static_cast<Eigen::Index>(3 * vertex);
+    if (!place.allFinite()) return;
+    target.displacements.segment<3>(at) = place - Vec3(subject_.rest().segment<3>(at));
+    target.trust[vertex] = 1.0;
+  }
+
+  const fit::Subject& subject_;
+  bool takes_out_head_;
+  Vec3 offset_;  ///< of the rig's input, in its units
+  Mat4 to_metres_;
+};
+
+/// Points by frame of a PC2 or MDD cache.
+struct PointCache {
+  std::vector<uint8_t> bytes;
+  size_t points = 0, frames = 0, first = 0;  ///< `first`: where the points begin
+  bool is_big_endian = false;
+  std::vector<double> times;
+
+  uint32_t word(size_t at) const {
+    uint32_t value = 0;
+    std::memcpy(&value, bytes.data() + at, 4);
+    if (is_big_endian) value = value << 24 | (value & 0xFF00U) << 8 | (value >> 8 & 0xFF00U) | value >> 24;
+    return value;
+  }
+  double real(size_t at) const { return static_cast<double>(std::bit_cast<float>(word(at))); }
+  Vec3 point(size_t frame, size_t index) const {
+    const size_t at = first + 12 * (frame * points + index);
+    return {real(at), real(at + 4), real(at + 8)};
+  }
+};
+
+PointCache read_cache(const std::filesystem::path& path, double fps) {
+  PointCache cache;
+  cache.bytes = formats::read_bytes(path);
+  const auto fail = [&](const std::string& what) { throw Error("'" + path.string() + "': " + what); };
+  if (cache.bytes.size() >= 32 && std::memcmp(cache.bytes.data(), "POINTCACHE2", 12) == 0) {
+    cache.points = cache.word(16);
+    cache.frames = cache.word(28);
+    cache.first = 32;
+    for (size_t f = 0; f < cache.frames && f < cache.bytes.size(); ++f)
+      cache.times.push_back(static_cast<double>(f) / fps);
+  } else if (path.extension() == ".mdd" && cache.bytes.size() >= 8) {
+    cache.is_big_endian = true;
+    cache.frames = cache.word(0);
+    cache.points = cache.word(4);
+    cache.first = 8 + 4 * cache.frames;
+    for (size_t f = 0; f < cache.frames && 12 + 4 * f <= cache.bytes.size(); ++f)
+      cache.times.push_back(cache.real(8 + 4 * f));
+  } else {
+    fail("it is not a PC2 or MDD point cache");
+  }
+  if (cache.frames == 0 || cache.points == 0) fail("the point cache holds no frames");
+  if ((cache.bytes.size() - std::min(cache.bytes.size(), cache.first)) / 12 / cache.points < cache.frames)
+    fail("the point cache is shorter than its header says: it is damaged or truncated");
+  for (size_t f = 1; f < cache.times.size(); ++f)
+    if (!(cache.times[f] > cache.times[f - 1])) fail("the times of its frames do not rise");
+  return cache;
+}
+
+/// An object of the rig's source whose vertices a cache may hold: OBJ files count each `v` once.
+struct CachePart {
+  size_t points = 0;
+  std::vector<Match> matches;
+};
+
+std::vector<CachePart> cache_parts(const fit::Subject& subject) {
+  std::map<uint32_t, CachePart> parts;
+  const rig::RigFile& file = subject.file();
+  formats::Scene source;
+  if (file.source.format == "obj") source = formats::read("source.obj", file.source.bytes);
+  for (size_t p = 0; p < file.primitives.size(); ++p) {
+    const uint32_t mesh = file.primitives[p].mesh;
+    CachePart& part = parts[mesh];
+    const size_t count = file.primitives[p].positions.size();
+    Match match{p, mesh, counted(part.points, count)};
+    if (mesh < source.meshes.size() && source.meshes[mesh].source_vertices.size() >= count) {
+      const std::vector<int>& lines = source.meshes[mesh].source_vertices;
+      const std::set<int> sorted(lines.begin(), lines.end());
+      const std::vector<int> order(sorted.begin(), sorted.end());
+      for (size_t v = 0; v < count; ++v)
+        match.point[v] =
+            static_cast<uint32_t>(std::lower_bound(order.begin(), order.end(), lines[v]) - order.begin());
+      part.points = order.size();
+    } else {
+      part.points += count;
+    }
+    part.matches.push_back(std::move(match));
+  }
+  std::vector<CachePart> list;
+  for (auto& [mesh, part] : parts)
+    list.push_back(std::move(part));
+  return list;
+}
+
+/// The rig's vertices among all `v` lines of its OBJ source, where there are `points` of them; else none.
+std::vector<Match> obj_matches(size_t points, const fit::Subject& subject) {
+  const rig::RigFile& file = subject.file();
+  if (file.source.format != "obj") return {};
+  const std::string text(file.source.bytes.begin(), file.source.bytes.end());
+  if (formats::obj_vertices(text).size() != points) return {};
+  const formats::Scene source = formats::read("source.obj", file.source.bytes);
+  std::vector<Match> found;
+  for (size_t p = 0; p < file.primitives.size(); ++p) {
+    const size_t mesh = file.primitives[p].mesh, count = file.primitives[p].positions.size();
+    if (mesh >= source.meshes.size() || source.meshes[mesh].source_vertices.size() < count) continue;
+    const std::vector<int>& lines = source.meshes[mesh].source_vertices;
+    found.push_back({p, mesh, {lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(count)}});
+  }
+  return found;
+}
+
+/// What a cache of `points` points holds: the whole OBJ, one object, or all of them one after the other.
+std::vector<Match> cache_matches(const std::filesystem::path& path, size_t points,
+                                 const fit::Subject& subject) {
+  if (std::vector<Match> whole = obj_matches(points, subject); !whole.empty()) return whole;
+  const std::vector<CachePart> parts = cache_parts(subject);
+  std::vector<Match> all;
+  size_t sum = 0;
+  for (const CachePart& part : parts) {
+    for (Match match : part.matches) {
+      for (uint32_t& point : match.point)
+        point += static_cast<uint32_t>(sum);
+      all.push_back(std::move(match));
+    }
+    sum += part.points;
+  }
+  if (sum == points) return all;
+  const CachePart* found = nullptr;
+  for (const CachePart& part : parts) {
+    if (part.points != points) continue;
+    if (found != nullptr)
+      throw Error("'" + path.string() + "': more than one of the rig's meshes has its " +
+                  std::to_string(points) + " points: give a cache of all meshes");
+    found = &part;
+  }
+  if (found == nullptr) fail_topology(path, subject, "has " + std::to_string(points) + " points a frame");
+  return found->matches;
+}
 
 FitTargets cache_targets(const std::filesystem::path& path, const TargetMaker& maker, double fps) {
   const auto cache = std::make_shared<PointCache>(read_cache(path, fps));
@@ -89,6 +390,20 @@ struct MorphTargets {
 };
 
 }  // namespace
+
+Mat4 scene_to_metres(const fit::Subject& subject, const formats::Scene& scene) {
+  const bool is_gltf = scene.kind == formats::FileKind::glb || scene.kind == formats::FileKind::gltf;
+  const std::string& source = subject.file().source.format;
+  if (is_gltf && (source == "obj" || source == "ply" || source == "stl")) return Mat4::Identity();
+  Mat4 map = subject.file().rig.input_to_metres.cast<double>();
+  const Vec3 apart = scene.offset - rigging::input_offset(subject.file().source);
+  map.topRightCorner<3, 1>() += map.topLeftCorner<3, 3>() * apart;
+  return map;
+}
+
+bool has_rig_topology(const fit::Subject& subject, const formats::Scene& scene) {
+  return !matches_or_none(scene, subject).empty();
+}
 
 FitTargets open_fit_targets(const Common& common, const std::filesystem::path& path,
                             const fit::Subject& subject, const FitTargetOptions& options) {

@@ -1,7 +1,5 @@
 #include "cli/posing.h"
 
-#include <fascia/fascia.hpp>
-
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -13,7 +11,12 @@ namespace fascia::cli {
 
 namespace {
 
-using api::sized;
+template <class T>
+T sized() {
+  T value = {};
+  value.struct_size = sizeof(T);
+  return value;
+}
 
 std::span<const float> as_span(const fascia_vectors& vectors) {
   return {vectors.data, static_cast<size_t>(vectors.count) * 3};
