@@ -53,7 +53,7 @@ void StillRenderer::run() {
         width = order.width;
         height = order.height;
       }
-      Picture picture{std::move(order.key), renderer->draw(order.list, order.camera, order.look)};
+      Picture picture{std::move(order.key), renderer->draw_with(order.list, order.camera, order.look)};
       const std::lock_guard<std::mutex> lock(mutex_);
       done_ = std::move(picture);
     } catch (const std::exception&) {
