@@ -92,12 +92,14 @@ class Batch : public ::testing::Test {
   void expect_no_leftovers() {
     EXPECT_TRUE(fs::is_empty(options.output / ".work"));
     for (const auto& entry : fs::directory_iterator(options.output))
-      if (entry.path().filename().string()[0] != '.')
-        for (const auto& file : fs::directory_iterator(entry.path()))
+      if (entry.path().filename().string()[0] != '.') {
+        for (const auto& file : fs::directory_iterator(entry.path())) {
           EXPECT_TRUE(
               std::set<std::string>({"rig.glb", "job.json", "build.json", "check.json", "thumbnail.png"})
                   .count(file.path().filename().string()))
               << file.path();
+        }
+      }
   }
 
   fs::path folder;
