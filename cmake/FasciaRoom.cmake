@@ -12,8 +12,25 @@ if(FASCIA_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_C_COMPILER_LAUNCHER})
 endif()
 
-find_package(Eigen3 3.4 REQUIRED NO_MODULE)
-find_package(nlohmann_json 3.11 REQUIRED)
+# For another system (emscripten, mingw-w64) only the header libraries of this one serve, without its C headers.
+if(CMAKE_CROSSCOMPILING)
+  set(FASCIA_HEADERS ${PROJECT_BINARY_DIR}/headers)
+  file(MAKE_DIRECTORY ${FASCIA_HEADERS})
+  foreach(header nlohmann tiny_gltf.h eigen3)
+    if(NOT EXISTS /usr/include/${header})
+      message(FATAL_ERROR "fascia: /usr/include/${header} is missing: run scripts/setup.sh --full")
+    endif()
+    file(CREATE_LINK /usr/include/${header} ${FASCIA_HEADERS}/${header} SYMBOLIC)
+  endforeach()
+  add_library(Eigen3::Eigen INTERFACE IMPORTED)
+  target_include_directories(Eigen3::Eigen INTERFACE ${FASCIA_HEADERS}/eigen3)
+  add_library(nlohmann_json::nlohmann_json INTERFACE IMPORTED)
+  target_include_directories(nlohmann_json::nlohmann_json INTERFACE ${FASCIA_HEADERS})
+  include_directories(SYSTEM ${FASCIA_HEADERS})  # tinygltf
+else()
+  find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+  find_package(nlohmann_json 3.11 REQUIRED)
+endif()
 
 add_library(fascia_options INTERFACE)
 target_include_directories(fascia_options INTERFACE

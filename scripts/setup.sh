@@ -24,6 +24,9 @@ packages=(
 [ "$tier" != full ] || packages+=(
   clang clang-tidy doxygen libbenchmark-dev zlib1g-dev libvtk9-dev libcgal-dev python3-numpy python3-pil python3-scipy
   nodejs npm
+  # bindings and hosts: scripts/hosts.sh
+  emscripten chromium python3-dev pybind11-dev python3-matplotlib unzip mono-mcs mono-runtime blender
+  g++-mingw-w64-x86-64-posix wine wine64 lintian
 )
 
 missing=()

@@ -25,4 +25,5 @@ if [ "$full" = 1 ]; then
   run_suite clang build/clang
   ASAN_OPTIONS=detect_leaks=0 run_suite asan build/asan
   tests/validator/validate.sh build/bin/fascia
+  scripts/hosts.sh
 fi

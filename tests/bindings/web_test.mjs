@@ -1,0 +1,71 @@
+// The web package on a rig against native positions: node web_test.mjs PACKAGE_FOLDER RIG.glb POSES.json
+// POSES.json: {"poses": [{"values": {NAME: VALUE}, "mesh": N, "positions": [...]}], "frames": {...}} in metres, made by
+// native_poses.py or the C program beside it. Prints milliseconds a frame.
+import assert from 'node:assert/strict';
+import {readFile} from 'node:fs/promises';
+import {pathToFileURL} from 'node:url';
+
+const [packageFolder, rig, poses] = process.argv.slice(2);
+const {loadFascia, FasciaError} = await import(pathToFileURL(`${packageFolder}/index.mjs`));
+const fascia = await loadFascia();
+const bytes = await readFile(rig);
+const asset = fascia.loadAsset(bytes);
+const expected = JSON.parse(await readFile(poses));
+
+let worst = 0;
+for (const {level, values, mesh, positions} of expected.poses) {
+  const face = asset.createFace({level, space: 'metres'});
+  for (const [name, value] of Object.entries(values)) face.set(name, value);
+  face.pose();
+  const found = face.positions(mesh);
+  assert.equal(found.length, positions.length);
+  for (let i = 0; i < found.length; ++i) worst = Math.max(worst, Math.abs(found[i] - positions[i]));
+  face.dispose();
+}
+assert.ok(worst <= 1e-4, `${worst} m from native`);
+
+// Time, states, and faults.
+const face = asset.createFace({level: 0});
+const muscle = asset.channels.findIndex(({group}) => group === 'muscle');
+const rest = face.positions(0).slice();
+face.values[muscle] = 0.8;
+for (let i = 0; i < 10; ++i) assert.ok(face.step(1 / 60));
+const state = face.save();
+face.step(1 / 60);
+const after = face.positions(0).slice();
+face.restore(state);
+face.step(1 / 60);
+assert.deepEqual(face.positions(0), after);
+assert.notDeepEqual(after, rest);
+assert.equal(face.normals(0).length, rest.length);
+const curves = fascia.loadCurves(`time,${asset.channels[muscle].name}\n0,0\n1,1\n`);
+assert.equal(curves.duration, 1);
+face.clear();
+face.apply(curves, 0.5);
+face.pose();
+assert.ok(Math.abs(face.effectiveValues[muscle] - 0.5) < 1e-6);
+face.setLayer(1, {combine: 'max', weight: 0.5});
+face.layerValues(1)[muscle] = 1;
+face.lookAt([0, 0, 1]);
+face.blend(0, 0);
+face.step(1 / 60);
+assert.throws(() => face.set('no such thing', 1), FasciaError);
+assert.throws(() => fascia.loadAsset(new Uint8Array(10)), FasciaError);
+assert.throws(() => face.restore(state.slice(1)), FasciaError);
+assert.deepEqual(face.setAll({[asset.channels[muscle].name]: 0.1, nonsense: 1}), ['nonsense']);
+
+const times = {};
+for (let level = 0; level < asset.levels.length; ++level) {
+  const timed = asset.createFace({level});
+  const frames = 60;
+  let spent = 0;
+  for (let i = 0; i < frames; ++i) {
+    timed.values[muscle] = 0.5 - 0.5 * Math.cos(i / 5);
+    const before = performance.now();
+    timed.step(1 / 60);
+    timed.positions(0);
+    spent += performance.now() - before;
+  }
+  times[asset.levels[level].name] = +(spent / frames).toFixed(2);
+}
+console.log(JSON.stringify({worst_metres: worst, milliseconds_a_frame: times, version: fascia.version.join('.')}));
