@@ -52,11 +52,12 @@ Bytes bundle(const std::vector<Bytes>& messages) {
 }
 
 Bytes live_link(const std::string& subject) {
-  Bytes bytes = {6, 0, 0, 0};
-  bytes.resize(41, '$');
+  Bytes bytes(41, '$');
+  bytes[0] = 6;
+  bytes[1] = bytes[2] = bytes[3] = 0;
   put(bytes, static_cast<uint32_t>(subject.size()));
   bytes.insert(bytes.end(), subject.begin(), subject.end());
-  bytes.resize(bytes.size() + 16, 0);
+  bytes.insert(bytes.end(), 16, 0);
   bytes.push_back(61);
   for (int i = 0; i < 61; ++i)
     put(bytes, 0.01F * static_cast<float>(i));
