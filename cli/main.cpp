@@ -7,11 +7,13 @@
 #include <new>
 #include <nlohmann/json.hpp>
 
+#include "cli/batch.h"
 #include "cli/calibrate.h"
 #include "cli/check.h"
 #include "cli/common.h"
 #include "cli/face.h"
 #include "cli/fit.h"
+#include "cli/snapshot.h"
 #include "cli/view.h"
 #include "formats/partial.h"
 #include "geometry/error.h"
@@ -56,8 +58,9 @@ void declare(const fascia::cli::Command& tool, fascia::cli::Common& common) {
   add_calibrate(tool, common);
   add_face(tool, common);
   add_fit(tool, common);
+  add_snapshot(tool, common);
+  add_batch(tool, common);
   add_view(tool, common);
-  add_to_come(tool);
   add_manual(tool);
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "cli/page.h"
 #include "formats/scene.h"
 #include "geometry/error.h"
 
@@ -13,58 +14,9 @@ namespace {
 
 using Figures = rigging::BuildReport::LandmarkFigures;
 
-const char* const style =
-    "body{font:15px/1.5 sans-serif;max-width:1440px;margin:2em auto;padding:0 1em;color:#222;background:#fff}"
-    "h1{font-size:1.5em}h2{font-size:1.15em;margin-top:2em}table{border-collapse:collapse}"
-    "td,th{padding:.15em .8em;text-align:left;border-bottom:1px solid #ddd}td.n,th.n{text-align:right;"
-    "font-variant-numeric:tabular-nums}.views{display:flex;flex-wrap:wrap;gap:6px}.views "
-    "img{max-width:32%;height:auto}"
-    ".warn{background:#fff3d6;border-left:4px solid #d98e00;padding:.4em 1em}.far{color:#b3361b}"
-    ".bar{display:inline-block;height:.8em;background:#4a78a8}p.cap{color:#555;margin:.2em 0 .6em}";
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '"')
-      out += "&quot;";
-    else
-      out += c;
-  }
-  return out;
-}
-
-std::string number(double value, int digits = 1) {
-  char text[48];
-  std::snprintf(text, sizeof text, "%.*f", digits, value);
-  return text;
-}
-
-std::string base64(const std::vector<uint8_t>& bytes) {
-  static const char* const digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  out.reserve(bytes.size() * 4 / 3 + 4);
-  for (size_t i = 0; i < bytes.size(); i += 3) {
-    uint32_t group = 0;
-    for (size_t k = 0; k < 3; ++k)
-      group = group << 8 | (i + k < bytes.size() ? bytes[i + k] : 0U);
-    for (size_t k = 0; k < 4; ++k)
-      out += i + k <= bytes.size() ? digits[group >> (18 - 6 * k) & 63U] : '=';
-  }
-  return out;
-}
-
-std::string row(const std::vector<std::string>& cells, const char* tag = "td", size_t first_number = 1) {
-  std::string out = "<tr>";
-  for (size_t i = 0; i < cells.size(); ++i)
-    out += std::string("<") + tag + (i >= first_number ? " class=n>" : ">") + cells[i] + "</" + tag + ">";
-  return out + "</tr>\n";
-}
+using page::escaped;
+using page::number;
+using page::row;
 
 std::string warnings_part(const rigging::BuildReport& report) {
   if (report.warnings.empty()) return "<p>No warnings.</p>\n";
@@ -189,8 +141,7 @@ std::string pictures_part(const std::filesystem::path& rig, const rigging::Build
   for (const StagePictures& stage : stages) {
     out += "<h2>" + stage.title + "</h2>\n<p class=cap>" + stage.caption + "</p>\n<div class=views>";
     for (const view::Image& image : stage.views)
-      out += "<img alt=\"" + stage.title + "\" src=\"data:image/png;base64," +
-             base64(view::encode_png(image)) + "\">";
+      out += page::picture(image, stage.title);
     out += "</div>\n";
   }
   return out;
@@ -200,17 +151,14 @@ std::string pictures_part(const std::filesystem::path& rig, const rigging::Build
 
 void write_report(const std::filesystem::path& folder, const std::filesystem::path& head,
                   const std::filesystem::path& rig, const rigging::BuildReport& report) {
-  const std::string title = "Face rig of " + escaped(head.filename().string());
-  std::string page = "<!DOCTYPE html>\n<html lang=en><head><meta charset=utf-8><title>" + title +
-                     "</title>\n<style>" + style + "</style></head>\n<body>\n<h1>" + title + "</h1>\n";
-  page += "<h2>Warnings</h2>\n" + warnings_part(report);
-  page += pictures_part(rig, report);
-  page += "<h2>Figures</h2>\n" + figures_part(report);
-  page += "<h2>Tissue depth against the table</h2>\n" + histogram_part(report.landmarks);
-  page += "<h2>Landmarks</h2>\n" + landmarks_part(report.landmarks);
-  page += "<h2>Time</h2>\n" + times_part(report);
-  page += "</body></html>\n";
-  formats::write_text(folder / report_name, page);
+  std::string body;
+  body += "<h2>Warnings</h2>\n" + warnings_part(report);
+  body += pictures_part(rig, report);
+  body += "<h2>Figures</h2>\n" + figures_part(report);
+  body += "<h2>Tissue depth against the table</h2>\n" + histogram_part(report.landmarks);
+  body += "<h2>Landmarks</h2>\n" + landmarks_part(report.landmarks);
+  body += "<h2>Time</h2>\n" + times_part(report);
+  formats::write_text(folder / report_name, page::whole("Face rig of " + head.filename().string(), body));
 }
 
 }  // namespace fascia::cli

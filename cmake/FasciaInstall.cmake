@@ -103,6 +103,12 @@ if(FASCIA_BUILD_BUILDER)
     endif()
   endforeach()
 
+  # Snapshots for other programs' tests: the C library and the CMake function.
+  set_target_properties(fascia_snapshot_api PROPERTIES INSTALL_RPATH "$ORIGIN")
+  install(TARGETS fascia_snapshot_api EXPORT fascia_builder_targets LIBRARY COMPONENT builder)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/snapshot/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT builder)
+  install(FILES ${PROJECT_SOURCE_DIR}/cmake/FasciaSnapshot.cmake DESTINATION ${package_folder} COMPONENT development)
+
   set_target_properties(fascia PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
   install(TARGETS fascia RUNTIME COMPONENT tool)
   set(manual ${PROJECT_BINARY_DIR}/install/manual)

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Sets up, builds with warnings as errors, and runs the tests.
 #   scripts/test.sh [--full]
-# --full: also clang, sanitizers, five minutes of random input in the window, the glTF validator and the demo.
+# --full: also 250 broken heads, clang, sanitizers, five minutes of random input in the window, the glTF validator,
+# the hosts and the demo.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -22,6 +23,7 @@ run_suite() {  # preset, build folder, extra ctest arguments
 
 run_suite ci build
 if [ "$full" = 1 ]; then
+  FASCIA_BROKEN_HEADS=6 build/bin/test_broken_heads --gtest_brief=1
   run_suite clang build/clang
   ASAN_OPTIONS=detect_leaks=0 run_suite asan build/asan
   # Random keys and mouse in the window, five minutes.

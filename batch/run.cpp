@@ -1,0 +1,288 @@
+#include "batch/run.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "formats/files.h"
+#include "geometry/error.h"
+
+namespace fascia::batch {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+constexpr const char* rig_name = "rig.glb";
+constexpr int exit_check = 4, exit_internal = 3, exit_not_started = 127;
+
+/// A head that one process at a time may work at. The lock goes with the process that holds it.
+class Lock {
+ public:
+  Lock(const fs::path& folder, const std::string& id) {
+    const std::string path = (folder / (id + ".lock")).string();
+    descriptor_ = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (descriptor_ < 0) throw Error("'" + path + "' cannot be written: " + std::strerror(errno));
+    if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+      close(descriptor_);
+      descriptor_ = -1;
+    }
+  }
+  ~Lock() {
+    if (descriptor_ >= 0) close(descriptor_);
+  }
+  Lock(const Lock&) = delete;
+  Lock& operator=(const Lock&) = delete;
+  bool is_mine() const { return descriptor_ >= 0; }
+
+ private:
+  int descriptor_ = -1;
+};
+
+Json parsed(const std::string& text) {
+  return Json::parse(
+      text, [](int depth, Json::parse_event_t, Json&) { return depth < 64; }, false);
+}
+
+/// The tool's own words: its JSON object's, else the last line it wrote.
+std::string words_of(const Outcome& outcome) {
+  const Json json = parsed(outcome.out);
+  if (json.is_object() && json.contains("error") && json["error"].is_string()) return json["error"];
+  std::string text = outcome.err;
+  while (!text.empty() && std::strchr(" \n", text.back()))
+    text.pop_back();
+  return text.substr(text.find_last_of('\n') + 1);
+}
+
+/// A message without what differs from head to head: names in quotes, numbers, and what follows a semicolon.
+std::string common_part(const std::string& message) {
+  std::string text;
+  bool is_quoted = false;
+  for (const char c : message) {
+    if (c == ';') break;
+    if (c == '\'') is_quoted = !is_quoted;
+    if (is_quoted || c == '\'') continue;
+    if (std::isdigit(static_cast<unsigned char>(c))) {
+      if (text.empty() || text.back() != '#') text += '#';
+      continue;
+    }
+    if (c == ' ' && (text.empty() || text.back() == ' ')) continue;
+    text += c;
+  }
+  while (!text.empty() && std::strchr(" :,.", text.front()))
+    text.erase(0, 1);
+  while (!text.empty() && std::strchr(" :,.", text.back()))
+    text.pop_back();
+  return text.empty() ? "no message" : text;
+}
+
+/// Why a step failed, in words that many heads share; empty when it did not.
+std::string cause_of(const Outcome& outcome) {
+  if (outcome.exit_code == 0) return "";
+  if (outcome.is_late) return "limit of time";
+  if (outcome.signal != 0)
+    return "ended by signal " + std::to_string(outcome.signal) + " (" + strsignal(outcome.signal) + ")";
+  if (outcome.exit_code == exit_not_started) return "the tool cannot be started";
+  const std::string words = words_of(outcome);
+  if (words.find("out of memory") != std::string::npos) return "limit of memory";
+  if (outcome.exit_code == exit_internal) return "internal error: " + common_part(words);
+  return common_part(words);
+}
+
+/// One head's way from mesh to results.
+class Worker {
+ public:
+  Worker(const Head& head, const Options& options, const std::atomic<bool>& stop)
+      : head_(head),
+        options_(options),
+        stop_(stop),
+        work_(options.output / ".work" / head.id),
+        result_(options.output / head.id) {}
+
+  /// True when what is there will do.
+  bool is_settled(const std::string& key, Record& record) const {
+    if (!read_record(result_, record) || record.key != key) return false;
+    if (!record.is_done) return !options_.retries_failed;
+    std::error_code status;
+    return fs::file_size(result_ / rig_name, status) == record.rig_bytes && !status;
+  }
+
+  Record build(const std::string& key) {
+    Record record;
+    record.id = head_.id;
+    record.head = head_.file.string();
+    record.key = key;
+    for (bool again = true; again && !stop_;) {
+      clear(work_);
+      fs::create_directories(work_);
+      ++record.attempts;
+      again = attempt(record) && record.attempts < options_.attempts;
+    }
+    return record;
+  }
+
+  /// Puts the results in place of those that were there.
+  void publish(const Record& record) {
+    write_record(work_, record);
+    const fs::path old = work_.string() + ".old";
+    clear(old);
+    std::error_code status;
+    fs::rename(result_, old, status);  // there may be none
+    fs::rename(work_, result_);
+    clear(old);
+  }
+
+  void abandon() { clear(work_); }
+
+ private:
+  static void clear(const fs::path& folder) {
+    std::error_code status;
+    fs::remove_all(folder, status);
+  }
+
+  Outcome step(const std::vector<std::string>& words, Record& record) {
+    std::vector<std::string> command = {options_.tool.string()};
+    command.insert(command.end(), words.begin(), words.end());
+    command.insert(command.end(), {"--threads", std::to_string(options_.threads)});
+    const Outcome outcome = run(command, options_.limits, work_, stop_);
+    record.seconds += outcome.seconds;
+    record.cpu_seconds += outcome.cpu_seconds;
+    record.megabytes = std::max(record.megabytes, outcome.megabytes);
+    return outcome;
+  }
+
+  /// Builds, checks and draws once. True when it failed in a way that another attempt may not.
+  bool attempt(Record& record) {
+    record.seconds = record.cpu_seconds = record.megabytes = 0.0;
+    const std::string rig = (work_ / rig_name).string();
+    std::vector<std::string> words = {"build", head_.file.string(), "-o", rig, "--json", "--quiet"};
+    if (!head_.landmarks.empty()) words.insert(words.end(), {"--landmarks", head_.landmarks.string()});
+    if (!head_.edits.empty()) words.insert(words.end(), {"--edits", head_.edits.string()});
+    words.insert(words.end(), head_.options.begin(), head_.options.end());
+    const Outcome built = step(words, record);
+    std::error_code status;
+    record.rig_bytes = static_cast<size_t>(fs::file_size(rig, status));
+    if (built.exit_code == 0 && (status || record.rig_bytes == 0)) {
+      record.cause = "no rig was written";
+      record.rig_bytes = 0;
+      return true;
+    }
+    record.cause = cause_of(built);
+    record.message = record.cause.empty() ? "" : words_of(built);
+    if (!record.cause.empty()) {
+      record.rig_bytes = 0;
+      fs::remove(rig, status);
+      return built.signal != 0 || built.exit_code == exit_internal ? !built.is_late : false;
+    }
+    record.is_done = true;
+    formats::write_text(work_ / "build.json", built.out);
+    if (const Json json = parsed(built.out); json.is_object() && json.contains("warnings"))
+      for (const Json& warning : json["warnings"])
+        if (warning.is_string()) record.warnings.push_back(warning);
+    if (options_.has_checks) check(rig, record);
+    if (options_.has_thumbnails) draw(rig, record);
+    return false;
+  }
+
+  /// The rig's proof of itself; a rig that cannot be played says so among its checks.
+  void check(const std::string& rig, Record& record) {
+    const Outcome outcome = step({"check", rig, "--level", "low", "--json", "--quiet"}, record);
+    if (outcome.exit_code != 0 && outcome.exit_code != exit_check) {
+      record.failed_checks.push_back("not played: " + cause_of(outcome));
+      return;
+    }
+    formats::write_text(work_ / "check.json", outcome.out);
+    const Json json = parsed(outcome.out);
+    if (!json.is_object() || !json.contains("rows") || !json["rows"].is_array()) return;
+    record.checks = static_cast<int>(json["rows"].size());
+    for (const Json& row : json["rows"])
+      if (row.is_object() && !row.value("ok", true)) record.failed_checks.push_back(row.value("name", "?"));
+  }
+
+  void draw(const std::string& rig, Record& record) {
+    const Outcome outcome =
+        step({"render", rig, "--set", "arkit:mouthSmileLeft=0.8", "--set", "arkit:mouthSmileRight=0.8",
+              "--level", "low", "--size", "240", "-o", (work_ / "thumbnail.png").string(), "--quiet"},
+             record);
+    if (outcome.exit_code != 0) record.warnings.push_back("no thumbnail: " + cause_of(outcome));
+  }
+
+  const Head& head_;
+  const Options& options_;
+  const std::atomic<bool>& stop_;
+  const fs::path work_, result_;
+};
+
+/// One head from beginning to end.
+Fate settle(const Head& head, const Options& options, const std::atomic<bool>& stop, Record& record) {
+  record.id = head.id;
+  record.head = head.file.string();
+  const Lock lock(options.output / ".locks", head.id);
+  if (!lock.is_mine()) return Fate::elsewhere;
+  Worker worker(head, options, stop);
+  std::string key;
+  try {
+    key = key_of(head, options.version);
+  } catch (const Error& error) {  // a file that is not there is this head's trouble, not the batch's
+    record.attempts = 1;
+    record.message = error.what();
+    record.cause = common_part(record.message);
+    fs::create_directories(options.output / ".work" / head.id);
+    worker.publish(record);
+    return Fate::failed;
+  }
+  if (worker.is_settled(key, record)) return Fate::kept;
+  record = worker.build(key);
+  if (stop) {
+    worker.abandon();
+    return Fate::elsewhere;
+  }
+  worker.publish(record);
+  return record.is_done ? Fate::done : Fate::failed;
+}
+
+}  // namespace
+
+Report run_all(const std::vector<Head>& heads, const Options& options, const std::atomic<bool>& stop,
+               const std::function<void(size_t, const Record&, Fate)>& told) {
+  for (const char* folder : {".work", ".locks"}) {
+    std::error_code status;
+    fs::create_directories(options.output / folder, status);
+    if (status)
+      throw Error("'" + (options.output / folder).string() + "' cannot be made: " + status.message());
+  }
+  Report report;
+  report.records.resize(heads.size());
+  report.fates.resize(heads.size(), Fate::elsewhere);
+  std::atomic<size_t> next = 0;
+  std::mutex mutex;
+  std::exception_ptr failure;
+  const auto work = [&] {
+    try {
+      for (size_t h = next++; h < heads.size() && !stop; h = next++) {
+        report.fates[h] = settle(heads[h], options, stop, report.records[h]);
+        const std::lock_guard lock(mutex);
+        if (told && !stop) told(h, report.records[h], report.fates[h]);
+      }
+    } catch (...) {
+      const std::lock_guard lock(mutex);
+      if (!failure) failure = std::current_exception();
+      next = heads.size();
+    }
+  };
+  std::vector<std::thread> threads;
+  for (size_t t = 0; t < std::min(std::max<size_t>(options.jobs, 1), heads.size()); ++t)
+    threads.emplace_back(work);
+  for (std::thread& thread : threads)
+    thread.join();
+  if (failure) std::rethrow_exception(failure);
+  return report;
+}
+
+}  // namespace fascia::batch

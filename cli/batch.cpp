@@ -1,0 +1,263 @@
+#include "cli/batch.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "batch/run.h"
+#include "batch/slurm.h"
+#include "cli/batch_report.h"
+#include "formats/content_hash.h"
+#include "formats/files.h"
+#include "formats/partial.h"
+#include "geometry/error.h"
+
+namespace fascia::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr int exit_some_failed = 1, exit_interrupted = 130;
+
+struct Request {
+  std::string source, operand;
+  fs::path output;
+  size_t jobs = 0;
+  double seconds = 300.0;
+  size_t megabytes = 4096, attempts = 2, at_once = 0;
+  int task_index = -1;
+  size_t task_count = 0;
+  bool has_checks = true, has_thumbnails = true, retries_failed = false, is_dry = false;
+  std::string time = "04:00:00", partition;
+};
+
+std::atomic<bool> is_stopped = false;
+
+/// The first time lets the heads be put away; the second leaves at once.
+void on_interrupt(int) {
+  if (is_stopped.exchange(true)) {
+    formats::remove_partial_files();
+    _exit(exit_interrupted);
+  }
+}
+
+fs::path this_program() {
+  std::error_code status;
+  const fs::path path = fs::read_symlink("/proc/self/exe", status);
+  if (status) throw Error("the tool cannot find itself (/proc/self/exe): " + status.message());
+  return path;
+}
+
+size_t processors() {
+  return std::max(1U, std::thread::hardware_concurrency());
+}
+
+void check_output_given(const Request& request) {
+  if (request.output.empty()) throw UsageError("'fascia batch' needs -o DIR");
+}
+
+batch::Task task_of(const Request& request) {
+  if (request.task_index < 0) return batch::task_of_environment(request.task_count);
+  if (request.task_count == 0) throw UsageError("--task-index needs --task-count");
+  const auto index = static_cast<size_t>(request.task_index);
+  if (index >= request.task_count) throw UsageError("--task-index counts from 0 to --task-count less 1");
+  return {index, request.task_count};
+}
+
+std::string line_of(const batch::Record& record, batch::Fate fate) {
+  if (fate == batch::Fate::elsewhere) return record.id + ": another process is at it";
+  if (!record.is_done) return record.id + ": " + record.message;
+  char seconds[32];
+  std::snprintf(seconds, sizeof seconds, "%.1f s", record.seconds);
+  std::string text = record.id + ": " + seconds;
+  if (!record.failed_checks.empty())
+    text += ", " + std::to_string(record.failed_checks.size()) + " of its checks fail";
+  return text;
+}
+
+void run_heads(const Common& common, const Request& request) {
+  check_output_given(request);
+  const std::vector<batch::Head> all = batch::read_heads(request.source);
+  const batch::Task task = task_of(request);
+  const std::vector<batch::Head> heads = batch::share(all, task.index, task.count);
+  make_output_folder(request.output);
+  batch::Options options;
+  options.tool = this_program();
+  options.version = formats::content_hash(formats::read_bytes(options.tool));
+  options.output = fs::absolute(request.output);
+  options.threads = common.threads > 0 ? static_cast<size_t>(common.threads) : 1;
+  options.jobs = request.jobs > 0 ? request.jobs : std::max<size_t>(processors() / options.threads, 1);
+  options.limits = {request.seconds, request.megabytes};
+  options.attempts = static_cast<int>(request.attempts);
+  options.has_checks = request.has_checks;
+  options.has_thumbnails = request.has_thumbnails;
+  options.retries_failed = request.retries_failed;
+  for (const int number : {SIGINT, SIGTERM, SIGHUP})
+    std::signal(number, on_interrupt);
+  const auto started = std::chrono::steady_clock::now();
+  size_t ended = 0;
+  std::map<batch::Fate, size_t> counts;
+  const batch::Report report =
+      batch::run_all(heads, options, is_stopped, [&](size_t, const batch::Record& record, batch::Fate fate) {
+        ++ended;
+        if (fate != batch::Fate::kept)
+          common.say("[" + std::to_string(ended) + "/" + std::to_string(heads.size()) + "] " +
+                     line_of(record, fate));
+      });
+  if (is_stopped) {
+    std::fprintf(stderr, "fascia: interrupted; the same command goes on where it was\n");
+    throw Exit{exit_interrupted};
+  }
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+  size_t failed = 0;
+  for (size_t h = 0; h < heads.size(); ++h) {
+    ++counts[report.fates[h]];
+    failed += report.fates[h] != batch::Fate::elsewhere && !report.records[h].is_done;
+  }
+  const size_t built = counts[batch::Fate::done] + counts[batch::Fate::failed];
+  char rate[64];
+  std::snprintf(rate, sizeof rate, "%.1f s, %.1f heads a minute", seconds,
+                seconds > 0.0 ? 60.0 * static_cast<double>(built) / seconds : 0.0);
+  common.say(std::to_string(counts[batch::Fate::done]) + " built, " +
+             std::to_string(counts[batch::Fate::kept]) + " kept, " + std::to_string(failed) + " failed, " +
+             std::to_string(counts[batch::Fate::elsewhere]) + " elsewhere; " + rate);
+  Json json = {{"output", request.output.string()},
+               {"task", {{"index", task.index}, {"count", task.count}}},
+               {"built", counts[batch::Fate::done]},
+               {"kept", counts[batch::Fate::kept]},
+               {"elsewhere", counts[batch::Fate::elsewhere]},
+               {"failed", failed},
+               {"seconds", seconds},
+               {"failures", Json::array()}};
+  for (const batch::Record& record : report.records)
+    if (!record.is_done && record.attempts > 0)
+      json["failures"].push_back({{"id", record.id}, {"cause", record.cause}, {"message", record.message}});
+  common.report(json);
+  if (failed > 0) throw Exit{exit_some_failed};
+}
+
+void submit(const Common& common, const Request& request) {
+  check_output_given(request);
+  if (request.operand.empty())
+    throw UsageError("'fascia batch submit' needs a manifest or a folder of heads");
+  const size_t heads = batch::read_heads(request.operand).size();
+  make_output_folder(request.output);
+  fs::create_directories(request.output / ".logs");
+  batch::SlurmJob job;
+  job.tool = this_program();
+  job.source = fs::absolute(request.operand);
+  job.output = fs::absolute(request.output);
+  constexpr size_t heads_a_task = 100, most_tasks = 1000;  // Slurm's MaxArraySize is 1001 unless it is raised
+  job.tasks = request.task_count > 0 ? request.task_count
+                                     : std::min(most_tasks, (heads + heads_a_task - 1) / heads_a_task);
+  job.most_at_once = request.at_once;
+  job.jobs = std::max<size_t>(request.jobs, 1);
+  job.megabytes = request.megabytes;
+  job.time = request.time;
+  job.partition = request.partition;
+  char seconds[32];
+  std::snprintf(seconds, sizeof seconds, "%g", request.seconds);
+  job.options = {"--time", seconds, "--attempts", std::to_string(request.attempts)};
+  if (!request.has_checks) job.options.push_back("--no-check");
+  if (!request.has_thumbnails) job.options.push_back("--no-thumbnail");
+  if (request.retries_failed) job.options.push_back("--retry-failed");
+  const fs::path script = job.output / "batch.sbatch";
+  formats::write_text(script, batch::slurm_script(job));
+  common.say("wrote " + script.string() + ": " + std::to_string(heads) + " heads in " +
+             std::to_string(job.tasks) + " tasks");
+  Json json = {{"script", script.string()}, {"heads", heads}, {"tasks", job.tasks}, {"job", nullptr}};
+  if (!request.is_dry) {
+    const batch::Outcome outcome = batch::run({"/usr/bin/env", "sbatch", "--parsable", script.string()},
+                                              {60.0, 0}, job.output, is_stopped);
+    if (outcome.exit_code == 127)
+      throw Error("Slurm's 'sbatch' is not on the path: '" + script.string() +
+                  "' is written; submit it where it is");
+    if (outcome.exit_code != 0)
+      throw Error("'sbatch " + script.string() +
+                  "' failed: " + outcome.err.substr(0, outcome.err.find('\n')));
+    const std::string id = outcome.out.substr(0, outcome.out.find_first_of(";\n"));
+    common.say("submitted as job " + id);
+    json["job"] = id;
+  }
+  common.report(json);
+}
+
+void report(const Common& common, const Request& request) {
+  const fs::path folder = request.operand.empty() ? request.output : fs::path(request.operand);
+  if (folder.empty()) throw UsageError("'fascia batch report' needs the batch's folder");
+  const std::vector<batch::Record> records = batch::all_records(folder);
+  if (records.empty())
+    throw Error("'" + folder.string() +
+                "' holds no results of 'fascia batch'; name the folder that -o named");
+  const fs::path page = folder / "report.html";
+  formats::write_text(page, batch_page("Heads in " + folder.filename().string(), records));
+  Json json = batch_figures(records);
+  common.say("wrote " + page.string() + ": " + std::to_string(records.size()) + " heads, " +
+             std::to_string(json["failed"].get<size_t>()) + " failed");
+  json["report"] = page.string();
+  common.report(json);
+}
+
+void run(const Common& common, const Request& request) {
+  if (request.source == "submit") return submit(common, request);
+  if (request.source == "report") return report(common, request);
+  if (!request.operand.empty())
+    throw UsageError("'fascia batch' takes one manifest or folder, not '" + request.operand + "' as well");
+  run_heads(common, request);
+}
+
+}  // namespace
+
+void add_batch(const Command& tool, Common& common) {
+  auto request = std::make_shared<Request>();
+  const Command command =
+      tool.command("batch",
+                   "Build many heads side by side, each in a process of its own with limits; what is done is "
+                   "not done again. "
+                   "'submit' queues them on a Slurm cluster, 'report' makes one page of what came of them");
+  command
+      .positional(
+          "SOURCE", &request->source,
+          "Manifest (one JSON object a line: {\"head\": FILE, ...}) or folder of heads; or submit, or report")
+      .required();
+  command.positional("OF", &request->operand, "Manifest or folder to submit; the batch's folder to report on")
+      .default_text("none");
+  command.option("-o,--output", &request->output, "Folder for a folder a head")
+      .value("DIR")
+      .default_text("none");
+  command.option("--jobs", &request->jobs, "Heads at a time")
+      .range(1, 4096)
+      .default_text("as many as processors");
+  command.option("--time", &request->seconds, "Seconds that each step of a head may take; 0: any")
+      .range(0, 1e6);
+  command.option("--memory", &request->megabytes, "Address space in MB that each head may use; 0: any")
+      .range(0, 1e7);
+  command.option("--attempts", &request->attempts, "Attempts for a head whose process dies").range(1, 10);
+  command.flag("--retry-failed", request->retries_failed, "Try heads again that failed before");
+  command.flag("--check", request->has_checks, "Check each rig", true);
+  command.flag("--thumbnail", request->has_thumbnails, "Draw each head", true);
+  command.option("--task-index", &request->task_index, "Which task this is, from 0")
+      .range(0, 1e9)
+      .default_text("as Slurm, AWS Batch or GNU parallel say, else 0");
+  command.option("--task-count", &request->task_count, "Tasks the heads are shared among")
+      .range(1, 1e9)
+      .default_text("as Slurm or AWS Batch say, else 1; for submit one for every 100 heads");
+  command.option("--at-once", &request->at_once, "submit: tasks at a time at most; 0: any").range(0, 1e6);
+  command.option("--slurm-time", &request->time, "submit: time limit of a task, as Slurm writes it")
+      .value("TIME");
+  command.option("--partition", &request->partition, "submit: Slurm's partition")
+      .default_text("the cluster's own");
+  command.flag("--dry-run", request->is_dry, "submit: write the script only");
+  command.run([request, &common] { run(common, *request); });
+}
+
+}  // namespace fascia::cli

@@ -1,0 +1,76 @@
+#include "cli/page.h"
+
+#include <cstdint>
+#include <cstdio>
+
+namespace fascia::cli::page {
+
+namespace {
+
+const char* const style =
+    "body{font:15px/1.5 sans-serif;max-width:1440px;margin:2em auto;padding:0 1em;color:#222;background:#fff}"
+    "h1{font-size:1.5em}h2{font-size:1.15em;margin-top:2em}table{border-collapse:collapse}"
+    "td,th{padding:.15em .8em;text-align:left;border-bottom:1px solid #ddd}td.n,th.n{text-align:right;"
+    "font-variant-numeric:tabular-nums}.views{display:flex;flex-wrap:wrap;gap:6px}.views "
+    "img{max-width:32%;height:auto}"
+    ".warn{background:#fff3d6;border-left:4px solid #d98e00;padding:.4em 1em}.far{color:#b3361b}"
+    ".bar{display:inline-block;height:.8em;background:#4a78a8}p.cap{color:#555;margin:.2em 0 .6em}";
+
+std::string base64(const std::vector<uint8_t>& bytes) {
+  static const char* const digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out;
+  out.reserve(bytes.size() * 4 / 3 + 4);
+  for (size_t i = 0; i < bytes.size(); i += 3) {
+    uint32_t group = 0;
+    for (size_t k = 0; k < 3; ++k)
+      group = group << 8 | (i + k < bytes.size() ? bytes[i + k] : 0U);
+    for (size_t k = 0; k < 4; ++k)
+      out += i + k <= bytes.size() ? digits[group >> (18 - 6 * k) & 63U] : '=';
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (char c : text) {
+    if (c == '&')
+      out += "&amp;";
+    else if (c == '<')
+      out += "&lt;";
+    else if (c == '>')
+      out += "&gt;";
+    else if (c == '"')
+      out += "&quot;";
+    else
+      out += c;
+  }
+  return out;
+}
+
+std::string number(double value, int digits) {
+  char text[48];
+  std::snprintf(text, sizeof text, "%.*f", digits, value);
+  return text;
+}
+
+std::string row(const std::vector<std::string>& cells, const char* tag, size_t first_number) {
+  std::string out = "<tr>";
+  for (size_t i = 0; i < cells.size(); ++i)
+    out += std::string("<") + tag + (i >= first_number ? " class=n>" : ">") + cells[i] + "</" + tag + ">";
+  return out + "</tr>\n";
+}
+
+std::string picture(const view::Image& image, const std::string& about) {
+  return "<img alt=\"" + escaped(about) + "\" src=\"data:image/png;base64," +
+         base64(view::encode_png(image)) + "\">";
+}
+
+std::string whole(const std::string& title, const std::string& body) {
+  return "<!DOCTYPE html>\n<html lang=en><head><meta charset=utf-8><title>" + escaped(title) +
+         "</title>\n<style>" + style + "</style></head>\n<body>\n<h1>" + escaped(title) + "</h1>\n" + body +
+         "</body></html>\n";
+}
+
+}  // namespace fascia::cli::page

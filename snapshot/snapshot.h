@@ -1,0 +1,77 @@
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+/// Where a face's skin goes, kept as numbers: recorded once, checked ever after.
+namespace fascia::snapshot {
+
+/// A mesh of the rig's file that has watched vertices.
+struct Mesh {
+  uint32_t mesh = 0, primitive = 0;  ///< where it is in the file
+  uint32_t vertex_count = 0;         ///< to notice another mesh
+};
+
+/// A watched vertex.
+struct Vertex {
+  uint32_t mesh = 0;    ///< in Snapshot::meshes
+  uint32_t vertex = 0;  ///< of that mesh
+
+  auto operator<=>(const Vertex&) const = default;
+};
+
+/// Vertices that are watched together, of one mesh or several.
+struct Region {
+  std::string name;
+  std::vector<Vertex> vertices;  ///< ascending
+  double tolerance_mm = 0.0;     ///< root mean square difference that is still allowed
+};
+
+/// Values of channels or members of vocabularies by name: a pose at balance.
+using Values = std::vector<std::pair<std::string, double>>;
+
+struct Pose {
+  std::string name;
+  Values values;
+};
+
+/// A file of curves that is simulated in time, and which frames of it are kept.
+struct Take {
+  std::string name;                 ///< the file's own name
+  std::string path;                 ///< from the snapshot's folder
+  std::string hash;                 ///< formats::content_hash of the file
+  double frames_per_second = 60.0;  ///< of the simulation
+  std::vector<uint32_t> frames;     ///< kept, ascending
+};
+
+/// The watched vertices in one pose or frame, in quanta: of the state at rest positions in the rig's metres,
+/// of others displacements from rest. x, y, z of each vertex, regions one after the other.
+struct State {
+  std::string name;
+  std::vector<int32_t> quanta;
+};
+
+struct Snapshot {
+  std::string rig;    ///< formats::content_hash of the rig's file
+  std::string level;  ///< low, medium or high
+  double quantum_mm = 0.01;
+  std::vector<std::string> reasons;  ///< why it was recorded, and each time anew
+  std::vector<Mesh> meshes;
+  std::vector<Region> regions;
+  std::vector<Pose> poses;
+  std::vector<Take> takes;
+  std::vector<State> states;  ///< rest, the poses in order, the takes' frames in order
+
+  /// Number of watched vertices of all regions.
+  size_t vertex_count() const;
+  /// First watched vertex of a region among all.
+  size_t first_vertex(size_t region) const;
+};
+
+/// Names of the states that `poses` and `takes` give, in order; the first is "rest".
+std::vector<std::string> state_names(const Snapshot& snapshot);
+
+}  // namespace fascia::snapshot

@@ -1,0 +1,102 @@
+// Every call that writes fails once, and allocations here and there (as SQLite tests itself): the tool says
+// so with its exit code, an output that was there stays whole, and nothing is left beside it.
+#include <algorithm>
+#include <cstdlib>
+
+#include "tests/faults/workplace.h"
+
+namespace fascia::testing {
+namespace {
+
+using cli::Outcome;
+using cli::run_tool;
+using cli::text_of;
+
+class Faults : public Workplace {
+ protected:
+  /// Runs a command with the `number`-th call of `kind` failing; the number of calls in `count`.
+  Outcome run_with_fault(const std::string& words, const std::string& kind, long number,
+                         long* count = nullptr) {
+    const std::filesystem::path logs = folder.string() + "_logs";
+    std::filesystem::create_directories(logs);
+    const std::string log = (logs / "calls").string();
+    const std::string command = "env LD_PRELOAD=" FASCIA_FAULT_SHIM " FASCIA_FAULT=" + kind + ":" +
+                                std::to_string(number) + " FASCIA_FAULT_LOG=" + log +
+                                " FASCIA_FAULT_FOLDER=" + folder.string() + " " + test::tool().string() +
+                                " " + words;
+    const std::string out = (logs / "out").string(), err = (logs / "err").string();
+    const int status = std::system((command + " --threads 1 >" + out + " 2>" + err + " </dev/null").c_str());
+    const Outcome outcome = {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(out), text_of(err)};
+    if (count) *count = std::atol(text_of(log).c_str());
+    std::filesystem::remove_all(logs);
+    return outcome;
+  }
+
+  /// The command with the fault, over an output that is there already.
+  void expect_nothing_lost(const Job& job, const std::string& kind, long number) {
+    const std::string before = "what was there before";
+    std::ofstream(at(job.output)) << before;
+    const std::set<std::string> names_before = names();
+    const Outcome outcome = run_with_fault(job.words + at(job.output), kind, number);
+    const std::string now = text_of(at(job.output)), where = job.words + kind + " " + std::to_string(number);
+    EXPECT_EQ(names(), names_before) << where;
+    if (outcome.code == 0) {  // the call was one the tool can do without
+      EXPECT_NE(now, before) << where;
+    } else {
+      EXPECT_EQ(outcome.code, 1) << where << "\n" << outcome.err;
+      EXPECT_EQ(now, before) << where;
+      EXPECT_FALSE(outcome.err.empty()) << where;
+    }
+    std::filesystem::remove(at(job.output));
+  }
+};
+
+TEST_F(Faults, EveryCallThatWritesMayFail) {
+  for (const Job& job : jobs())
+    for (const char* kind : {"open", "write", "fsync", "rename", "close"}) {
+      long calls = 0;
+      const Outcome outcome = run_with_fault(job.words + at(job.output), kind, 0, &calls);
+      ASSERT_EQ(outcome.code, 0) << job.words << outcome.err;
+      EXPECT_GT(calls, 0) << job.words << kind;
+      std::filesystem::remove(at(job.output));
+      // Many writes of one stream are alike: the first, the last and some between.
+      const long step = std::max(1L, calls / 6);
+      for (long number = 1; number <= calls;
+           number += number + step > calls && number < calls ? calls - number : step)
+        expect_nothing_lost(job, kind, number);
+    }
+}
+
+TEST_F(Faults, AllocationsMayFail) {
+  const char* thorough = std::getenv("FASCIA_THOROUGH");
+  for (const Job& job : jobs()) {
+    long calls = 0;
+    ASSERT_EQ(run_with_fault(job.words + at(job.output), "malloc", 0, &calls).code, 0);
+    EXPECT_GT(calls, 1000);
+    const long runs = thorough ? 400 : 10;
+    // Before main the loader and the standard library allocate; there is nobody to say anything yet.
+    for (long k = 0; k < runs; ++k)
+      expect_nothing_lost(job, "malloc", 1 + calls / 50 + k * (calls - calls / 50) / runs);
+  }
+}
+
+TEST_F(Faults, AFullStandardOutputIsSaid) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "there is no /dev/full";
+  const int status = std::system(
+      (test::tool().string() + " info " + at("rig.glb") + " --json >/dev/full 2>/dev/null").c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 1);
+}
+
+TEST_F(Faults, AFileThatMayNotGrowIsSaid) {
+  for (const Job& job : jobs()) {
+    const std::set<std::string> before = names();
+    const int status = std::system(
+        ("ulimit -f 1; " + test::tool().string() + " " + job.words + at(job.output) + " --quiet 2>/dev/null")
+            .c_str());
+    EXPECT_EQ(WEXITSTATUS(status), 1) << job.words;
+    EXPECT_EQ(names(), before) << job.words;
+  }
+}
+
+}  // namespace
+}  // namespace fascia::testing

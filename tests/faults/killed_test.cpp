@@ -1,0 +1,100 @@
+// Processes that end at any moment, and two that write one file.
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/wait.h>
+
+#include <chrono>
+#include <random>
+#include <thread>
+
+#include "cli/demo_curves.h"
+#include "tests/faults/workplace.h"
+
+namespace fascia::testing {
+namespace {
+
+using cli::text_of;
+
+class Killed : public Workplace {
+ protected:
+  /// Starts the tool; its output is nobody's.
+  static pid_t start(const std::vector<std::string>& words) {
+    const pid_t child = fork();
+    if (child != 0) return child;
+    const int nowhere = open("/dev/null", O_RDWR);
+    for (const int file : {0, 1, 2})
+      dup2(nowhere, file);
+    const std::string tool = test::tool().string();
+    std::vector<char*> arguments = {const_cast<char*>(tool.c_str())};
+    for (const std::string& word : words)
+      arguments.push_back(const_cast<char*>(word.c_str()));
+    arguments.push_back(nullptr);
+    execv(tool.c_str(), arguments.data());
+    _exit(127);
+  }
+  static int wait(pid_t child) {
+    int status = 0;
+    waitpid(child, &status, 0);
+    return status;
+  }
+};
+
+TEST_F(Killed, AtAnyMomentNothingIsHalfWritten) {
+  cli::write_embedded_head(at("head.obj"), at("landmarks.json"));
+  const std::vector<std::string> build = {"build",    at("head.obj"), "--landmarks", at("landmarks.json"),
+                                          "--detail", "low",          "-o",          at("built.glb"),
+                                          "--report", at("report")};
+  const auto begun = std::chrono::steady_clock::now();
+  ASSERT_EQ(wait(start(build)), 0);
+  const double whole = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  const std::string good = text_of(at("built.glb"));
+  const std::set<std::string> usual = names();
+  std::mt19937 random(7);
+  for (int k = 0; k < 9; ++k) {
+    const int signal = std::vector<int>{SIGINT, SIGTERM, SIGKILL}[static_cast<size_t>(k % 3)];
+    const pid_t child = start(build);
+    std::this_thread::sleep_for(std::chrono::duration<double>(whole * (random() % 1000) / 1000.0));
+    kill(child, signal);
+    const int status = wait(child);
+    if (WIFEXITED(status) && WEXITSTATUS(status) == 0) continue;  // it was faster
+    if (signal == SIGKILL) {
+      EXPECT_TRUE(WIFSIGNALED(status));
+    } else {
+      // In its first moments the tool does not catch signals yet.
+      EXPECT_TRUE((WIFEXITED(status) && WEXITSTATUS(status) == 130) ||
+                  (WIFSIGNALED(status) && WTERMSIG(status) == signal))
+          << signal << " " << status;
+    }
+    EXPECT_EQ(text_of(at("built.glb")), good);
+    for (const std::string& name : names())
+      if (!usual.count(name)) {
+        EXPECT_EQ(signal, SIGKILL)
+            << name;  // only then may a file of the writer's be left, and it says what it is
+        EXPECT_NE(name.find(".part"), std::string::npos) << name;
+        std::filesystem::remove_all(at(name));
+      }
+  }
+}
+
+TEST_F(Killed, TwoOnOneOutputLeaveOneWhole) {
+  const std::vector<std::string> smile = {"pose", at("rig.glb"), "--set", "zygomaticus_major_left=1",
+                                          "-o",   at("out.glb")};
+  const std::vector<std::string> open_mouth = {"pose",       at("rig.glb"), "--set",
+                                               "jaw_open=1", "-o",          at("out.glb")};
+  ASSERT_EQ(wait(start(smile)), 0);
+  const std::string first = text_of(at("out.glb"));
+  ASSERT_EQ(wait(start(open_mouth)), 0);
+  const std::string second = text_of(at("out.glb"));
+  ASSERT_NE(first, second);
+  for (int k = 0; k < 8; ++k) {
+    const pid_t a = start(smile), b = start(open_mouth);
+    EXPECT_EQ(wait(a), 0);
+    EXPECT_EQ(wait(b), 0);
+    const std::string now = text_of(at("out.glb"));
+    EXPECT_TRUE(now == first || now == second) << k;
+  }
+  EXPECT_EQ(names(), (std::set<std::string>{"rig.glb", "curves.csv", "out.glb"}));
+}
+
+}  // namespace
+}  // namespace fascia::testing

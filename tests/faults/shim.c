@@ -1,0 +1,178 @@
+/* Preloaded before the tool: makes one call of one kind fail, to see that nothing is lost when it does.
+ *   FASCIA_FAULT=KIND:N   the N-th call of KIND fails, counted from 1; N = 0 counts only
+ *   FASCIA_FAULT_LOG=FILE gets the number of calls of KIND when the process ends
+ * Kinds: malloc (malloc, calloc, realloc, posix_memalign, aligned_alloc), open, write, rename, fsync, close.
+ * Opening, writing and closing count for files that are written, under the folder FASCIA_FAULT_FOLDER only.
+ */
+#define _GNU_SOURCE
+#include <dlfcn.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <stdarg.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/uio.h>
+#include <unistd.h>
+
+static char kind[16], log_file[512], folder[512];
+static long wanted;
+static atomic_long calls;
+static int is_ready;
+
+__attribute__((constructor)) static void begin(void) {
+  const char* fault = getenv("FASCIA_FAULT");
+  const char* log = getenv("FASCIA_FAULT_LOG");
+  const char* place = getenv("FASCIA_FAULT_FOLDER");
+  if (fault) sscanf(fault, "%15[a-z]:%ld", kind, &wanted);
+  if (log) snprintf(log_file, sizeof log_file, "%s", log);
+  if (place) snprintf(folder, sizeof folder, "%s", place);
+  unsetenv("LD_PRELOAD"); /* what the tool starts is not its own fault */
+  is_ready = 1;
+}
+
+/* True when this call has to fail. */
+static int fails(const char* this_kind) {
+  if (!is_ready || strcmp(kind, this_kind) != 0) return 0;
+  return atomic_fetch_add(&calls, 1) + 1 == wanted;
+}
+
+__attribute__((destructor)) static void end(void) {
+  is_ready = 0;
+  if (log_file[0] == 0) return;
+  FILE* file = fopen(log_file, "w");
+  if (!file) return;
+  fprintf(file, "%ld\n", (long)calls);
+  fclose(file);
+}
+
+#define REAL(name)               \
+  static __typeof__(&name) real; \
+  if (!real) real = (__typeof__(&name))dlsym(RTLD_NEXT, #name)
+
+/* Before dlsym has answered: it may allocate itself. */
+extern void* __libc_malloc(size_t);
+extern void* __libc_calloc(size_t, size_t);
+extern void* __libc_realloc(void*, size_t);
+extern void* __libc_memalign(size_t, size_t);
+
+void* malloc(size_t size) {
+  if (fails("malloc")) {
+    errno = ENOMEM;
+    return NULL;
+  }
+  return __libc_malloc(size);
+}
+void* calloc(size_t count, size_t size) {
+  if (fails("malloc")) {
+    errno = ENOMEM;
+    return NULL;
+  }
+  return __libc_calloc(count, size);
+}
+void* realloc(void* old, size_t size) {
+  if (fails("malloc")) {
+    errno = ENOMEM;
+    return NULL;
+  }
+  return __libc_realloc(old, size);
+}
+int posix_memalign(void** to, size_t alignment, size_t size) {
+  if (fails("malloc")) return ENOMEM;
+  *to = __libc_memalign(alignment, size);
+  return *to ? 0 : ENOMEM;
+}
+void* aligned_alloc(size_t alignment, size_t size) {
+  if (fails("malloc")) {
+    errno = ENOMEM;
+    return NULL;
+  }
+  return __libc_memalign(alignment, size);
+}
+
+/* Files of the test's folder that are open for writing. */
+static char is_watched[1024];
+
+static int is_ours(const char* path, int flags) {
+  return folder[0] && (flags & O_ACCMODE) != O_RDONLY && strncmp(path, folder, strlen(folder)) == 0;
+}
+
+static int opened(int file, const char* path, int flags) {
+  if (file >= 0 && file < (int)sizeof is_watched) is_watched[file] = (char)is_ours(path, flags);
+  return file;
+}
+
+#define OPEN(name)                                                          \
+  int name(const char* path, int flags, ...) {                              \
+    REAL(name);                                                             \
+    va_list list;                                                           \
+    va_start(list, flags);                                                  \
+    const int mode = flags & (O_CREAT | O_TMPFILE) ? va_arg(list, int) : 0; \
+    va_end(list);                                                           \
+    if (is_ours(path, flags) && fails("open")) {                            \
+      errno = EROFS;                                                        \
+      return -1;                                                            \
+    }                                                                       \
+    return opened(real(path, flags, mode), path, flags);                    \
+  }
+OPEN(open)
+OPEN(open64)
+
+FILE* fopen64(const char* path, const char* how) {
+  REAL(fopen64);
+  if (is_ours(path, how[0] == 'r' ? O_RDONLY : O_WRONLY) && fails("open")) {
+    errno = EROFS;
+    return NULL;
+  }
+  return real(path, how);
+}
+
+static int is_of_ours(int file) {
+  return file >= 0 && file < (int)sizeof is_watched && is_watched[file];
+}
+
+ssize_t write(int file, const void* bytes, size_t size) {
+  REAL(write);
+  if (is_of_ours(file) && fails("write")) {
+    if (size > 1) real(file, bytes, size / 2); /* half of it came through */
+    errno = ENOSPC;
+    return -1;
+  }
+  return real(file, bytes, size);
+}
+ssize_t writev(int file, const struct iovec* parts, int count) {
+  REAL(writev);
+  if (is_of_ours(file) && fails("write")) {
+    errno = ENOSPC;
+    return -1;
+  }
+  return real(file, parts, count);
+}
+int fsync(int file) {
+  REAL(fsync);
+  if (fails("fsync")) {
+    errno = EIO;
+    return -1;
+  }
+  return real(file);
+}
+int close(int file) {
+  REAL(close);
+  const int watched = is_of_ours(file);
+  if (file >= 0 && file < (int)sizeof is_watched) is_watched[file] = 0;
+  if (watched && fails("close")) {
+    real(file);
+    errno = EIO;
+    return -1;
+  }
+  return real(file);
+}
+int rename(const char* from, const char* to) {
+  REAL(rename);
+  if (fails("rename")) {
+    errno = EIO;
+    return -1;
+  }
+  return real(from, to);
+}

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <string>
+
+#include "tests/cli/tool.h"
+#include "tests/rig/tiny_rig.h"
+
+namespace fascia::testing {
+
+/// A folder with a small rig, its curves and head, and commands on it.
+class Workplace : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder = std::filesystem::temp_directory_path() / ("fascia_faults_" + std::to_string(getpid()));
+    std::filesystem::remove_all(folder);
+    std::filesystem::create_directories(folder);
+    const std::vector<uint8_t> rig = test::tiny_rig_file();
+    std::ofstream(folder / "rig.glb", std::ios::binary)
+        .write(reinterpret_cast<const char*>(rig.data()), static_cast<std::streamsize>(rig.size()));
+    std::ofstream(folder / "curves.csv") << "time,zygomaticus_major_left\n0,0\n0.2,1\n";
+  }
+  void TearDown() override { std::filesystem::remove_all(folder); }
+
+  std::string at(const std::string& name) const { return (folder / name).string(); }
+
+  /// What a command writes: its words but for the output, and the output's name.
+  struct Job {
+    std::string words, output;
+  };
+  std::vector<Job> jobs() const {
+    return {{"pose " + at("rig.glb") + " --set zygomaticus_major_left=0.5 -o ", "pose.glb"},
+            {"pose " + at("rig.glb") + " --set jaw_open=0.5 -o ", "pose.ply"},
+            {"export " + at("rig.glb") + " --part muscles -o ", "muscles.obj"},
+            {"play " + at("rig.glb") + " --curves " + at("curves.csv") + " --fps 20 -o ", "play.glb"},
+            {"play " + at("rig.glb") + " --curves " + at("curves.csv") + " --fps 20 -o ", "play.pc2"},
+            {"bake " + at("rig.glb") + " --shapes arkit -o ", "bake.glb"},
+            {"snapshot record " + at("rig.glb") + " -o ", "snapshot.json"}};
+  }
+
+  /// Names in the folder.
+  std::set<std::string> names() const {
+    std::set<std::string> list;
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+      list.insert(entry.path().filename().string());
+    return list;
+  }
+
+  std::filesystem::path folder;
+};
+
+}  // namespace fascia::testing

@@ -1,0 +1,131 @@
+// The tool on the embedded head: a snapshot catches small changes of the anatomy, and nothing else.
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "cli/demo_curves.h"
+#include "tests/cli/tool.h"
+
+namespace fascia::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+class SnapshotOfTheEmbeddedHead : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder = new fs::path(fs::temp_directory_path() / "fascia_snapshot_test");
+    fs::remove_all(*folder);
+    fs::create_directories(*folder);
+    write_embedded_head(at("head.obj"), at("landmarks.json"));
+    ASSERT_EQ(build("rig.glb").code, 0);
+    const Outcome outcome = run("snapshot record " + at("rig.glb") + " -o " + at("snapshot.json"));
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+  }
+  static void TearDownTestSuite() {
+    fs::remove_all(*folder);
+    delete folder;
+  }
+  static std::string at(const std::string& name) { return (*folder / name).string(); }
+  static Outcome run(const std::string& arguments) { return run_tool(*folder, arguments); }
+  static Outcome build(const std::string& rig, const std::string& more = "") {
+    return run("build " + at("head.obj") + " --landmarks " + at("landmarks.json") +
+               " --detail low --quiet -o " + at(rig) + " " + more);
+  }
+  static Outcome check(const std::string& rig, const std::string& more = "") {
+    return run("snapshot check " + at(rig) + " --against " + at("snapshot.json") + " --json " + more);
+  }
+
+  /// Builds with one file of the anatomy changed, and how many differences the snapshot finds.
+  static size_t caught(const std::string& file, const std::function<void(ordered_json&)>& change) {
+    fs::create_directories(at("anatomy"));
+    std::ifstream original(test::data().parent_path().parent_path() / "anatomy" / "data" / file);
+    ordered_json json = ordered_json::parse(original);
+    change(json);
+    fs::remove_all(at("anatomy"));
+    fs::create_directories(at("anatomy"));
+    std::ofstream(at("anatomy/" + file)) << json.dump();
+    const Outcome built = build("changed.glb", "--anatomy " + at("anatomy"));
+    EXPECT_EQ(built.code, 0) << built.err;
+    const Outcome outcome = check("changed.glb");
+    const ordered_json report = ordered_json::parse(outcome.out);
+    const auto failed = report["failed"].get<size_t>();
+    EXPECT_EQ(outcome.code, failed > 0 ? 4 : 0);
+    EXPECT_EQ(report["differences"].size(), failed);
+    EXPECT_FALSE(report["same_rig"].get<bool>());
+    return failed;
+  }
+
+  static ordered_json& muscle(ordered_json& muscles, const std::string& name) {
+    for (ordered_json& entry : muscles["muscles"])
+      if (entry["name"] == name) return entry;
+    ADD_FAILURE() << name;
+    return muscles;
+  }
+  static fs::path* folder;
+};
+fs::path* SnapshotOfTheEmbeddedHead::folder = nullptr;
+
+TEST_F(SnapshotOfTheEmbeddedHead, HoldsForTheSameRigOnEveryVectorUnit) {
+  for (const char* unit : {"baseline", "avx2"}) {
+    setenv("FASCIA_SIMD", unit, 1);
+    const Outcome outcome = check("rig.glb");
+    unsetenv("FASCIA_SIMD");
+    EXPECT_EQ(outcome.code, 0) << unit << outcome.out << outcome.err;
+  }
+}
+
+TEST_F(SnapshotOfTheEmbeddedHead, CatchesFivePercentOfAStiffness) {
+  EXPECT_GT(caught("mechanics.json",
+                   [](ordered_json& json) {
+                     ordered_json& value = json["sections"]["skin"]["young_modulus"]["value"];
+                     value = 0.95 * value.get<double>();
+                   }),
+            0U);
+}
+
+TEST_F(SnapshotOfTheEmbeddedHead, CatchesTwoPercentOfAStrength) {
+  EXPECT_GT(caught("muscles.json",
+                   [](ordered_json& json) {
+                     ordered_json& area = muscle(json, "risorius")["cross_section_mm2"];
+                     area = 1.02 * area.get<double>();
+                   }),
+            0U);
+}
+
+TEST_F(SnapshotOfTheEmbeddedHead, CatchesARegionMovedByTwoMillimetres) {
+  EXPECT_GT(caught("muscles.json",
+                   [](ordered_json& json) {
+                     for (ordered_json& point : muscle(json, "frontalis_medial")["insertion"]["polygon"])
+                       point[1] = point[1].get<double>() + 2.0;
+                   }),
+            0U);
+}
+
+TEST_F(SnapshotOfTheEmbeddedHead, ReportsAndIsRenewedOnlyWithAReason) {
+  const std::string junit = at("report.xml"), page = at("report.html");
+  ASSERT_EQ(check("rig.glb", "--tolerance 0.5 --junit " + junit + " --report " + page).code, 0);
+  EXPECT_NE(text_of(junit).find("failures=\"0\""), std::string::npos);
+  EXPECT_NE(text_of(page).find("</html>"), std::string::npos);
+
+  fs::copy_file(at("snapshot.json"), at("renewed.json"), fs::copy_options::overwrite_existing);
+  const Outcome refused = run("snapshot record " + at("rig.glb") + " -o " + at("renewed.json"));
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_NE(refused.err.find("--reason"), std::string::npos) << refused.err;
+  EXPECT_EQ(text_of(at("renewed.json")), text_of(at("snapshot.json")));
+  const Outcome renewed =
+      run("snapshot record " + at("rig.glb") + " -o " + at("renewed.json") + " --reason 'softer lips'");
+  EXPECT_EQ(renewed.code, 0) << renewed.err;
+  const ordered_json json = ordered_json::parse(text_of(at("renewed.json")));
+  EXPECT_EQ(json["reasons"], (ordered_json{"first recorded", "softer lips"}));
+  EXPECT_GT(json["poses"].size(), 100U);
+  EXPECT_EQ(run("snapshot diff " + at("renewed.json") + " --against " + at("snapshot.json")).code, 0);
+  EXPECT_EQ(run("snapshot check " + at("rig.glb") + " --against " + at("rig.glb")).code, 1);
+  EXPECT_EQ(run("snapshot check " + at("rig.glb")).code, 2);
+  EXPECT_EQ(run("snapshot").code, 2);
+}
+
+}  // namespace
+}  // namespace fascia::cli
