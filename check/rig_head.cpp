@@ -1,6 +1,6 @@
 #include "check/rig_head.h"
 
-#include <fascia/fascia.h>
+#include <fascia/fascia.hpp>
 
 #include <Eigen/LU>
 
@@ -13,12 +13,7 @@
 namespace fascia::check {
 namespace {
 
-template <class T>
-T sized() {
-  T value = {};
-  value.struct_size = sizeof(T);
-  return value;
-}
+using api::sized;
 
 /// Where the vertices of a Part come from.
 struct Source {

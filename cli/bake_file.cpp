@@ -8,6 +8,7 @@
 #include "cli/gltf_edit.h"
 #include "cli/motion.h"
 #include "cli/posed_output.h"
+#include "cli/progress.h"
 #include "cli/take/point_cache.h"
 #include "formats/scene.h"
 #include "geometry/error.h"
@@ -124,8 +125,9 @@ void write_sequence(const Common& common, const BakeRequest& request, Face& face
     write_posed_mesh(request.rig, face, figures.files.back());
   };
   write("rest");
+  Progress progress(common, "bake", shapes.size());
   for (const ShapeToBake& shape : shapes) {
-    common.progress("baking " + shape.name);
+    progress.step();
     pose_shape(face, shape);
     write(shape.name);
   }
@@ -138,8 +140,9 @@ void write_cache(const Common& common, const BakeRequest& request, Face& face,
     times.push_back(static_cast<float>(s));
   PointCaches caches(request.output, CacheKind::pc2, cached_objects(request.rig, face), times);
   caches.add(face);
+  Progress progress(common, "bake", shapes.size());
   for (const ShapeToBake& shape : shapes) {
-    common.progress("baking " + shape.name);
+    progress.step();
     pose_shape(face, shape);
     caches.add(face);
   }

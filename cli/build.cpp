@@ -7,6 +7,7 @@
 #include "builder/rigging/gltf_source.h"
 #include "cli/check.h"
 #include "cli/common.h"
+#include "cli/progress.h"
 #include "cli/report.h"
 #include "cli/rig_build.h"
 #include "formats/scene.h"
@@ -179,6 +180,20 @@ rigging::BuildReport build_file(const Common& common, const BuildRequest& reques
   if (!request.report.empty()) make_output_folder(request.report);
   if (request.output.extension() != ".glb")
     throw Error("'" + request.output.string() + "': a rig is a .glb file; give -o NAME.glb");
+  // Shares of a build at medium detail; where another stage takes longest, the time left follows as it is
+  // seen.
+  Progress progress(common, "build",
+                    {{"reading", 0.05},
+                     {"landmarks", 0.15},
+                     {"openings", 0.05},
+                     {"skull", 0.2},
+                     {"smas", 0.1},
+                     {"muscles", 0.05},
+                     {"tissue", 1.4},
+                     {"writing", 0.1},
+                     {"check", 0.6},
+                     {"report", request.report.empty() ? 0.0 : 2.0}});
+  progress.begin("reading");
   const anatomy::GenericAnatomy anatomy = anatomy_for(request.anatomy);
   const formats::Scene scene = formats::read(request.head, formats::ReadOptions{request.allow_outside});
   formats::LandmarkFile landmarks;
@@ -192,17 +207,20 @@ rigging::BuildReport build_file(const Common& common, const BuildRequest& reques
   if (request.least_prevalence) options.edits.least_prevalence = *request.least_prevalence;
   if (request.smas_galea) options.smas.reach.galea = request.smas_galea;
   if (request.smas_neck_mm) options.smas.reach.neck = 1e-3 * *request.smas_neck_mm;
-  options.progress = [&](const std::string& stage) { common.progress(stage); };
+  options.progress = [&](const std::string& stage) { progress.begin(stage); };
   rigging::BuildResult result = rigging::build_rig(scene, landmarks, anatomy, options);
   if (!request.anatomy.empty()) result.report.corrected = anatomy::corrected_files(request.anatomy);
-  const std::vector<uint8_t> bytes = rig::write(
-      rigging::gltf_source(result.opened.value_or(scene), result.report.input_to_metres), result.rig);
+  progress.begin("writing");
+  const std::vector<uint8_t> bytes =
+      rig::write(rigging::gltf_source(result.opened.value_or(scene), result.report.input_to_metres,
+                                      &result.report.warnings),
+                 result.rig);
   formats::write_bytes(request.output, bytes.data(), bytes.size());
   Mat4 to_origin = Mat4::Identity();
   to_origin.topRightCorner<3, 1>() = -scene.offset;
   result.report.input_to_metres = result.report.input_to_metres * to_origin;
   result.report.warnings.insert(result.report.warnings.begin(), scene.warnings.begin(), scene.warnings.end());
-  common.progress("check");
+  progress.begin("check");
   const auto started = std::chrono::steady_clock::now();
   const std::vector<std::string> failures =
       quick_check(bytes, request.output.string(),
@@ -212,7 +230,7 @@ rigging::BuildReport build_file(const Common& common, const BuildRequest& reques
   result.report.warnings.insert(result.report.warnings.end(), failures.begin(), failures.end());
   if (failed_checks) *failed_checks = static_cast<int>(failures.size());
   if (!request.report.empty()) {
-    common.progress("report");
+    progress.begin("report");
     write_report(request.report, request.head, request.output, result.report);
   }
   return result.report;

@@ -5,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "cli/fit_match.h"
 #include "cli/fit_scan.h"
 #include "cli/fit_target.h"
 #include "cli/posing.h"

@@ -9,6 +9,7 @@
 #include "check/rig_head.h"
 #include "cli/check_sheet.h"
 #include "cli/common.h"
+#include "cli/progress.h"
 #include "formats/scene.h"
 #include "geometry/error.h"
 
@@ -63,19 +64,28 @@ void run(const Common& common, const Request& request) {
     if (request.sheet.extension() != ".png")
       throw Error("'" + request.sheet.string() + "': a sheet is written as .png; give --sheet NAME.png");
   }
+  Progress progress(common, "check", {{"poses", 1.0}, {"sheet", request.sheet.empty() ? 0.0 : 1.0}});
   const std::vector<uint8_t> bytes = formats::read_bytes(request.rig);
   const anatomy::Checks checks = anatomy::load_checks();
   std::vector<check::Row> rows;
   {
-    common.progress("playing the poses");
+    progress.begin("poses");
     check::RigHead rig(bytes, "'" + request.rig.string() + "'", request.level);
     check::Options options;
     options.rest_motion = rig.rest_motion();
-    rows = check::run(rig.head(), rig.player(), checks, options);
+    Progress poses(common, "pose", checks.poses.size());
+    const check::Player player = rig.player();
+    rows = check::run(
+        rig.head(),
+        [&](const auto& weights) {
+          poses.step();
+          return player(weights);
+        },
+        checks, options);
   }
   const int failed = check::failed(rows);
   if (!request.sheet.empty()) {
-    common.progress("drawing the sheet");
+    progress.begin("sheet");
     view::write_png(request.sheet, check_sheet(request.rig, request.level, checks, rows));
   }
   if (!common.json) common.say(table_of(rows));

@@ -7,20 +7,29 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "cli/progress.h"
 #include "geometry/error.h"
 
 namespace fascia::cli {
 
-void Common::progress(const std::string& what) const {
-  if (!quiet && isatty(fileno(stderr))) std::fprintf(stderr, "  %s\n", what.c_str());
+void Common::progress(const std::string& stage) const {
+  if (Progress* job = Progress::innermost())
+    job->begin(stage);
+  else if (!quiet && isatty(fileno(stderr)) != 0)
+    std::fprintf(stderr, "  %s\n", stage.c_str());
 }
 
 void Common::say(const std::string& line) const {
-  if (!quiet && !json) std::printf("%s\n", line.c_str());
+  if (quiet || json) return;
+  if (const Progress* job = Progress::innermost()) job->wipe();
+  std::printf("%s\n", line.c_str());
+  std::fflush(stdout);
 }
 
 void Common::warn(const std::string& line) const {
-  if (!quiet) std::fprintf(stderr, "warning: %s\n", line.c_str());
+  if (quiet) return;
+  if (const Progress* job = Progress::innermost()) job->wipe();
+  std::fprintf(stderr, "warning: %s\n", line.c_str());
 }
 
 void Common::report(const nlohmann::ordered_json& object) const {
@@ -49,18 +58,6 @@ void make_output_folder(const std::filesystem::path& folder) {
   if (!std::filesystem::create_directory(folder, status))
     throw Error("the folder '" + folder.string() +
                 "' cannot be made: " + (status ? status.message() : "a file bears its name"));
-}
-
-void add_to_come(const Command& tool) {
-  for (const auto& [name, what] :
-       {std::pair{"view", "the window"}}) {
-    const Command command = tool.command(name, std::string(what) + " (to come)");
-    const auto unread = std::make_shared<std::vector<std::string>>();
-    command.positional("ARGUMENTS", unread.get(), "Not read yet").default_text("none");
-    command.run([unread, name = std::string(name), what = std::string(what)] {
-      throw Error("'fascia " + name + "' is yet to come: " + what + " is not in this version");
-    });
-  }
 }
 
 void add_rig_argument(const Command& command, std::filesystem::path& rig) {

@@ -40,9 +40,6 @@ void add_demo(const Command& tool, Common& common);
 /// `tool` must outlive the run of the command, which prints what all commands say of themselves.
 void add_manual(const Command& tool);
 
-/// Commands that are yet to come: they say so and end with 1.
-void add_to_come(const Command& tool);
-
 /// Throws fascia::Error when the folder of `path` is not there, or when `path` is one of `inputs`, which it
 /// would destroy.
 void check_output(const std::filesystem::path& path, const std::vector<std::filesystem::path>& inputs = {});

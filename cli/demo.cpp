@@ -7,8 +7,10 @@
 #include "cli/bake_file.h"
 #include "cli/common.h"
 #include "cli/demo_curves.h"
+#include "cli/embedded_head.h"
 #include "cli/picture.h"
 #include "cli/play_file.h"
+#include "cli/progress.h"
 #include "cli/rig_build.h"
 #include "cli/take/curves.h"
 #include "formats/scene.h"
@@ -102,39 +104,52 @@ std::vector<SheetPose> sheet_poses() {
   };
 }
 
-view::Image contact_sheet(const std::filesystem::path& rig_path, const rig::Rig& rig) {
+view::Look studio() {
+  view::Look look;
+  look.background = {52, 56, 62};
+  look.has_backdrop = true;
+  return look;
+}
+
+view::Image contact_sheet(const Common& common, const std::filesystem::path& rig_path, const rig::Rig& rig) {
   Face face(rig_path, {FASCIA_SPACE_METRES, "own", "low"});
   const view::Renderer renderer(440, 440);
   std::vector<view::Tile> tiles;
+  Progress progress(common, "pose", sheet_poses().size());
   for (const SheetPose& pose : sheet_poses()) {
+    progress.step();
     face.clear();
     face.reset();
     for (const auto& [name, value] : pose.values)
       face.set(name, value);
     face.pose();
-    tiles.push_back({renderer.draw(draw_face(face, rig, layers_from(pose.layers)),
-                                   view::named_camera(pose.view, face_box(rig))),
+    tiles.push_back({renderer.draw_with(draw_face(face, rig, layers_from(pose.layers)),
+                                        view::named_camera(pose.view, face_box(rig), 0.98), studio()),
                      pose.caption});
   }
   return view::contact_sheet(tiles, 4);
 }
 
-void film(const std::filesystem::path& rig_path, const rig::Rig& rig,
+void film(const Common& common, const std::filesystem::path& rig_path, const rig::Rig& rig,
           const std::filesystem::path& curves_path, const std::filesystem::path& output) {
   const Curves curves(curves_path);
   Face face(rig_path, {FASCIA_SPACE_METRES, "own", "low"});
-  const int size = 480, frames_per_second = 24;
+  const int size = 540, frames_per_second = 24;
   const view::Renderer renderer(size, size);
   view::Video video(output, size, size, frames_per_second);
   const std::set<std::string> layers = layers_from("skin,eyes");
+  view::Look look = studio();
+  look.samples = 4;
   const int count = static_cast<int>(curves.duration() * frames_per_second) + 1;
+  Progress progress(common, "frame", static_cast<size_t>(count));
   for (int f = 0; f < count; ++f) {
+    progress.step();
     const double time = static_cast<double>(f) / frames_per_second;
     curves.apply(time, face);
     face.step(1.0 / frames_per_second);
-    view::Camera camera = view::named_camera("front", face_box(rig));
+    view::Camera camera = view::named_camera("front", face_box(rig), 0.98);
     camera.yaw = 28.0 * std::sin(0.45 * time);
-    video.add(renderer.draw(draw_face(face, rig, layers), camera));
+    video.add(renderer.draw_with(draw_face(face, rig, layers), camera, look));
   }
   video.finish();
 }
@@ -143,6 +158,9 @@ void run(const Common& common, const std::filesystem::path& folder,
          const std::filesystem::path& anatomy_folder) {
   make_output_folder(folder);
   Clock clock(common);
+  Progress progress(common, "demo",
+                    {{"build", 2.0}, {"play", 1.0}, {"bake", 1.0}, {"sheet", 3.0}, {"film", 12.0}});
+  progress.begin("build");
   const std::filesystem::path head = folder / "head.obj", landmarks = folder / "head_landmarks.json",
                               rig_path = folder / "rig.glb", curves = folder / "curves.csv";
   write_embedded_head(anatomy_for(anatomy_folder), head, landmarks);
@@ -161,6 +179,7 @@ void run(const Common& common, const std::filesystem::path& folder,
   }
   clock.say("built " + rig_path.string() + ": " + std::to_string(report.muscles.size()) +
             " muscles, skull, SMAS, tissue");
+  progress.begin("play");
   write_demo_curves(curves);
   PlayRequest play;
   play.rig = rig_path;
@@ -171,6 +190,7 @@ void run(const Common& common, const std::filesystem::path& folder,
   const PlayFigures played = play_file(common, play);
   clock.say("played ten seconds into " + play.output.string() + " (" +
             std::to_string(played.milliseconds_a_frame).substr(0, 5) + " ms a frame)");
+  progress.begin("bake");
   BakeRequest bake;
   bake.rig = rig_path;
   bake.output = folder / "arkit.glb";
@@ -178,9 +198,11 @@ void run(const Common& common, const std::filesystem::path& folder,
   bake_file(common, bake);
   clock.say("baked the ARKit shapes into " + (folder / "arkit.glb").string());
   const rig::RigFile file = rig::read(formats::read_bytes(rig_path), rig_path.string());
-  view::write_png(folder / "contact_sheet.png", contact_sheet(rig_path, file.rig));
+  progress.begin("sheet");
+  view::write_png(folder / "contact_sheet.png", contact_sheet(common, rig_path, file.rig));
   clock.say("drew " + (folder / "contact_sheet.png").string());
-  film(rig_path, file.rig, curves, folder / "demo.mp4");
+  progress.begin("film");
+  film(common, rig_path, file.rig, curves, folder / "demo.mp4");
   clock.say("filmed " + (folder / "demo.mp4").string());
   common.say("look at " + (folder / "contact_sheet.png").string() + " and " + (folder / "demo.mp4").string() +
              " first; open " + (folder / "play.glb").string() + " in any glTF viewer");

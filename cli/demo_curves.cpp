@@ -38,47 +38,6 @@ double speech(double time, double phase) {
 
 }  // namespace
 
-void write_embedded_head(const anatomy::GenericAnatomy& anatomy, const std::filesystem::path& head,
-                         const std::filesystem::path& landmarks) {
-  // The head as it is in the data, quads and texture coordinates too, and the skull's teeth with it.
-  std::string text = anatomy.head_source;
-  size_t base = 1;
-  for (size_t at = 0; at != std::string::npos; at = text.find('\n', at)) {
-    if (at > 0) ++at;
-    if (text.compare(at, 2, "v ") == 0) ++base;
-    if (at >= text.size()) break;
-  }
-  for (const char* name : {"teeth_upper", "teeth_lower"}) {
-    const anatomy::MeshObject* teeth = anatomy.skull_object(name);
-    if (!teeth) continue;
-    text += std::string("o ") + name + "\n";
-    for (const Vec3& p : teeth->mesh.vertices) {
-      char line[96];
-      std::snprintf(line, sizeof line, "v %.4f %.4f %.4f\n", 1e3 * p[0], 1e3 * p[1], 1e3 * p[2]);
-      text += line;
-    }
-    for (const Triangle& t : teeth->mesh.triangles) {
-      text += "f";
-      for (int corner : t)
-        text += " " + std::to_string(base + static_cast<size_t>(corner));
-      text += "\n";
-    }
-    base += teeth->mesh.vertices.size();
-  }
-  formats::write_text(head, text);
-  nlohmann::ordered_json json = {{"units", "mm"}, {"landmarks", nlohmann::ordered_json::object()}};
-  for (const anatomy::Landmark& landmark : anatomy.landmarks)
-    if (landmark.skin) {
-      const Vec3 mm = 1e3 * *landmark.skin;
-      json["landmarks"][landmark.name] = {mm[0], mm[1], mm[2]};
-    }
-  formats::write_text(landmarks, json.dump(1) + "\n");
-}
-
-void write_embedded_head(const std::filesystem::path& head, const std::filesystem::path& landmarks) {
-  write_embedded_head(anatomy::load_generic(), head, landmarks);
-}
-
 void write_demo_curves(const std::filesystem::path& path) {
   struct Column {
     std::string name;

@@ -64,7 +64,7 @@ void add_face_parts(formats::Drawing& drawing, const Request& request, const Vec
 
 void add_muscles(formats::Drawing& drawing, const rig::Rig& rig, const ToInput& to_input) {
   for (const rig::Muscle& muscle : rig.muscles) {
-    formats::NamedLines bundle{muscle.name, {}, muscle_colour(muscle.name)};
+    formats::NamedLines bundle{muscle.name, {}, view::muscle_colour(muscle.name)};
     for (size_t f = 0; f + 1 < muscle.fibre_offsets.size(); ++f) {
       std::vector<Vec3> line;
       for (uint32_t p = muscle.fibre_offsets[f]; p < muscle.fibre_offsets[f + 1]; ++p)

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "builder/reconstruction/reconstruction.h"
+#include "cli/progress.h"
 #include "cli/reconstructed_head.h"
 #include "cli/rig_build.h"
 #include "formats/landmark_file.h"
@@ -103,7 +104,8 @@ void run(const Common& common, const Request& request) {
   reconstruction::Options options;
   options.table = depth_table(request, anatomy, warnings);
   options.tissue_scale = request.tissue_scale;
-  common.progress("reading the skull");
+  Progress progress(common, "face", {{"skull", 1.0}, {"skin", 2.0}});
+  progress.begin("skull");
   const formats::Scene scene = formats::read(request.skull);
   const TriangleMesh skull = skull_of(scene);
   const auto of_skull = [&](const Error& error) {
@@ -113,7 +115,7 @@ void run(const Common& common, const Request& request) {
   try {
     options.metres = request.units == "auto" ? reconstruction::guess_unit(skull) : unit_of(request.units);
     options.bone = bone_landmarks(request, scene, options.metres);
-    common.progress("putting skin over it");
+    progress.begin("skin");
     result = reconstruction::reconstruct(anatomy, skull, options);
   } catch (const Error& error) {
     throw of_skull(error);

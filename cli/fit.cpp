@@ -7,9 +7,11 @@
 
 #include "cli/common.h"
 #include "cli/fit_landmarks.h"
+#include "cli/fit_match.h"
 #include "cli/fit_output.h"
 #include "cli/fit_scan.h"
 #include "cli/fit_target.h"
+#include "cli/progress.h"
 #include "fit/fit.h"
 #include "formats/scene.h"
 #include "geometry/error.h"
@@ -103,8 +105,9 @@ void fit_targets(const Common& common, const Request& request, fit::Subject& sub
   choose_shape(request, targets);
   check_fit_output(request.output, targets);
   fit::Fitter fitter(subject, request.fitting);
+  Progress progress(common, "fit", targets.names.size());
   for (size_t i = 0; i < targets.names.size(); ++i) {
-    common.progress("fit " + targets.names[i]);
+    progress.step();
     const fit::Target target = targets.target(i);
     motion.push_back(target.displacements.squaredNorm());
     results.push_back(targets.kind == FitTargets::Kind::take ? fitter.follow(target) : fitter.fit(target));

@@ -8,6 +8,7 @@
 #include "builder/rigging/find_landmarks.h"
 #include "builder/skull/procrustes.h"
 #include "builder/spatial/surface_query.h"
+#include "cli/fit_match.h"
 #include "geometry/error.h"
 
 namespace fascia::cli {

@@ -33,11 +33,4 @@ struct FitTargetOptions {
 FitTargets open_fit_targets(const Common& common, const std::filesystem::path& path,
                             const fit::Subject& subject, const FitTargetOptions& options);
 
-/// From a scene's axes and units to the rig's metres. A glTF that was written for a head of another format
-/// stands in the rig's own, by the node that was made for it.
-Mat4 scene_to_metres(const fit::Subject& subject, const formats::Scene& scene);
-
-/// True when the meshes of `scene` have the topology of the rig's, by their numbers of vertices.
-bool has_rig_topology(const fit::Subject& subject, const formats::Scene& scene);
-
 }  // namespace fascia::cli

@@ -14,6 +14,7 @@
 #include "cli/face.h"
 #include "cli/fit.h"
 #include "cli/snapshot.h"
+#include "cli/view.h"
 #include "formats/partial.h"
 #include "geometry/error.h"
 
@@ -59,7 +60,7 @@ void declare(const fascia::cli::Command& tool, fascia::cli::Common& common) {
   add_fit(tool, common);
   add_snapshot(tool, common);
   add_batch(tool, common);
-  add_to_come(tool);
+  add_view(tool, common);
   add_manual(tool);
 }
 

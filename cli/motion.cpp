@@ -61,7 +61,7 @@ BakedShapes bake_shapes(const Common& common, const Face& face, const std::vecto
   baked.shapes.resize(shapes.size());
   for (const ShapeToBake& shape : shapes)
     baked.names.push_back(shape.name);
-  Progress progress(common, "baking shape", shapes.size());
+  Progress progress(common, "bake", shapes.size());
   std::mutex progress_mutex;
   tbb::enumerable_thread_specific<Face> faces([&] { return face.sibling(); });
   tbb::parallel_for(size_t{0}, shapes.size(), [&](size_t s) {

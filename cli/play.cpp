@@ -60,6 +60,9 @@ void add_play(const Command& tool, Common& common) {
       .range(1e-9, 3600.0)
       .value("UNIT")
       .default_text("as their file says");
+  command.option("--from", &request->from, "Where the piece to play begins, seconds from the first key")
+      .range(0.0, 1e6);
+  command.option("--to", &request->to, "Where it ends").default_text("the last key");
   command.option("--targets", &request->most_targets, "Morph targets a mesh at most").range(1, 4096);
   command.flag("--head", request->keeps_head,
                "Keep the captured rotation of the head as motion of the file's nodes");

@@ -31,7 +31,7 @@ void write_caches(const Common& common, const PlayRequest& request, CacheKind ki
     times.push_back(static_cast<float>(take.time(f)));
   PointCaches caches(request.output, kind, cached_objects(request.rig, face), times);
   {
-    Progress progress(common, "playing frame", take.frames());
+    Progress progress(common, "frame", take.frames());
     const PerformanceFigures played = perform(take, face, progress, [&](size_t) { caches.add(face); });
     figures.resets = played.resets;
     figures.milliseconds_a_frame = played.milliseconds_a_frame;
@@ -98,6 +98,7 @@ void write_animation(const Common& common, const PlayRequest& request, const Tak
   figures.resets = recording.figures.resets;
   figures.milliseconds_a_frame = recording.figures.milliseconds_a_frame;
 
+  common.progress("writing");
   const std::vector<uint8_t> bytes = formats::read_bytes(request.rig);
   GltfEdit edit(rig::glb_source(bytes, request.rig.string()));
   std::vector<std::string> warnings;
@@ -134,7 +135,8 @@ PlayFigures play_file(const Common& common, const PlayRequest& request) {
   const bool wants_cache = is_cache(request.output, kind);
   if (!wants_cache && request.output.extension() != ".glb")
     throw Error("'" + request.output.string() + "': an animation is written as .glb, .pc2 or .mdd");
-  const Curves curves(request.curves, request.curve_frames_per_second, request.time_unit);
+  Curves curves(request.curves, request.curve_frames_per_second, request.time_unit);
+  curves.trim(request.from, request.to);
   PlayFigures figures;
   Face face(request.rig,
             {wants_cache ? FASCIA_SPACE_INPUT : FASCIA_SPACE_MESH, request.solver, request.level});
@@ -151,6 +153,12 @@ PlayFigures play_file(const Common& common, const PlayRequest& request) {
   figures.frames = take.frames();
   figures.duration = take.time(take.frames() - 1);
   figures.start = curves.start();
+  Progress progress(common, "play",
+                    {{"simulation", 1.0},
+                     {"principal components", wants_cache ? 0.0 : 0.2},
+                     {"measurement", wants_cache ? 0.0 : 1.0},
+                     {"writing", 0.2}});
+  progress.begin("simulation");
   if (wants_cache)
     write_caches(common, request, kind, take, face, figures);
   else

@@ -1,5 +1,7 @@
 #include "cli/posing.h"
 
+#include <fascia/fascia.hpp>
+
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -11,12 +13,7 @@ namespace fascia::cli {
 
 namespace {
 
-template <class T>
-T sized() {
-  T value = {};
-  value.struct_size = sizeof(T);
-  return value;
-}
+using api::sized;
 
 std::span<const float> as_span(const fascia_vectors& vectors) {
   return {vectors.data, static_cast<size_t>(vectors.count) * 3};
@@ -41,9 +38,10 @@ void check(fascia_result result, const std::string& what) {
 }
 
 Face::Face(const std::filesystem::path& rig, const Options& options) {
-  const std::vector<uint8_t> bytes = formats::read_bytes(rig);
+  bytes_ = std::make_shared<const std::vector<uint8_t>>(formats::read_bytes(rig));
+  path_ = rig.string();
   fascia_asset* asset = nullptr;
-  check(fascia_asset_load(bytes.data(), bytes.size(), &asset), "'" + rig.string() + "'");
+  check(fascia_asset_load(bytes_->data(), bytes_->size(), &asset), "'" + rig.string() + "'");
   asset_.reset(asset, Release());
   options_ = options;
   create("'" + rig.string() + "'");
@@ -52,6 +50,8 @@ Face::Face(const std::filesystem::path& rig, const Options& options) {
 Face Face::sibling() const {
   Face face;
   face.asset_ = asset_;
+  face.bytes_ = bytes_;
+  face.path_ = path_;
   face.options_ = options_;
   face.create("rig");
   return face;
@@ -194,6 +194,15 @@ std::vector<std::pair<std::string, std::vector<std::vector<Vec3>>>> Face::fibres
     muscles.back().second.push_back(std::move(line));
   }
   return muscles;
+}
+
+std::map<std::string, double> Face::effective_values() const {
+  const float* values = fascia_face_effective_values(face_.get());
+  const std::vector<std::string> names = channel_names();
+  std::map<std::string, double> all;
+  for (size_t i = 0; values && i < names.size(); ++i)
+    all[names[i]] = values[i];
+  return all;
 }
 
 Mat4 Face::jaw() const {

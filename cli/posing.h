@@ -55,13 +55,17 @@ class Face {
   std::span<const float> normals(size_t mesh) const;
   /// Positions at rest, in the same space.
   std::span<const float> rest(size_t mesh) const { return rest_[mesh]; }
-  /// Colours of a mesh's vertices, made by `make` at the first call and kept.
-  template <class Make>
-  const std::vector<Vec3>& skin_colours(size_t mesh, Make make) const {
-    auto [entry, is_new] = colours_.try_emplace(mesh);
-    if (is_new) entry->second = make();
-    return entry->second;
+  /// What `make` makes of this face at the first call, kept as long as the face lives: one thing of one type.
+  template <class T, class Make>
+  const T& kept(Make make) const {
+    if (!kept_) kept_ = std::make_shared<T>(make());
+    return *static_cast<const T*>(kept_.get());
   }
+  /// The rig's file, as it is on disk.
+  std::span<const uint8_t> file() const { return *bytes_; }
+  const std::string& path() const { return path_; }
+  /// Channels as they act now, by name.
+  std::map<std::string, double> effective_values() const;
   /// Fibres as they stand, grouped by muscle, in metres.
   std::vector<std::pair<std::string, std::vector<std::vector<Vec3>>>> fibres() const;
   Mat4 jaw() const;
@@ -82,7 +86,9 @@ class Face {
   std::unique_ptr<fascia_face, Release> face_;
   std::vector<FaceMesh> meshes_;
   std::vector<std::vector<float>> rest_;
-  mutable std::map<size_t, std::vector<Vec3>> colours_;
+  std::shared_ptr<const std::vector<uint8_t>> bytes_;
+  std::string path_;
+  mutable std::shared_ptr<const void> kept_;
   int32_t level_ = -1;
 };
 

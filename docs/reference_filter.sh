@@ -1,3 +1,9 @@
 #!/bin/sh
-# Doxygen reads the C headers through this: their plain comments, which any C compiler takes, become documentation.
-sed -E 's@^( *)/\* @\1/** @; s@([;,{]) +/\* @\1 /**< @' "$1"
+# Doxygen reads the headers through this: "#vertices" in a comment is a number of vertices and no link, and the plain comments of the
+# public headers, which any C compiler takes, become documentation.
+case "$1" in
+  */include/fascia/*)
+    sed -E '1s@^@/** \\file */ @; s@^( *)/\* @\1/** @; s@([;,{]) +/\* @\1 /**< @; s@^( *)// @\1/// @; s@([;,{]) +// @\1 ///< @' "$1" ;;
+  *)
+    sed -E '/\/\/\//s@#([a-z])@\\#\1@g' "$1" ;;
+esac

@@ -41,9 +41,10 @@ void check(const Scene& scene) {
   size_t triangles = 0;
   for (const SceneMesh& mesh : scene.meshes) {
     triangles += mesh.triangles.size();
-    for (const Vec3& p : mesh.positions)
-      if (!p.allFinite())
-        detail::fail(scene, "mesh '" + mesh.name + "' has a coordinate that is not a number");
+    for (size_t v = 0; v < mesh.positions.size(); ++v)
+      if (!mesh.positions[v].allFinite())
+        detail::fail(scene, "mesh '" + mesh.name + "' has a coordinate that is not a number, of vertex " +
+                                std::to_string(v) + "; delete that vertex or give it a place");
     for (const Triangle& t : mesh.triangles)
       for (int corner : t)
         if (corner < 0 || corner >= static_cast<int>(mesh.positions.size()))

@@ -52,9 +52,22 @@ blender_addon() {
     "$PWD/$out/blender.png"
 }
 
+godot3() {
+  hosts/godot3/headers.sh "$out/godot3"
+  hosts/godot3/build.sh "$PWD/$out/godot3/include" "$PWD/runtime/include" "$PWD/build/lib"
+  HOME=$(mktemp -d) FASCIA_RIG="$rig" godot3-server --path hosts/godot3/project -s test.gd
+}
+unreal_syntax() {  # against stand-ins of the engine's types
+  g++ -std=c++20 -fsyntax-only -Wall -Ihosts/unreal/stand_ins -Ihosts/unreal/Fascia/Source/Fascia/Public -Iruntime/include \
+    hosts/unreal/Fascia/Source/Fascia/Private/FasciaFaceComponent.cpp
+  echo "unreal: the syntax is right; the engine is not here"
+}
+
 part python /usr/bin/python3 unzip -- python
 part csharp mcs mono -- csharp
 part web emcc node -- web
 part web_page emcc node npm chromium -- web_page
+part godot3 godot3-server cc -- godot3
+part unreal g++ -- unreal_syntax
 part blender blender -- blender_addon
 [ ${#failed[@]} -eq 0 ] || { echo "hosts: failed: ${failed[*]}" >&2; exit 1; }

@@ -18,14 +18,14 @@ packages=(
   libcli11-dev nlohmann-json3-dev
   libembree-dev libtbb-dev libmeshoptimizer-dev libnanoflann-dev libxxhash-dev zlib1g-dev
   libepoxy-dev libegl-dev libgl-dev libegl1 libgl1-mesa-dri libimgui-dev libstb-dev
-  ffmpeg
+  ffmpeg fonts-dejavu-core fonts-lato
 )
 [ "$tier" = demo ] || packages+=(libgtest-dev libgmock-dev libvalijson-dev binutils clang-format abigail-tools valgrind xvfb xauth)
 [ "$tier" != full ] || packages+=(
   clang clang-tidy doxygen libbenchmark-dev libvtk9-dev libcgal-dev python3-numpy python3-pil python3-scipy
   nodejs npm slurmctld slurmd slurm-client munge
   # bindings and hosts: scripts/hosts.sh
-  emscripten chromium python3-dev pybind11-dev python3-matplotlib unzip mono-mcs mono-runtime blender
+  emscripten chromium python3-dev pybind11-dev python3-matplotlib unzip mono-mcs mono-runtime blender godot3-server
   g++-mingw-w64-x86-64-posix wine wine64 lintian
 )
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/formulas/activation_force.h"
 #include "sim/formulas/elements.h"
 
 namespace fascia::sim {
@@ -104,7 +105,7 @@ bool Sensitivity::linearise(const Controls& controls, std::span<const Vec3> x, b
   return true;
 }
 
-/// d gradient / d activation by channel: fibres and pressures are linear in theirs, carriers turn.
+/// d gradient / d activation by channel: pressures are linear in theirs, fibres in their pull, carriers turn.
 void Sensitivity::find_forces(const Controls& controls) {
   for (auto& list : forces_)
     list.clear();
@@ -125,9 +126,11 @@ void Sensitivity::find_forces(const Controls& controls) {
       length += lattice.fibre_taper[p] * formulas::segment_length(three(point(p + 1) - point(p)));
     const double rest_length = model_->fibre_lengths()[f];
     if (rest_length <= 0.0) continue;
-    const double tension =
-        formulas::fibre_tension(static_cast<double>(lattice.fibre_strength[f]), length, rest_length,
-                                static_cast<double>(lattice.fibre_shortest[f]), energy);
+    const double value = std::max(0.0F, controls.activation(lattice.fibre_channel[f]));
+    const double pull =
+        formulas::activation_force_slope(value) * static_cast<double>(lattice.fibre_strength[f]);
+    const double tension = formulas::fibre_tension(pull, length, rest_length,
+                                                   static_cast<double>(lattice.fibre_shortest[f]), energy);
     for (uint32_t p = first; p + 1 < last; ++p) {
       const Vec3 along = point(p + 1) - point(p);
       const Vec3 force = (tension * lattice.fibre_taper[p] / formulas::segment_length(three(along))) * along;

@@ -78,11 +78,11 @@ Environment environment(const std::string& name) {
   Environment room;
   if (name == "studio") {
     // A large key from the picture's upper left, a broad cool fill, two strips from behind for the outline.
-    room.ceiling = Vec3(0.34, 0.35, 0.37);
-    room.wall = Vec3(0.20, 0.205, 0.22);
-    room.floor = Vec3(0.12, 0.105, 0.10);
+    room.ceiling = Vec3(0.30, 0.31, 0.33);
+    room.wall = Vec3(0.155, 0.16, 0.175);
+    room.floor = Vec3(0.10, 0.085, 0.08);
     room.key_direction = toward(-38, 36);
-    room.key_irradiance = Vec3(1.00, 0.94, 0.86) * 1.55;
+    room.key_irradiance = Vec3(1.00, 0.94, 0.86) * 1.30;
     room.key_size = 0.16;
     room.boxes = {soft_box(toward(-38, 36), Vec3(1.0, 0.95, 0.88) * 7.0, 0.22),
                   soft_box(toward(55, 8), Vec3(0.80, 0.90, 1.0) * 0.9, 0.62),

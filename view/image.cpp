@@ -4,16 +4,15 @@
 #include <cstring>
 
 #include "geometry/error.h"
+#include "view/text.h"
 
 #define STB_IMAGE_WRITE_IMPLEMENTATION
-#define STB_EASY_FONT_IMPLEMENTATION
 #if defined(__GNUC__)
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
 #pragma GCC diagnostic ignored "-Wmissing-field-initializers"
 #pragma GCC diagnostic ignored "-Wunused-but-set-variable"
 #endif
-#include <stb/stb_easy_font.h>
 #include <stb/stb_image_write.h>
 #if defined(__GNUC__)
 #pragma GCC diagnostic pop
@@ -67,36 +66,26 @@ void paste(Image& target, const Image& source, int x, int y) {
 }
 
 void write_label(Image& image, const std::string& text, int x, int y, int scale, Colour colour) {
-  // The font comes as quads of four vertices (x, y, z, colour), 16 bytes each, one unit a dot.
-  std::vector<char> buffer(text.size() * 300 + 1024);
-  std::string copy = text;
-  const int quads =
-      stb_easy_font_print(0, 0, copy.data(), nullptr, buffer.data(), static_cast<int>(buffer.size()));
-  for (int q = 0; q < quads; ++q) {
-    float corners[16];
-    std::memcpy(corners, &buffer[static_cast<size_t>(q) * 64], 64);
-    const int left = x + static_cast<int>(corners[0]) * scale, top = y + static_cast<int>(corners[1]) * scale;
-    const int right = x + static_cast<int>(corners[8]) * scale,
-              bottom = y + static_cast<int>(corners[9]) * scale;
-    for (int row = std::max(0, top); row < std::min(bottom, image.height); ++row)
-      for (int column = std::max(0, left); column < std::min(right, image.width); ++column)
-        std::copy(colour.begin(), colour.end(),
-                  image.pixels.begin() + 3 * (static_cast<std::ptrdiff_t>(row) * image.width + column));
-  }
+  write_text(image, text, x, y, 5 + 4 * scale, colour);
 }
 
 Image contact_sheet(const std::vector<Tile>& tiles, int columns) {
   if (tiles.empty()) return {};
-  const int caption_height = 26, gap = 6;
-  const int width = tiles[0].image.width, height = tiles[0].image.height + caption_height;
+  const int gap = 6, width = tiles[0].image.width;
+  const int text = std::clamp(width / 34, 8, 20), caption_height = 2 * text + 4;
+  const int height = tiles[0].image.height + caption_height;
   const int rows = (static_cast<int>(tiles.size()) + columns - 1) / columns;
-  Image sheet(columns * (width + gap) + gap, rows * (height + gap) + gap, {30, 33, 38});
+  Image sheet(columns * (width + gap) + gap, rows * (height + gap) + gap, {24, 26, 30});
   for (size_t i = 0; i < tiles.size(); ++i) {
     const int x = gap + static_cast<int>(i) % columns * (width + gap),
               y = gap + static_cast<int>(i) / columns * (height + gap);
     paste(sheet, tiles[i].image, x, y);
-    const int scale = static_cast<int>(tiles[i].caption.size()) * 12 < width ? 2 : 1;
-    write_label(sheet, tiles[i].caption, x + 6, y + tiles[i].image.height + 6, scale, {225, 225, 225});
+    // Long captions are written smaller.
+    int size = text;
+    while (size > 6 && text_width(tiles[i].caption, size) > width - 12)
+      --size;
+    write_text(sheet, tiles[i].caption, x + 6, y + tiles[i].image.height + (caption_height - size) / 2, size,
+               {222, 224, 228});
   }
   return sheet;
 }

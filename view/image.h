@@ -29,7 +29,7 @@ std::vector<uint8_t> encode_png(const Image& image);
 /// Copies `source` into `target` with its top left corner at (x, y); what falls outside is cut off.
 void paste(Image& target, const Image& source, int x, int y);
 
-/// Writes one line of text with its top left corner at (x, y), glyphs `scale` pixels a dot.
+/// Writes one line of text with its top left corner at (x, y), capitals 5 + 4 * `scale` pixels high.
 void write_label(Image& image, const std::string& text, int x, int y, int scale, Colour colour);
 
 /// A tile of a contact sheet.

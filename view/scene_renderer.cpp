@@ -279,13 +279,13 @@ void SceneRenderer::State::set_frame(const Program& p, const Camera& camera, con
 
 void SceneRenderer::State::set_surface(const Program& p, const DrawSurface& surface) {
   const bool has_uvs = !surface.uvs.empty();
+  // Copies are made before any is bound: making one binds it to the first unit.
+  for (const auto& texture : {surface.colour_map, surface.normal_map, surface.surface_map})
+    if (has_uvs) textures.name(texture);
   const auto map = [&](const char* name, int unit, const std::shared_ptr<const Texture>& texture) {
     const bool is_used = has_uvs && texture;
     p.set(name, is_used ? 1 : 0);
-    if (is_used) {
-      const GLuint copy_name = textures.name(texture);
-      bind_texture(unit, GL_TEXTURE_2D, copy_name);
-    }
+    if (is_used) bind_texture(unit, GL_TEXTURE_2D, textures.name(texture));
   };
   map("has_colour_map", colour_unit, surface.colour_map);
   map("has_normal_map", normal_unit, surface.normal_map);

@@ -214,8 +214,8 @@ void main() {
   vec3 falling = clamp((slope + wrap) / (1.0 + wrap), 0.0, 1.0);
   vec3 shade = pow(vec3(lit), vec3(0.72, 1.0, 1.08));
   light = colour * key_irradiance * falling * shade;
-  float behind = clamp(0.35 - dot(n, l), 0.0, 1.0);
-  light += to_linear(vec3(0.95, 0.36, 0.22)) * key_irradiance * behind * exp(-thickness / 0.0042) * 0.55 * TRANSLUCENCY;
+  float behind = clamp(-dot(n, l), 0.0, 1.0);
+  light += to_linear(vec3(0.95, 0.36, 0.22)) * key_irradiance * behind * exp(-thickness / 0.0042) * 0.8 * TRANSLUCENCY;
   light += colour * irradiance(mix(m, n, 0.5)) * tinted(open, colour);
   light += gloss(m, v, vec3(0.028), rough, lit, open) * 0.80 * specular;
   light += gloss(m, v, vec3(0.028), rough * 0.58, lit, open) * 0.20 * specular;

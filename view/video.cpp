@@ -25,7 +25,22 @@ std::string quoted(const std::string& path) {
   return word + "'";
 }
 
+/// What ffmpeg is told of the film itself; the same frames give the same bytes.
+std::string encoding_of(const std::string& extension) {
+  if (extension == ".gif")
+    return " -filter_complex "
+           "'[0:v]split[a][b];[a]palettegen=stats_mode=diff[p];[b][p]paletteuse=dither=bayer:bayer_scale=4'"
+           " -loop 0";
+  if (extension == ".webp") return " -c:v libwebp_anim -quality 82 -loop 0";
+  return " -c:v libx264 -crf 18 -preset medium -pix_fmt yuv420p -movflags +faststart";
+}
+
 }  // namespace
+
+bool is_film(const std::filesystem::path& path) {
+  const std::string extension = path.extension().string();
+  return extension == ".mp4" || extension == ".gif" || extension == ".webp";
+}
 
 Video::Video(const std::filesystem::path& path, int width, int height, double frames_per_second)
     : state_(std::make_unique<State>()) {
@@ -33,15 +48,16 @@ Video::Video(const std::filesystem::path& path, int width, int height, double fr
     throw Error("films are made by ffmpeg, which is not installed (Debian: apt-get install ffmpeg)");
   state_->path = path;
   state_->beside = path;
-  state_->beside += ".part.mp4";
+  const std::string extension = is_film(path) ? path.extension().string() : ".mp4";
+  state_->beside += ".part" + extension;
   state_->width = width;
   state_->height = height;
   std::signal(SIGPIPE, SIG_IGN);
-  const std::string command =
-      "ffmpeg -y -loglevel error -f rawvideo -pix_fmt rgb24 -s " + std::to_string(width) + "x" +
-      std::to_string(height) + " -r " + std::to_string(frames_per_second) +
-      " -i - -an -c:v libx264 -crf 20 -pix_fmt yuv420p -movflags +faststart -threads 1 " +
-      quoted(state_->beside.string());
+  const std::string command = "ffmpeg -y -loglevel error -f rawvideo -pix_fmt rgb24 -s " +
+                              std::to_string(width) + "x" + std::to_string(height) + " -r " +
+                              std::to_string(frames_per_second) + " -i - -an" + encoding_of(extension) +
+                              " -fflags +bitexact -flags:v +bitexact -threads 1 " +
+                              quoted(state_->beside.string());
   state_->pipe = popen(command.c_str(), "w");
   if (!state_->pipe) throw Error("ffmpeg cannot be started");
 }

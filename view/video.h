@@ -7,7 +7,10 @@
 
 namespace fascia::view {
 
-/// An H.264 film in an MP4 file, made by the `ffmpeg` program.
+/// Whether a path's extension is that of a film: .mp4, .gif or .webp.
+bool is_film(const std::filesystem::path& path);
+
+/// A film, made by the `ffmpeg` program: H.264 in MP4, or a looping GIF or WebP, by the path's extension.
 class Video {
  public:
   /// Throws fascia::Error when ffmpeg is not installed.

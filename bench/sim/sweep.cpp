@@ -106,7 +106,7 @@ int main(int argc, char** argv) {
         std::printf("\n");
       }
     }
-    print("static poses by chance", still, poses);
+    print("random static poses", still, poses);
     face.relax();
     face.pose();
     const int frames = static_cast<int>(60.0 * seconds);

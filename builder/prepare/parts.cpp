@@ -198,6 +198,8 @@ Part of_jaw(Part upper, const NamedPart& named, const Component& component,
 /// Place says what a part can be; among that the name decides, and where place says nothing, the name alone.
 Part part_of(const Component& component, const NamedPart& named,
              const std::map<std::string, Vec3>& landmarks) {
+  constexpr double speck = 1.5e-5;  // square metres: a tooth's crown, or a lash card, has more
+  if (!named.part && component.area < speck) return Part::other;
   const Placed placed = place_of(component, landmarks);
   // Brows and lashes of both eyes are often one mesh, which lies between the eyes; cards of hair lie anywhere
   // about the head.

@@ -13,8 +13,10 @@ struct WeldedScene {
   int component_count = 0;
 };
 
-/// Joins and welds. Only vertices on open edges are merged, and only within one glTF mesh or among the
-/// objects of an OBJ: texture seams close, lips and lids that merely touch stay two.
+/// Joins and welds. Only vertices on open edges are merged, within one glTF mesh, among the objects of an OBJ,
+/// and between meshes whose rims run along each other: texture seams close and a head in pieces becomes one,
+/// lips and lids that merely touch stay two. A vertex that no triangle uses becomes one with the used one in
+/// its place.
 WeldedScene weld_scene(const formats::Scene& scene, const Mat4& input_to_metres);
 
 /// What every connected component of `welded` is, and the eyeballs among them: by shape and place first, by

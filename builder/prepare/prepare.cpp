@@ -5,6 +5,7 @@
 #include "builder/spatial/surface_query.h"
 #include "geometry/connectivity.h"
 #include "geometry/error.h"
+#include "geometry/flaps.h"
 #include "geometry/slivers.h"
 
 namespace fascia::prepare {
@@ -30,16 +31,19 @@ std::map<std::string, Vec3> onto_skin(const formats::Scene& scene, const spatial
   return projected;
 }
 
-/// The skin that is computed with: without triangles that have no direction. `skin_vertex[v]` receives the
-/// index in it of the surface's vertex v, or -1.
+/// The skin that is computed with: without fins and triangles that have no direction. `skin_vertex[v]`
+/// receives the index in it of the surface's vertex v, or -1.
 TriangleMesh computing_skin(const TriangleMesh& surface, const std::vector<bool>& is_skin,
                             std::vector<int>& skin_vertex) {
   constexpr double lowest = 2e-6;  // metres: what single precision leaves of a height in a whole body
-  std::vector<int> mended;
-  const TriangleMesh skin = submesh(surface, is_skin, &skin_vertex);
+  std::vector<int> mended, bare;
+  const TriangleMesh whole = submesh(surface, is_skin, &skin_vertex);
+  const TriangleMesh skin = submesh(whole, without_flaps(whole), &bare);
   TriangleMesh sound = without_slivers(skin, lowest, &mended);
-  for (int& v : skin_vertex)
+  for (int& v : skin_vertex) {
+    if (v >= 0) v = bare[static_cast<size_t>(v)];
     if (v >= 0) v = mended[static_cast<size_t>(v)];
+  }
   return sound;
 }
 

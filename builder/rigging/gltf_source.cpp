@@ -1,6 +1,10 @@
 #include "builder/rigging/gltf_source.h"
 
+#include <cmath>
+
+#include "formats/material_library.h"
 #include "gltf/edit/appendix.h"
+#include "gltf/edit/uri.h"
 
 namespace fascia::rigging {
 
@@ -18,7 +22,7 @@ size_t add(gltf::Appendix& data, const std::vector<Point>& points, bool bounds) 
   return data.add_floats(values, n, bounds, gltf::vertex_target);
 }
 
-Json primitive_of(gltf::Appendix& data, const formats::SceneMesh& mesh) {
+Json primitive_of(gltf::Appendix& data, const formats::SceneMesh& mesh, int material) {
   Json attributes;
   attributes["POSITION"] = add<Vec3, 3>(data, mesh.positions, true);
   std::vector<Vec3> normals = vertex_normals({mesh.positions, mesh.triangles});
@@ -32,7 +36,43 @@ Json primitive_of(gltf::Appendix& data, const formats::SceneMesh& mesh) {
   std::vector<uint32_t> corners;
   for (const Triangle& t : mesh.triangles)
     corners.insert(corners.end(), t.begin(), t.end());
-  return {{"attributes", attributes}, {"indices", data.add_indices(corners)}, {"material", 0}};
+  // Material 0 is for what the file gives none.
+  return {{"attributes", attributes}, {"indices", data.add_indices(corners)}, {"material", material + 1}};
+}
+
+/// Appends a picture's file as an image and a texture; returns the texture's place, -1 without a picture.
+int add_texture(Json& json, gltf::Appendix& data,
+                const std::shared_ptr<const std::vector<uint8_t>>& picture) {
+  if (!picture) return -1;
+  const Json image = {{"bufferView", data.add_view(*picture)}, {"mimeType", gltf::picture_type(*picture)}};
+  int at = 0;
+  for (const Json& known : json.value("images", Json::array())) {
+    if (known == image) return at;  // its bytes are stored once
+    ++at;
+  }
+  json["images"].push_back(image);
+  json["textures"].push_back({{"source", at}});
+  return at;
+}
+
+void add_materials(Json& json, gltf::Appendix& data, const formats::MaterialLibrary& library) {
+  // glTF's factors are linear, OBJ's as seen (sRGB).
+  const auto linear = [](double value) { return std::pow(value, 2.2); };
+  for (const formats::SceneMaterial& from : library.materials) {
+    Json metal = {{"metallicFactor", 0.0}, {"roughnessFactor", from.roughness}};
+    Json material = {{"name", from.name}};
+    if (const int map = add_texture(json, data, from.colour_map); map >= 0)
+      metal["baseColorTexture"] = {{"index", map}};
+    else
+      metal["baseColorFactor"] = {linear(from.colour[0]), linear(from.colour[1]), linear(from.colour[2]),
+                                  from.opacity};
+    if (const int map = add_texture(json, data, from.normal_map); map >= 0)
+      material["normalTexture"] = {{"index", map}};
+    material["pbrMetallicRoughness"] = metal;
+    if (from.has_alpha) material["alphaMode"] = from.colour_map ? "MASK" : "BLEND";
+    if (from.has_alpha) material["doubleSided"] = true;
+    json["materials"].push_back(material);
+  }
 }
 
 const char* kind_name(formats::FileKind kind) {
@@ -56,7 +96,8 @@ std::string notes_of(const formats::Scene& scene) {
 
 }  // namespace
 
-rig::GltfSource gltf_source(const formats::Scene& scene, const Mat4& input_to_metres) {
+rig::GltfSource gltf_source(const formats::Scene& scene, const Mat4& input_to_metres,
+                            std::vector<std::string>* warnings) {
   rig::GltfSource source;
   source.record.format = kind_name(scene.kind);
   source.record.json = notes_of(scene);
@@ -75,8 +116,12 @@ rig::GltfSource gltf_source(const formats::Scene& scene, const Mat4& input_to_me
   json["materials"] = Json::array(
       {{{"name", "head"}, {"pbrMetallicRoughness", {{"metallicFactor", 0.0}, {"roughnessFactor", 0.6}}}}});
   gltf::Appendix data(json, source.bin);
-  for (const formats::SceneMesh& mesh : scene.meshes) {
-    const Json primitive = primitive_of(data, mesh);
+  const formats::MaterialLibrary library = formats::read_materials(scene);
+  if (warnings) warnings->insert(warnings->end(), library.warnings.begin(), library.warnings.end());
+  add_materials(json, data, library);
+  for (size_t m = 0; m < scene.meshes.size(); ++m) {
+    const formats::SceneMesh& mesh = scene.meshes[m];
+    const Json primitive = primitive_of(data, mesh, m < library.of_mesh.size() ? library.of_mesh[m] : -1);
     json["meshes"].push_back({{"name", mesh.name}, {"primitives", Json::array({primitive})}});
     json["nodes"].push_back({{"name", mesh.name}, {"mesh", json["meshes"].size() - 1}});
     json["nodes"][0]["children"].push_back(json["nodes"].size() - 1);

@@ -12,7 +12,8 @@ namespace fascia::rigging {
 /// they stand in the file under one node that brings them to metres, +Y up; the file itself is kept in
 /// the record, so that its vertex order, polygons, axes and units come back.
 /// A scene that lies far from the origin is put there, and the record's notes say where it was.
-rig::GltfSource gltf_source(const formats::Scene& scene, const Mat4& input_to_metres);
+rig::GltfSource gltf_source(const formats::Scene& scene, const Mat4& input_to_metres,
+                            std::vector<std::string>* warnings = nullptr);
 
 /// Where the input's coordinates had their origin, as seen from the rig's: what is written back is moved by
 /// it, in the input's units. Zero unless the input lay far off.

@@ -25,6 +25,10 @@ void add_pressures(const TissueInputs& inputs, const Columns& columns, rig::Tiss
 void add_lip_rolls(const TissueInputs& inputs, const FaceRegion& region, const Beneath& beneath,
                    const Columns& columns, rig::TissueLevel& level);
 
+/// Lips drawn onto each other (`lip_seal_<side>`): strands from the edge of the one to that of the other,
+/// laid as fibres of the marginal orbicularis oris.
+void add_lip_seal(const TissueInputs& inputs, const Columns& columns, rig::TissueLevel& level);
+
 /// Retaining ligaments from bone through the fascia to the skin: springs that only resist being stretched.
 void add_ligaments(const TissueInputs& inputs, const Columns& columns, rig::TissueLevel& level);
 

@@ -65,6 +65,7 @@ TissueResult build(const TissueInputs& inputs, const TissueOptions& options) {
     const Columns columns = make_columns(inputs, region, beneath, wanted, options);
     rig::TissueLevel level = make_level(inputs, wanted, columns);
     add_fibres(inputs, columns, level);
+    add_lip_seal(inputs, columns, level);
     add_lids(inputs, region, columns, level);
     add_lip_rolls(inputs, region, beneath, columns, level);
     add_pressures(inputs, columns, level);

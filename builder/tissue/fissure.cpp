@@ -13,6 +13,7 @@ namespace {
 
 constexpr size_t steps = 33;
 constexpr double edge = 0.004;  // metres of skin beside the opening among which a lid's edge is looked for
+constexpr double widest = 2.2;  // radians about the globe: wider than the largest eyes of drawn figures
 
 }  // namespace
 
@@ -64,6 +65,7 @@ void Fissure::find_gaps(const FaceRegion& region, bool left) {
     if (!(from < to)) return;
     for (double k = std::max(0.0, std::ceil(from)); k <= std::min(last, to); k += 1.0) {
       const double share = (k - from) / (to - from), value = elevation(a + share * (b - a));
+      if (std::abs(value) > widest) continue;  // so far round the globe is its socket, not a lid
       const bool above = is_upper(a + share * (b - a));
       const auto step = static_cast<size_t>(k);
       double& best = above ? upper[step] : lower[step];
@@ -90,7 +92,7 @@ void Fissure::find_gaps(const FaceRegion& region, bool left) {
       if (place.triangle >= 0) edges_.push_back(place);
   gaps_.assign(steps, -1.0);
   for (size_t k = 0; k < steps; ++k)
-    if (upper[k] < 4.0 && lower[k] > -4.0) gaps_[k] = std::max(0.0, upper[k] - lower[k]);
+    if (upper[k] < 4.0 && lower[k] > -4.0) gaps_[k] = std::clamp(upper[k] - lower[k], 0.0, widest);
   gaps_.front() = gaps_.back() = 0.0;
   for (size_t k = 1, known = 0; k < steps; ++k) {
     if (gaps_[k] < 0.0) continue;
@@ -118,16 +120,16 @@ void Fissure::find_closed_lids(const FaceRegion& region, bool left) {
     low[k] = std::min(low[k], elevation(margin.position));
     high[k] = std::max(high[k], elevation(margin.position));
   }
-  double widest = 0.0, sum = 0.0;
+  double farthest = 0.0, sum = 0.0;
   int known = 0;
   for (size_t k = 0; k < steps; ++k)
     if (high[k] >= low[k]) {
-      widest = std::max(widest, high[k] - low[k]);
+      farthest = std::max(farthest, high[k] - low[k]);
       sum += 0.5 * (low[k] + high[k]);
       ++known;
     }
   // A slope within a step counts as little as the step is wide.
-  if (2 * known < static_cast<int>(steps) || widest > 3.0 * closed) return;
+  if (2 * known < static_cast<int>(steps) || farthest > 3.0 * closed) return;
   const double level = sum / known;
   const auto& distance = region.opening_distance[static_cast<size_t>(opening)];
   std::array<std::vector<DistanceSeed>, 2> seeds;

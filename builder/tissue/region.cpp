@@ -1,7 +1,9 @@
 #include "builder/tissue/region.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "builder/spatial/surface_query.h"
 #include "builder/tissue/distance.h"
@@ -28,6 +30,52 @@ double margin_at(const TissueInputs& inputs, const Vec3& p) {
   return std::min({top - p.y(), p.y() - bottom, p.z() - back});
 }
 
+/// The four places of an eye's lids that landmarks name, going round; nothing when one is missing.
+std::optional<std::array<Vec3, 4>> lid_places(const TissueInputs& inputs, const std::string& side) {
+  std::array<Vec3, 4> places;
+  size_t k = 0;
+  for (const char* name : {"exocanthion", "palpebrale_superius", "endocanthion", "palpebrale_inferius"}) {
+    const auto found = inputs.landmarks.find(name + side);
+    if (found == inputs.landmarks.end()) return {};
+    places[k++] = found->second;
+  }
+  return places;
+}
+
+/// Closes the fissures of eyes that are empty sockets, so that what lies in them is not seen from outside.
+void hang_curtains(const TissueInputs& inputs, TriangleMesh& blocking) {
+  constexpr double margin = 1.12, behind = 0.03, empty = 0.22;  // of the fissure's width but for the first
+  const spatial::SurfaceQuery query(blocking);
+  for (const std::string side : {"_left", "_right"}) {
+    const bool has_eyeball = std::any_of(inputs.parts.begin(), inputs.parts.end(),
+                                         [&](const PartMesh& part) { return part.part == "eye" + side; });
+    const auto places = lid_places(inputs, side);
+    if (has_eyeball || !places) continue;
+    const auto& [outer, upper, inner, lower] = *places;
+    const Vec3 lateral = outer - inner;
+    const double width = lateral.norm();
+    Vec3 front = lateral.cross(upper - lower);
+    if (!(front.norm() > 1e-3 * width * width)) continue;
+    front = front.normalized() * (front.z() < 0.0 ? -1.0 : 1.0);
+    const Vec3 middle = 0.25 * (outer + upper + inner + lower);
+    // An eye that is one surface with its lids stands in the fissure; a socket's wall lies far behind it.
+    const auto wall = query.first_hit(middle + width * front, -front, 4.0 * width);
+    if (wall && wall->distance < (1.0 + empty) * width) continue;
+    const int first = blocking.vertex_count();
+    constexpr int corners = 24;
+    blocking.vertices.push_back(middle - behind * width * front);
+    for (int k = 0; k < corners; ++k) {
+      // Quarters of ellipses from place to place.
+      const double turn = 4.0 * k / corners, share = 0.5 * EIGEN_PI * (turn - std::floor(turn));
+      const auto from = static_cast<size_t>(turn);
+      const Vec3 rim = std::cos(share) * ((*places)[from] - middle) +
+                       std::sin(share) * ((*places)[(from + 1) % 4] - middle);
+      blocking.vertices.push_back(middle + margin * rim - behind * width * front);
+      blocking.triangles.push_back({first, first + 1 + k, first + 1 + (k + 1) % corners});
+    }
+  }
+}
+
 /// Whether a skin vertex is seen from outside: some ray in the half space before the face escapes.
 std::vector<bool> seen_from_outside(const TissueInputs& inputs, const std::vector<double>& margin) {
   TriangleMesh blocking = inputs.skin;
@@ -40,6 +88,7 @@ std::vector<bool> seen_from_outside(const TissueInputs& inputs, const std::vecto
     for (const fascia::Triangle& t : part.triangles)
       blocking.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
   }
+  hang_curtains(inputs, blocking);
   constexpr double beyond = 0.01;  // metres past the region's limits that are looked at
   constexpr double socket = 1.01;  // radii of the globe: nearer is inside the orbit
   const spatial::SurfaceQuery query(blocking);

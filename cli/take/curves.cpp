@@ -16,6 +16,16 @@ Curves::Curves(const std::filesystem::path& path, double frames_per_second, doub
   info_.struct_size = sizeof info_;
   check(fascia_curves_get_info(curves, &info_), "'" + path.string() + "'");
   names_.assign(info_.names, info_.names + info_.count);
+  to_ = info_.duration;
+}
+
+void Curves::trim(double from, double to) {
+  if (to < 0.0) to = info_.duration;
+  if (!(from >= 0.0 && from <= to && to <= info_.duration + 1e-6))
+    throw Error("the curves last " + std::to_string(info_.duration) +
+                " s: --from and --to must name a piece of that, --from before --to");
+  from_ = from;
+  to_ = std::min(to, info_.duration);
 }
 
 std::vector<std::string> Curves::unmatched(const Face& face) const {
@@ -29,12 +39,12 @@ std::vector<std::string> Curves::unmatched(const Face& face) const {
 }
 
 void Curves::apply(double seconds, const Face& face) const {
-  check(fascia_curves_apply(curves_.get(), seconds, 1.0F, face.handle()), "curves");
+  check(fascia_curves_apply(curves_.get(), from_ + seconds, 1.0F, face.handle()), "curves");
 }
 
 std::array<float, 4> Curves::head(double seconds) const {
   std::array<float, 4> quaternion = {};
-  check(fascia_curves_head(curves_.get(), seconds, quaternion.data()), "curves");
+  check(fascia_curves_head(curves_.get(), from_ + seconds, quaternion.data()), "curves");
   return quaternion;
 }
 

@@ -17,8 +17,12 @@ class Curves {
   /// `frames_per_second` and `time_unit` as in fascia_curves_options; 0 as the file says.
   explicit Curves(const std::filesystem::path& path, double frames_per_second = 0.0, double time_unit = 0.0);
 
-  double duration() const { return info_.duration; }
-  double start() const { return info_.start; }
+  /// Leaves only the piece from `from` to `to` seconds, counted from the first key; `to` below 0: to the end.
+  /// Times count from `from` afterwards. Throws fascia::Error when there is no such piece.
+  void trim(double from, double to);
+
+  double duration() const { return to_ - from_; }  ///< seconds, of the piece
+  double start() const { return info_.start + from_; }
   bool turns_head() const { return info_.has_head != 0; }
   const std::vector<std::string>& names() const { return names_; }
   /// How the file was taken and what was mended, a sentence each.
@@ -35,6 +39,7 @@ class Curves {
   };
   std::unique_ptr<fascia_curves, Release> curves_;
   fascia_curves_info info_ = {};
+  double from_ = 0.0, to_ = 0.0;
   std::vector<std::string> names_;
 };
 

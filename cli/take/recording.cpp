@@ -102,8 +102,9 @@ Recording record(const Common& common, const Take& take, Face& face, const Recor
   const auto channels = static_cast<Index>(face.channel_names().size());
   recording.values.resize(channels, static_cast<Index>(take.frames()));
   std::vector<float> frame;
+  common.progress("simulation");
   {
-    Progress progress(common, "playing frame", take.frames());
+    Progress progress(common, "frame", take.frames());
     recording.figures = perform(take, face, progress, [&](size_t f) {
       for (size_t m = 0; m < meshes.size(); ++m) {
         displacement(face, meshes[m], frame);
@@ -113,10 +114,10 @@ Recording record(const Common& common, const Take& take, Face& face, const Recor
           Eigen::Map<const Eigen::VectorXf>(fascia_face_effective_values(face.handle()), channels);
     });
   }
+  common.progress("principal components");
   for (size_t m = 0; m < meshes.size(); ++m) {
     spaces[m].finish();
     if (spaces[m].vertices().empty()) continue;
-    common.progress("finding the principal components of mesh " + std::to_string(meshes[m].mesh));
     MeshMotion motion;
     motion.mesh = meshes[m];
     motion.vertices = spaces[m].vertices();
@@ -134,7 +135,8 @@ void measure(const Common& common, const Take& take, Face& face, Recording& reco
   for (MeshMotion& motion : recording.meshes)
     measurements.emplace_back(motion);
   std::vector<float> frame;
-  Progress progress(common, "measuring frame", take.frames());
+  common.progress("measurement");
+  Progress progress(common, "frame", take.frames());
   perform(take, face, progress, [&](size_t) {
     for (size_t m = 0; m < measurements.size(); ++m) {
       displacement(face, recording.meshes[m].mesh, frame);

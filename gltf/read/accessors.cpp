@@ -154,7 +154,8 @@ std::vector<uint32_t> decode_indices(const tinygltf::Model& model, int index, st
     indices[i] = load_unsigned(view.data + i * view.stride, view.component_size());
     if (indices[i] >= vertex_count)
       throw Error(path + ": index " + std::to_string(indices[i]) + " passes the " +
-                  std::to_string(vertex_count) + " vertices");
+                  std::to_string(vertex_count) + " vertices (triangle " + std::to_string(i / 3) +
+                  "); export the mesh again");
   }
   return indices;
 }

@@ -215,7 +215,7 @@ std::vector<uint8_t> write(const GltfSource& source, const Rig& rig) {
   root["buffers"][0]["byteLength"] = bin.size();
 
   std::vector<uint8_t> bytes = gltf::glb_bytes(gltf::text_of(root), bin);
-  // What cannot be read back must not leave the house.
+  // A rig that our own reader refuses must not be written.
   read(bytes, "rig");
   return bytes;
 }

@@ -3,6 +3,7 @@
 // The energies of a face and their gradients: the formulas of sim/formulas on batches of sixteen elements;
 // see sim/realtime/loops.h.
 
+#include "sim/formulas/activation_force.h"
 #include "sim/formulas/elements.h"
 #include "sim/lanes/lanes.h"
 #include "sim/realtime/loops_common.h"
@@ -179,7 +180,8 @@ Lanes fibre_energy(const Packed& packed, const Boundary& boundary, const float* 
   Lanes energy = splat(0.0F);
   for (size_t b = 0; b < packed.fibre_batches; ++b) {
     const FibreBatch& f = packed.fibres[b];
-    const Lanes pull = positive(channel_values(boundary.values, f.channel)) * load(f.strength);
+    const Lanes pull =
+        formulas::activation_force(positive(channel_values(boundary.values, f.channel))) * load(f.strength);
     if (!any_below(splat(0.0F), pull)) continue;
     const FibrePointBatch* points = packed.fibre_points + f.first;
     // First where they run and how long they are; each segment's direction is kept.

@@ -205,10 +205,10 @@ TEST(Muscles, PartsOfTheOrbicularisDoNotOverlap) {
 }
 
 TEST(Actuators, EveryMuscleAndTheJawEyesLidsLips) {
-  EXPECT_EQ(generic().actuators.size(), 2 * 53 + 3 + 2 * 7U);
+  EXPECT_EQ(generic().actuators.size(), 2 * 53 + 3 + 2 * 8U);
   for (const char* name :
        {"jaw_open", "jaw_forward", "jaw_lateral", "eye_yaw_left", "eye_pitch_right", "buccal_pressure_left",
-        "lip_roll_upper_right", "lid_upper_left", "lid_lower_right"})
+        "lip_roll_upper_right", "lip_seal_left", "lid_upper_left", "lid_lower_right"})
     EXPECT_NE(generic().actuator(name), nullptr) << name;
   EXPECT_EQ(generic().actuator("jaw_lateral")->minimum, -1.0);
   ASSERT_NE(generic().whole("orbicularis_oculi_left"), nullptr);

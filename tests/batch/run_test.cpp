@@ -20,62 +20,31 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Does what the head's content says. Every build is noted, so that a test can count them.
-constexpr const char* stand_in = R"(#!/bin/bash
+constexpr const char* stand_in = R"sh(#!/bin/bash
 folder="$(dirname "$0")"
 case "$1" in
-  check) echo '{"rows": [{"name": "lips", "ok": true}, {"name": "lids", "ok": false}], "failed": 1}';
-exit 4;
-;
-  render) while [ "$1" != -o ];
-  do
-    shift;
-  done;
-  echo picture > "$2";
-  exit 0;
-  ;
-  esac head = "$2"; out="$4"
+  check) echo '{"rows": [{"name": "lips", "ok": true}, {"name": "lids", "ok": false}], "failed": 1}'; exit 4;;
+  render) while [ "$1" != -o ]; do shift; done; echo picture > "$2"; exit 0;;
+esac
+head="$2"; out="$4"
 echo "$(basename "$head")" >> "$folder/builds"
 case "$(cat "$head")" in
-  good) ;
-  ;
-  slow) sleep 0.3 ;
-  ;
-  poisoned) echo half > "$out";
-  kill - SEGV $$;
-  ;
-  killed) echo half > "$out";
-  kill - KILL $$;
-  ;
-  once) if [ ! -e "$folder/tried" ];
-  then touch "$folder/tried";
-  kill - KILL $$;
-  fi;
-  ;
-  hungry) exec python3 -c 'x = bytearray(4 << 30)' ;
-  ;
-  thirsty) echo '{"error": "out of memory: the input is too large for this machine", "exit": 1}';
-  exit 1;
-  ;
-  hanging) sleep 60 & wait ;
-  ;
-  stubborn) trap '' TERM;
-  while :;
-  do
-    sleep 0.1;
-  done;
-  ;
-  refused) echo "{\"error\": \"'$head': no face was found in 12 views; give landmarks\", \"exit\": 1}";
-  exit 1;
-  ;
-  broken) echo "fascia: internal error: index 7" >&2;
-  exit 3;
-  ;
-  empty) exit 0 ;
-  ;
+  good) ;;
+  slow) sleep 0.3 ;;
+  poisoned) echo half > "$out"; kill -SEGV $$;;
+  killed) echo half > "$out"; kill -KILL $$;;
+  once) if [ ! -e "$folder/tried" ]; then touch "$folder/tried"; kill -KILL $$; fi;;
+  hungry) exec python3 -c 'x = bytearray(4 << 30)' ;;
+  thirsty) echo '{"error": "out of memory: the input is too large for this machine", "exit": 1}'; exit 1;;
+  hanging) sleep 60 & wait ;;
+  stubborn) trap '' TERM; while :; do sleep 0.1; done;;
+  refused) echo "{\"error\": \"'$head': no face was found in 12 views; give landmarks\", \"exit\": 1}"; exit 1;;
+  broken) echo "fascia: internal error: index 7" >&2; exit 3;;
+  empty) exit 0 ;;
 esac
 echo "rig of $(basename "$head")" > "$out"
 echo '{"warnings": ["one thing"]}'
-)";
+)sh";
 
 class Batch : public ::testing::Test {
  protected:
@@ -123,12 +92,14 @@ class Batch : public ::testing::Test {
   void expect_no_leftovers() {
     EXPECT_TRUE(fs::is_empty(options.output / ".work"));
     for (const auto& entry : fs::directory_iterator(options.output))
-      if (entry.path().filename().string()[0] != '.')
-        for (const auto& file : fs::directory_iterator(entry.path()))
+      if (entry.path().filename().string()[0] != '.') {
+        for (const auto& file : fs::directory_iterator(entry.path())) {
           EXPECT_TRUE(
               std::set<std::string>({"rig.glb", "job.json", "build.json", "check.json", "thumbnail.png"})
                   .count(file.path().filename().string()))
               << file.path();
+        }
+      }
   }
 
   fs::path folder;

@@ -68,6 +68,14 @@ inline void expect_face_moves_as_anatomy_says(PosedFace& face) {
   EXPECT_GT(face.moved("buccale_left").norm(), 2.0) << "the cheeks follow";
   EXPECT_LT(face.moved("buccale_left").norm(), 30.0);
 
+  const auto lips_apart = [&] {
+    return (face.moved("labiale_superius") - face.moved("labiale_inferius")).norm();
+  };
+  face.pose({{"jaw_open", 0.5}});
+  const double open = lips_apart();
+  face.pose({{"jaw_open", 0.5}, {"lip_seal_left", 1}, {"lip_seal_right", 1}});
+  EXPECT_LT(lips_apart(), 0.4 * open) << "sealed lips stay together before an open jaw";
+
   face.pose({{"levator_palpebrae_superioris_left", 1}, {"levator_palpebrae_superioris_right", 1}});
   for (const char* lid : {"palpebrale_superius_left", "palpebrale_superius_right"}) {
     EXPECT_GT(face.moved(lid)[1], 0.5) << lid;

@@ -93,8 +93,8 @@ TEST(Lids, AFullBlinkShutsTheEyesAndGoesNoFarther) {
   }
 }
 
-/// Every third ARKit shape, then drives by chance: static poses, and steps in time that jump from one to the
-/// next.
+/// Every third ARKit shape, then random activations: static poses, and steps in time that jump from one to
+/// the next.
 SweptFace::State swept(SweptFace& face) {
   SweptFace::State all;
   const std::vector<std::string> shapes = face.shapes();

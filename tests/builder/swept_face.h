@@ -11,7 +11,7 @@
 
 namespace fascia::testing {
 
-/// A face of a rig driven by chance, and what is to be asked of it whatever drives it.
+/// A face of a rig under random activations, and what must hold whatever they are.
 class SweptFace {
  public:
   /// `level` is an index into the rig's levels of detail.
@@ -20,7 +20,7 @@ class SweptFace {
   /// The same; what faces what is read from `marks`, of the same columns.
   SweptFace(std::shared_ptr<const runtime::Asset> asset, size_t level, const rig::TissueLevel& marks);
 
-  /// A drive by chance: half of the time a few members of the ARKit set together, else a quarter of all
+  /// Random activations: half of the time a few members of the ARKit set together, else a quarter of all
   /// channels, each anywhere in its range. Stays as it is until the next.
   void draw(std::mt19937& random);
   /// More of a channel or a set's member, such as "arkit:jawOpen", as what drives it.

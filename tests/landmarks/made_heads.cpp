@@ -1,11 +1,11 @@
 #include "tests/landmarks/made_heads.h"
 
-#include <meshoptimizer.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <random>
+
+#include "tests/landmarks/retriangulated.h"
 
 namespace fascia::testing {
 
@@ -179,45 +179,14 @@ MadeHead reordered(MadeHead head, unsigned seed) {
 }
 
 MadeHead subdivided(MadeHead head) {
-  for (formats::SceneMesh& mesh : head.scene.meshes) {
-    std::map<std::pair<int, int>, int> middles;
-    std::vector<Triangle> finer;
-    const auto middle = [&](int a, int b) {
-      const auto [at, is_new] =
-          middles.try_emplace({std::min(a, b), std::max(a, b)}, static_cast<int>(mesh.positions.size()));
-      if (is_new) {
-        const Vec3 between =
-            0.5 * (mesh.positions[static_cast<size_t>(a)] + mesh.positions[static_cast<size_t>(b)]);
-        mesh.positions.push_back(between);
-      }
-      return at->second;
-    };
-    for (const Triangle& t : mesh.triangles) {
-      const int x = middle(t[0], t[1]), y = middle(t[1], t[2]), z = middle(t[2], t[0]);
-      finer.insert(finer.end(), {{t[0], x, z}, {t[1], y, x}, {t[2], z, y}, {x, y, z}});
-    }
-    mesh.triangles = std::move(finer);
-  }
+  for (formats::SceneMesh& mesh : head.scene.meshes)
+    subdivide(mesh);
   head.name += " subdivided";
   return head;
 }
 
 MadeHead coarse(MadeHead head, int triangles) {
-  formats::SceneMesh& mesh = head.scene.meshes.front();
-  std::vector<float> positions;
-  std::vector<unsigned> indices;
-  for (const Vec3& p : mesh.positions)
-    for (int axis = 0; axis < 3; ++axis)
-      positions.push_back(static_cast<float>(p[axis]));
-  for (const Triangle& t : mesh.triangles)
-    for (int v : t)
-      indices.push_back(static_cast<unsigned>(v));
-  indices.resize(meshopt_simplify(indices.data(), indices.data(), indices.size(), positions.data(),
-                                  mesh.positions.size(), 12, static_cast<size_t>(3 * triangles), 1.0f));
-  mesh.triangles.clear();
-  for (size_t i = 0; i + 2 < indices.size(); i += 3)
-    mesh.triangles.push_back(
-        {static_cast<int>(indices[i]), static_cast<int>(indices[i + 1]), static_cast<int>(indices[i + 2])});
+  simplify(head.scene.meshes.front(), static_cast<size_t>(triangles));
   head.scene.meshes.resize(1);
   head.name += " in " + std::to_string(triangles) + " triangles";
   return head;

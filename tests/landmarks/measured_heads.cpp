@@ -1,7 +1,5 @@
 #include "tests/landmarks/measured_heads.h"
 
-#include <meshoptimizer.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <fstream>
@@ -12,6 +10,7 @@
 #include "builder/landmarks/samples.h"
 #include "builder/spatial/surface_query.h"
 #include "formats/landmark_file.h"
+#include "tests/landmarks/retriangulated.h"
 #include "tests/paths/paths.h"
 
 namespace fascia::testing {
@@ -141,47 +140,17 @@ MeasuredHead decimated(MeasuredHead head, int triangles) {
   for (const formats::SceneMesh& mesh : head.scene.meshes)
     total += mesh.triangles.size();
   const double ratio = static_cast<double>(triangles) / static_cast<double>(total);
-  for (formats::SceneMesh& mesh : head.scene.meshes) {
-    std::vector<float> positions;
-    std::vector<unsigned> indices;
-    for (const Vec3& p : mesh.positions)
-      for (int axis = 0; axis < 3; ++axis)
-        positions.push_back(static_cast<float>(p[axis]));
-    for (const Triangle& t : mesh.triangles)
-      for (int v : t)
-        indices.push_back(static_cast<unsigned>(v));
-    const size_t goal =
-        std::max<size_t>(12, static_cast<size_t>(ratio * static_cast<double>(mesh.triangles.size()))) * 3;
-    indices.resize(meshopt_simplify(indices.data(), indices.data(), indices.size(), positions.data(),
-                                    mesh.positions.size(), 12, goal, 1.0f));
-    mesh.triangles.clear();
-    for (size_t i = 0; i + 2 < indices.size(); i += 3)
-      mesh.triangles.push_back(
-          {static_cast<int>(indices[i]), static_cast<int>(indices[i + 1]), static_cast<int>(indices[i + 2])});
-  }
+  for (formats::SceneMesh& mesh : head.scene.meshes)
+    simplify(mesh,
+             std::max<size_t>(12, static_cast<size_t>(ratio * static_cast<double>(mesh.triangles.size()))));
   head.name += " decimated";
   return head;
 }
 
 MeasuredHead subdivided(MeasuredHead head, int rounds) {
   formats::SceneMesh& mesh = head.scene.meshes[head_mesh(head.scene)];
-  for (int round = 0; round < rounds; ++round) {
-    std::map<std::pair<int, int>, int> middles;
-    std::vector<Triangle> finer;
-    const auto middle = [&](int a, int b) {
-      const auto [at, is_new] =
-          middles.try_emplace({std::min(a, b), std::max(a, b)}, static_cast<int>(mesh.positions.size()));
-      if (is_new)
-        mesh.positions.push_back(
-            0.5 * (mesh.positions[static_cast<size_t>(a)] + mesh.positions[static_cast<size_t>(b)]));
-      return at->second;
-    };
-    for (const Triangle& t : mesh.triangles) {
-      const int x = middle(t[0], t[1]), y = middle(t[1], t[2]), z = middle(t[2], t[0]);
-      finer.insert(finer.end(), {{t[0], x, z}, {t[1], y, x}, {t[2], z, y}, {x, y, z}});
-    }
-    mesh.triangles = std::move(finer);
-  }
+  for (int round = 0; round < rounds; ++round)
+    subdivide(mesh);
   mesh.uvs.clear();
   head.name += " subdivided";
   return head;

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "sim/face_model.h"
+#include "sim/formulas/activation_force.h"
 #include "tests/sim/patch.h"
 
 namespace fascia::sim {
@@ -219,6 +220,16 @@ TEST(Lattice, FaultsAreNamed) {
   level = testing::make_patch({});
   level.spring_stiffness.pop_back();
   EXPECT_FALSE(FaceModel(lattice_of(level), {}).valid());
+}
+
+TEST(ActivationForce, RisesFromNoneToTheWhole) {
+  EXPECT_EQ(formulas::activation_force(0.0), 0.0);
+  EXPECT_DOUBLE_EQ(formulas::activation_force(1.0), 1.0);
+  for (double a = 0.0; a < 1.0; a += 0.1) {
+    EXPECT_LT(formulas::activation_force(a), formulas::activation_force(a + 0.1));
+    EXPECT_NEAR(formulas::activation_force_slope(a),
+                (formulas::activation_force(a + 1e-6) - formulas::activation_force(a - 1e-6)) / 2e-6, 1e-8);
+  }
 }
 
 }  // namespace

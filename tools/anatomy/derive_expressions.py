@@ -10,8 +10,6 @@ import json
 import sys
 from pathlib import Path
 
-from fit_expressions import write
-
 FIGURES = Path(__file__).resolve().parent.parent.parent / "anatomy/figures"
 
 
@@ -23,6 +21,20 @@ def combined(recipe, arkit, limits):
             for channel, value in arkit[name].items():
                 total[channel] = total.get(channel, 0.0) + weight * value
     return {n: round(max(-limits(n), min(limits(n), v)), 3) for n, v in total.items() if abs(v) >= 0.005}
+
+
+def write(path, table):
+    """One expression a line."""
+    lines = ["{"]
+    for key, value in table.items():
+        if key == "expressions":
+            continue
+        lines.append(f"  {json.dumps(key)}: {json.dumps(value, ensure_ascii=False)},")
+    lines.append('  "expressions": [')
+    rows = [f"    {json.dumps(e, ensure_ascii=False)}" for e in table["expressions"]]
+    lines.append(",\n".join(rows))
+    lines += ["  ]", "}"]
+    path.write_text("\n".join(lines) + "\n")
 
 
 def main(folder):

@@ -1,0 +1,85 @@
+#include "app/model/command_line.h"
+
+#include <cstdio>
+
+namespace fascia::app {
+
+namespace {
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+void add_pose(CommandLine& command, const DocumentState& state) {
+  for (const auto& [name, value] : state.pose) {
+    command.emplace_back("--set");
+    command.push_back(name + "=" + number(value));
+  }
+}
+
+bool is_plain(const std::string& word) {
+  return !word.empty() && word.find_first_not_of(
+                              "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+                              "_-+=:,./@%") == std::string::npos;
+}
+
+}  // namespace
+
+CommandLine build_command(const DocumentState& state, const std::filesystem::path& edits,
+                          const std::filesystem::path& rig) {
+  CommandLine command = {"build", state.head, "-o", rig.string()};
+  if (!edits.empty() && !state.edits.empty()) command.insert(command.end(), {"--edits", edits.string()});
+  return command;
+}
+
+CommandLine pose_command(const DocumentState& state, const std::filesystem::path& rig,
+                         const std::filesystem::path& output) {
+  CommandLine command = {"pose", rig.string()};
+  add_pose(command, state);
+  command.insert(command.end(), {"-o", output.string()});
+  return command;
+}
+
+CommandLine play_command(const TakeChoice& take, const std::filesystem::path& rig, double fps,
+                         const std::filesystem::path& output) {
+  CommandLine command = {"play", rig.string(), "--curves", take.file, "--fps", number(fps)};
+  if (take.begin > 0.0) command.insert(command.end(), {"--from", number(take.begin)});
+  if (take.end >= 0.0) command.insert(command.end(), {"--to", number(take.end)});
+  command.insert(command.end(), {"-o", output.string()});
+  return command;
+}
+
+CommandLine bake_command(const std::filesystem::path& rig, const std::string& shapes,
+                         const std::filesystem::path& output) {
+  return {"bake", rig.string(), "--shapes", shapes, "-o", output.string()};
+}
+
+CommandLine render_command(const DocumentState& state, const std::filesystem::path& rig,
+                           const std::string& layers, const std::string& view, int size,
+                           const std::filesystem::path& output) {
+  CommandLine command = {"render", rig.string()};
+  add_pose(command, state);
+  command.insert(command.end(),
+                 {"--layers", layers, "--view", view, "--size", std::to_string(size), "-o", output.string()});
+  return command;
+}
+
+std::string shell_text(const CommandLine& command) {
+  std::string text = "fascia";
+  for (const std::string& word : command) {
+    text += ' ';
+    if (is_plain(word)) {
+      text += word;
+      continue;
+    }
+    text += '\'';
+    for (const char c : word)
+      text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    text += '\'';
+  }
+  return text;
+}
+
+}  // namespace fascia::app

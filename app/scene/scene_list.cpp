@@ -1,0 +1,221 @@
+#include "app/scene/scene_list.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+
+#include "view/smooth_normals.h"
+
+namespace fascia::app {
+
+namespace {
+
+const Vec3 skin_colour(0.86, 0.69, 0.59), bone_colour(0.90, 0.86, 0.75), tooth_colour(0.95, 0.94, 0.90),
+    mucosa_colour(0.72, 0.38, 0.36), hair_colour(0.20, 0.15, 0.12), smas_colour(0.86, 0.62, 0.52);
+
+std::vector<Vec3> points_of(const std::vector<float>& flat) {
+  std::vector<Vec3> points;
+  points.reserve(flat.size() / 3);
+  for (size_t i = 0; i + 2 < flat.size(); i += 3)
+    points.emplace_back(flat[i], flat[i + 1], flat[i + 2]);
+  return points;
+}
+
+bool starts_with(const std::string& text, const char* start) {
+  return text.rfind(start, 0) == 0;
+}
+
+bool is_eye(const std::string& part) {
+  return part == "eye_left" || part == "eye_right";
+}
+
+/// Cards that only their textures' transparency makes thin; plain, they would hide the face.
+bool is_card(const std::string& part) {
+  return part == "eye_surround" || part == "lashes" || part == "hair";
+}
+
+/// What is neither eye, mouth, hair nor card.
+bool is_skin(const std::string& part) {
+  return !is_eye(part) && !is_card(part) && part != "brows" && part != "tongue" && part != "mouth_interior" &&
+         !starts_with(part, "teeth") && !starts_with(part, "gums");
+}
+
+void set_look(view::DrawSurface& surface, const std::string& part) {
+  if (is_eye(part)) {
+    surface.shading = view::Shading::eye;
+  } else if (starts_with(part, "teeth")) {
+    surface.shading = view::Shading::tooth;
+    surface.colour = tooth_colour;
+  } else if (starts_with(part, "gums") || part == "tongue" || part == "mouth_interior") {
+    surface.shading = view::Shading::mucosa;
+    surface.colour = mucosa_colour;
+  } else if (part == "brows") {
+    surface.shading = view::Shading::hair;
+    surface.colour = hair_colour;
+  } else {
+    surface.shading = view::Shading::skin;
+    surface.colour = skin_colour;
+  }
+}
+
+void add_surface(view::DrawList& list, const FaceSurface& from, const Mat4& place, view::Shading shading,
+                 const Vec3& colour, double opacity) {
+  if (from.triangles.empty()) return;
+  view::DrawSurface surface;
+  surface.positions.reserve(from.positions.size());
+  for (const Vec3& p : from.positions)
+    surface.positions.push_back(transform_point(place, p));
+  surface.triangles = from.triangles;
+  surface.shading = shading;
+  surface.colour = colour;
+  surface.opacity = opacity;
+  list.surfaces.push_back(std::move(surface));
+}
+
+/// The frame's directions for the iris: the third axis is the gaze.
+std::vector<Vec3> eye_coordinates(const FacePart& part, const rig::Eye& eye) {
+  const Vec3 gaze = eye.gaze.cast<double>(), centre = eye.centre.cast<double>();
+  const Vec3 across = Vec3::UnitY().cross(gaze).normalized(), up = gaze.cross(across);
+  std::vector<Vec3> coordinates;
+  for (const Vec3& p : points_of(part.rest)) {
+    const Vec3 d = (p - centre).normalized();
+    coordinates.emplace_back(d.dot(across), d.dot(up), d.dot(gaze));
+  }
+  return coordinates;
+}
+
+}  // namespace
+
+Vec3 heat_colour(double share) {
+  static const std::array<Vec3, 6> stops = {Vec3(0.23, 0.20, 0.42), Vec3(0.42, 0.20, 0.56),
+                                            Vec3(0.74, 0.22, 0.45), Vec3(0.93, 0.41, 0.24),
+                                            Vec3(0.99, 0.68, 0.22), Vec3(0.98, 0.97, 0.65)};
+  const double at = std::clamp(std::isfinite(share) ? share : 0.0, 0.0, 1.0) * (stops.size() - 1);
+  const auto low = std::min(static_cast<size_t>(at), stops.size() - 2);
+  return stops[low] + (at - static_cast<double>(low)) * (stops[low + 1] - stops[low]);
+}
+
+Vec3 muscle_colour(double activation) {
+  const Vec3 slack(0.56, 0.20, 0.18), tight(1.0, 0.42, 0.25);
+  return slack + std::clamp(activation, 0.0, 1.0) * (tight - slack);
+}
+
+SceneStore::SceneStore(const FaceAsset& asset, const rig::Rig& rig) : asset_(asset) {
+  std::vector<Vec3> rest;
+  for (size_t p = 0; p < asset.parts.size(); ++p) {
+    const FacePart& part = asset.parts[p];
+    const rig::Eye& eye = part.part == "eye_left" ? rig.skull.eye_left : rig.skull.eye_right;
+    eye_coordinates_.push_back(is_eye(part.part) && eye.radius > 0.0F ? eye_coordinates(part, eye)
+                                                                      : std::vector<Vec3>());
+    if (!is_skin(part.part)) continue;
+    skin_parts_.push_back(p);
+    const int first = static_cast<int>(rest.size());
+    for (const Triangle& t : part.triangles)
+      skin_triangles_.push_back({t[0] + first, t[1] + first, t[2] + first});
+    const std::vector<Vec3> points = points_of(part.rest);
+    rest.insert(rest.end(), points.begin(), points.end());
+  }
+  skin_seams_ = std::make_shared<const std::vector<int>>(view::seams_of(rest));
+}
+
+void SceneStore::add_skin(view::DrawList& list, const FaceFrame& frame, const SceneOptions& options) const {
+  view::DrawSurface surface;
+  set_look(surface, "skin");
+  surface.triangles = skin_triangles_;
+  surface.seams = skin_seams_;
+  const bool has_heat = options.distances != nullptr, has_strain = !has_heat && options.layers.strain;
+  const double strongest = 0.3;  // compression, share of the length
+  for (const size_t part : skin_parts_) {
+    const std::vector<Vec3> points = points_of(frame.positions[part]);
+    surface.positions.insert(surface.positions.end(), points.begin(), points.end());
+    if (!has_heat && !has_strain) continue;
+    surface.shading = view::Shading::data;
+    for (size_t v = 0; v < points.size(); ++v) {
+      double share = 0.0;
+      if (has_heat && v < (*options.distances)[part].size())
+        share = static_cast<double>((*options.distances)[part][v]) / options.scale;
+      if (has_strain && part < frame.compression.size() && 3 * v + 2 < frame.compression[part].size())
+        share = static_cast<double>(
+                    Eigen::Map<const Eigen::Vector3f>(frame.compression[part].data() + 3 * v).norm()) /
+                strongest;
+      surface.vertex_colours.push_back(heat_colour(share));
+    }
+  }
+  if (!has_heat && !has_strain && options.layers.skin_opacity < 0.999) {
+    surface.opacity = options.layers.skin_opacity;
+    surface.is_two_sided = false;
+  }
+  list.surfaces.push_back(std::move(surface));
+}
+
+void SceneStore::add_part(view::DrawList& list, size_t part, const FaceFrame& frame) const {
+  const FacePart& source = asset_.parts[part];
+  view::DrawSurface surface;
+  set_look(surface, source.part);
+  surface.positions = points_of(frame.positions[part]);
+  surface.normals = points_of(frame.normals[part]);
+  surface.triangles = source.triangles;
+  surface.eye_coordinates = eye_coordinates_[part];
+  list.surfaces.push_back(std::move(surface));
+}
+
+void SceneStore::add_muscles(view::DrawList& list, const FaceFrame& frame,
+                             const SceneOptions& options) const {
+  std::map<std::string, std::pair<view::DrawLines, double>> muscles;
+  for (size_t f = 0; f + 1 < asset_.fibre_offsets.size(); ++f) {
+    const std::string& name = asset_.fibre_muscles[f];
+    if (options.hidden_muscles.count(name)) continue;
+    const uint32_t channel = asset_.fibre_channels[f];
+    auto& [lines, activation] = muscles[name];
+    activation = channel < frame.values.size() ? static_cast<double>(frame.values[channel]) : 0.0;
+    lines.lines.emplace_back();
+    for (size_t k = asset_.fibre_offsets[f]; k < asset_.fibre_offsets[f + 1]; ++k)
+      lines.lines.back().push_back(
+          Eigen::Map<const Eigen::Vector3f>(frame.fibre_points.data() + 3 * k).cast<double>());
+  }
+  for (auto& [name, muscle] : muscles) {
+    const bool is_selected = name == options.selected_muscle;
+    muscle.first.colour = is_selected ? Vec3(1.0, 0.85, 0.35) : muscle_colour(muscle.second);
+    muscle.first.width = is_selected ? 5.0 : 3.0 + 2.0 * std::clamp(muscle.second, 0.0, 1.0);
+    list.lines.push_back(std::move(muscle.first));
+  }
+}
+
+view::DrawList SceneStore::list(const FaceFrame& frame, const SceneOptions& options) const {
+  view::DrawList list;
+  const Mat4 still = Mat4::Identity(), jaw = frame.jaw.cast<double>();
+  const Layers& layers = options.layers;
+  for (size_t part = 0; part < asset_.parts.size(); ++part) {
+    const std::string& kind = asset_.parts[part].part;
+    if (is_skin(kind) || is_card(kind)) continue;
+    if (layers.skin || is_eye(kind)) add_part(list, part, frame);
+  }
+  if (layers.skin && !skin_parts_.empty()) add_skin(list, frame, options);
+  if (layers.skull) {
+    add_surface(list, asset_.cranium, still, view::Shading::bone, bone_colour, 1.0);
+    add_surface(list, asset_.mandible, jaw, view::Shading::bone, bone_colour, 1.0);
+    add_surface(list, asset_.teeth_upper, still, view::Shading::tooth, tooth_colour, 1.0);
+    add_surface(list, asset_.teeth_lower, jaw, view::Shading::tooth, tooth_colour, 1.0);
+  }
+  if (layers.smas)
+    add_surface(list, asset_.smas, still, view::Shading::mucosa, smas_colour,
+                layers.muscles || layers.skull ? 0.5 : 1.0);
+  if (layers.muscles) add_muscles(list, frame, options);
+  return list;
+}
+
+std::vector<std::vector<float>> distances_between(const FaceFrame& frame,
+                                                  const std::vector<std::vector<float>>& reference) {
+  std::vector<std::vector<float>> distances(frame.positions.size());
+  for (size_t part = 0; part < std::min(frame.positions.size(), reference.size()); ++part) {
+    const std::vector<float>&a = frame.positions[part], &b = reference[part];
+    if (a.size() != b.size()) continue;
+    for (size_t i = 0; i + 2 < a.size(); i += 3)
+      distances[part].push_back(std::hypot(a[i] - b[i], a[i + 1] - b[i + 1], a[i + 2] - b[i + 2]));
+  }
+  return distances;
+}
+
+}  // namespace fascia::app

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "app/engine/face_session.h"
+#include "app/model/settings.h"
+#include "rig/model/rig.h"
+#include "view/scene.h"
+
+namespace fascia::app {
+
+/// What the picture shows besides the face itself.
+struct SceneOptions {
+  Layers layers;
+  std::string selected_muscle;           ///< drawn bright; empty: none
+  std::set<std::string> hidden_muscles;  ///< by the name of the muscle
+  /// Distances to colour the skin by, metres, one list a part; empty: as skin.
+  const std::vector<std::vector<float>>* distances = nullptr;
+  double scale = 0.005;  ///< metres at the hot end
+};
+
+/// Colour of a share from 0 to 1 of the heat map, sRGB: the figures of matplotlib's "inferno", lightened at
+/// its dark end.
+Vec3 heat_colour(double share);
+
+/// The colour of a muscle that contracts by `activation`, 0..1.
+Vec3 muscle_colour(double activation);
+
+/// What does not change while a rig is shown: colours of the eyes, skin without transparent cards.
+class SceneStore {
+ public:
+  SceneStore(const FaceAsset& asset, const rig::Rig& rig);
+
+  /// The face as it stands in `frame`, ready to be drawn.
+  view::DrawList list(const FaceFrame& frame, const SceneOptions& options) const;
+
+ private:
+  void add_skin(view::DrawList& list, const FaceFrame& frame, const SceneOptions& options) const;
+  void add_part(view::DrawList& list, size_t part, const FaceFrame& frame) const;
+  void add_muscles(view::DrawList& list, const FaceFrame& frame, const SceneOptions& options) const;
+
+  const FaceAsset& asset_;
+  std::vector<std::vector<Vec3>> eye_coordinates_;  ///< one list a part
+  /// The parts that are skin as one surface: groups of a file share their borders' normals.
+  std::vector<size_t> skin_parts_;
+  std::vector<Triangle> skin_triangles_;
+  std::shared_ptr<const std::vector<int>> skin_seams_;
+};
+
+/// Distance of every vertex of `frame` from `reference`, metres, one list a part; of parts whose counts
+/// differ, none.
+std::vector<std::vector<float>> distances_between(const FaceFrame& frame,
+                                                  const std::vector<std::vector<float>>& reference);
+
+}  // namespace fascia::app

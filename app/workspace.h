@@ -1,0 +1,205 @@
+#pragma once
+
+#include <future>
+#include <list>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/engine/build_task.h"
+#include "app/engine/simulation.h"
+#include "app/engine/tool_job.h"
+#include "app/live/receiver.h"
+#include "app/model/command_line.h"
+#include "app/model/document.h"
+#include "app/model/orbit.h"
+#include "app/model/picking.h"
+#include "app/model/settings.h"
+#include "builder/spatial/surface_query.h"
+
+namespace fascia::app {
+
+/// A line that appears in the window for some seconds.
+struct Notice {
+  enum class Kind { info, warning, error };
+  std::string text;
+  Kind kind = Kind::info;
+  double age = 0.0;  ///< seconds
+};
+
+/// A warning of the builder or a row of the check that failed.
+struct Warning {
+  std::string text;
+  std::string landmark;       ///< the first it names; empty: none
+  std::optional<Vec3> place;  ///< where on the face at rest, metres
+};
+
+enum class Reference { none, rest, before, bullet, converged, file };
+
+/// With what the face is compared, and how that is shown.
+struct Comparison {
+  Reference reference = Reference::none;
+  bool has_heat = true, is_side_by_side = false;
+  double scale_mm = 5.0;  ///< where the heat map ends
+  std::string file;
+};
+
+/// The timeline's own state.
+struct Playback {
+  bool is_playing = false, is_recording = false;
+  double time = 0.0;                                    ///< seconds in the take
+  std::vector<std::map<std::string, double>> recorded;  ///< the pose in every sixtieth of a second
+};
+
+/// Skin held by the mouse.
+struct Poke {
+  uint32_t part = 0, vertex = 0;
+  Vec3 target = Vec3::Zero();  ///< metres
+  std::vector<std::pair<uint32_t, double>> grip;
+};
+
+enum class Gravity { upright, lying, face_down, upside_down };
+
+/// Everything behind the window, and every command of it, without a pixel: panels, keys and scripts call the
+/// same functions. update() lets time pass and never waits for anything.
+class Workspace {
+ public:
+  struct Places {
+    std::filesystem::path state;  ///< folder of settings, autosave, built rigs
+    std::filesystem::path tool;   ///< the `fascia` program
+  };
+  Workspace(Places places, Simulation::Pace pace);
+  ~Workspace();
+
+  // --- Files
+
+  /// Opens whatever it is: a head (built in the background), a rig, a recording, an edits file.
+  void open(const std::filesystem::path& file);
+  /// Opens the head that comes with Fascia.
+  void open_embedded_head();
+  /// Builds the head again with the present edits.
+  void rebuild();
+  void cancel_build();
+  bool is_building() const { return build_ != nullptr; }
+  BuildTask::Progress build_progress() const;
+  /// Continues where a crash ended the last session.
+  void restore(const DocumentState& state);
+  void load_take(const std::filesystem::path& file);
+  void load_edits(const std::filesystem::path& file);
+  /// Saves the edits, or copies the rig as it is built. False, with a notice, when that fails.
+  bool save_edits(const std::filesystem::path& file);
+  bool save_rig(const std::filesystem::path& file);
+
+  // --- The document
+
+  const DocumentState& state() const { return history_.state(); }
+  const History<DocumentState>& history() const { return history_; }
+  void commit(DocumentState next, const std::string& label, const std::string& gesture = {});
+  /// A drag has ended: what comes next is another step.
+  void seal();
+  void undo();
+  void redo();
+  /// Sets a value of the pose, and of the other side in symmetric editing.
+  void set_value(const std::string& name, double value, bool is_gesture);
+  double value(const std::string& name) const;
+  void clear_pose();
+  /// Moves a landmark to a point of the skin at rest, metres; its mirror image too in symmetric editing.
+  void move_landmark(const std::string& name, const Vec3& point, bool is_gesture);
+  void release_landmark(const std::string& name);
+  /// Where a landmark is at rest, edits included, metres.
+  std::optional<Vec3> landmark(const std::string& name) const;
+  /// The same on the face as it stands.
+  std::optional<Vec3> landmark_now(const std::string& name) const;
+  /// The same with the skin it lies on: `position` and `normal` as the face stands, `rest` at rest.
+  std::optional<SkinHit> landmark_hold(const std::string& name) const;
+  bool has_unbuilt_edits() const { return rig && state().edits != built_edits_; }
+
+  // --- Jobs
+
+  /// Runs a command of the tool in the background.
+  void run(const CommandLine& command, const std::string& title);
+  /// Exports the trimmed piece of the take.
+  void export_take(const std::filesystem::path& output, double fps);
+  void run_check();
+  const std::list<std::unique_ptr<ToolJob>>& jobs() const { return jobs_; }
+
+  // --- Live input, comparison, motion
+
+  void listen(LiveReceiver::Protocol protocol, uint16_t port);
+  void stop_listening() { live.reset(); }
+  void compare_with(Reference reference, const std::string& file = {});
+  void start_recording();
+  void stop_recording();
+  void shake_head() { shake_ = 0.0; }
+  /// How far the head is turned by a shake now, degrees about +Y.
+  double shake_yaw() const;
+
+  /// Takes hold of the skin, moves the hand, lets go.
+  void poke(const SkinHit& hit);
+  void pull(const Vec3& target);
+  void let_go();
+  const std::optional<Poke>& held() const { return poke_; }
+
+  /// Lets time pass.
+  void update(double seconds);
+  /// True when nothing is on its way: no build, no job, no motion.
+  bool is_idle() const;
+  /// Counts up with everything that changes the picture of the face.
+  uint64_t picture_stamp() const;
+
+  void notify(const std::string& text, Notice::Kind kind = Notice::Kind::info);
+  /// Shows a point of the face at rest.
+  void look_at(const Vec3& point);
+
+  // --- What panels read, and set where it is theirs
+
+  Settings settings;
+  std::optional<DocumentState> left_behind;  ///< by a session that ended in a crash
+  std::optional<LoadedRig> rig;
+  std::unique_ptr<Simulation> simulation, reference;
+  std::shared_ptr<const Take> take;
+  std::vector<std::vector<float>> reference_positions;  ///< of Reference::rest and ::file, one a part
+  Comparison comparison;
+  Playback playback;
+  std::unique_ptr<LiveReceiver> live;
+  Gravity gravity = Gravity::upright;
+  std::vector<Warning> warnings;
+  std::vector<Notice> notices;
+  Orbit orbit;
+  std::string selected_landmark, selected_muscle;
+  std::set<std::string> hidden_muscles;
+  bool rebuilds_by_itself = true;
+  bool orbit_moves = false;  ///< the camera glides
+  std::shared_ptr<const FaceFrame> frame, reference_frame;
+
+ private:
+  void take_build();
+  void take_jobs();
+  void adopt(LoadedRig loaded);
+  void read_check(const ToolJob& job);
+  void submit(double seconds);
+  Warning warning_of(const std::string& text) const;
+  std::vector<std::vector<float>> positions_from(const std::string& file) const;
+
+  Places places_;
+  Simulation::Pace pace_;
+  History<DocumentState> history_;
+  Autosave autosave_;
+  std::unique_ptr<BuildTask> build_;
+  std::vector<std::unique_ptr<BuildTask>> given_up_;
+  std::list<std::unique_ptr<ToolJob>> jobs_;
+  std::future<std::unique_ptr<Simulation>> coming_reference_;
+  std::optional<LoadedRig> before_;
+  std::optional<spatial::SurfaceQuery> skin_;
+  std::string opened_;  ///< what the build under way was opened as; empty: a rebuild
+  nlohmann::ordered_json built_edits_ = nlohmann::ordered_json::object(), building_edits_, failed_edits_;
+  mutable std::map<std::string, SkinHit> holds_;  ///< the skin under each landmark, found once
+  std::optional<Poke> poke_;
+  std::optional<double> shake_;
+  double since_edit_ = 0.0, since_save_ = 0.0;
+  uint32_t resets_ = 0;
+  uint64_t changes_ = 0;
+};
+
+}  // namespace fascia::app

@@ -1,0 +1,127 @@
+#include "builder/landmarks/symmetry.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace fascia::landmarks {
+namespace {
+
+std::string other_side(const std::string& name) {
+  return name.ends_with("_left") ? name.substr(0, name.size() - 4) + "right" : std::string();
+}
+
+/// Calls `visit` for the landmarks of each pair, left first.
+template <class Landmarks, class Visit>
+void for_each_pair(Landmarks& landmarks, Visit visit) {
+  for (auto& [name, left] : landmarks)
+    if (const auto right = landmarks.find(other_side(name)); right != landmarks.end())
+      visit(left, right->second);
+}
+
+/// Places on the skin among the landmarks: these, and middles between neighbours by name, both sides alike.
+std::vector<Vec3> places_of(const std::map<std::string, SkinLandmark>& landmarks,
+                            const spatial::SurfaceQuery& skin) {
+  constexpr double off = 0.006;  // metres: what is farther from the skin is beside the mesh
+  std::vector<Vec3> lefts, rights, places;
+  for_each_pair(landmarks, [&](const SkinLandmark& left, const SkinLandmark& right) {
+    lefts.push_back(left.position);
+    rights.push_back(right.position);
+  });
+  for (const std::vector<Vec3>* side : {&lefts, &rights})
+    for (size_t i = 0; i < side->size(); ++i)
+      for (const size_t step : {size_t{0}, size_t{1}, size_t{5}}) {
+        const Vec3 p = 0.5 * ((*side)[i] + (*side)[(i + step) % side->size()]);
+        if (const auto hit = skin.closest(p, off); hit.found()) places.push_back(hit.position);
+      }
+  return places;
+}
+
+/// A millimetre in proportion to the face.
+double unit_of(const std::map<std::string, SkinLandmark>& landmarks) {
+  const auto left = landmarks.find("exocanthion_left"), right = landmarks.find("exocanthion_right");
+  if (left == landmarks.end() || right == landmarks.end()) return 0.001;
+  constexpr double adult = 0.09;  // metres between the outer canthi (Farkas 1994)
+  return 0.001 * (left->second.position - right->second.position).norm() / adult;
+}
+
+}  // namespace
+
+std::optional<MirrorPlane> mirror_plane(const std::map<std::string, SkinLandmark>& landmarks,
+                                        const spatial::SurfaceQuery& skin) {
+  constexpr int rounds = 12;
+  constexpr double within = 8.0, alike = 0.35;  // millimetres of an adult's face
+  MirrorPlane plane;
+  Vec3 across = Vec3::Zero(), middle = Vec3::Zero();
+  double pairs = 0.0;
+  for_each_pair(landmarks, [&](const SkinLandmark& left, const SkinLandmark& right) {
+    across += left.position - right.position;
+    middle += 0.5 * (left.position + right.position);
+    pairs += 1.0;
+  });
+  if (pairs < 3.0 || !(across.norm() > 0.0)) return {};
+  plane.normal = across.normalized();
+  plane.point = middle / pairs;
+  const double unit = unit_of(landmarks);
+  const std::vector<Vec3> places = places_of(landmarks, skin);
+  std::vector<double> apart;
+  for (int round = 0; round < rounds; ++round) {
+    Vec3 sum = Vec3::Zero(), middles = Vec3::Zero();
+    double found = 0.0;
+    apart.clear();
+    for (const Vec3& p : places) {
+      const Vec3 image = plane.image(p);
+      const auto hit = skin.closest(image, within * unit);
+      if (!hit.found()) continue;
+      const Vec3 way = p - hit.position;
+      sum += way.dot(plane.normal) > 0.0 ? way : Vec3(-way);
+      middles += 0.5 * (p + hit.position);
+      found += 1.0;
+      apart.push_back(hit.distance);
+    }
+    if (found < 0.8 * static_cast<double>(places.size()) || found < 12.0) return {};
+    plane.normal = sum.normalized();
+    plane.point = middles / found;
+  }
+  const auto most = apart.begin() + static_cast<std::ptrdiff_t>(9 * apart.size() / 10);
+  std::nth_element(apart.begin(), most, apart.end());
+  if (*most > alike * unit) return {};
+  return plane;
+}
+
+int make_symmetric(const MirrorPlane& plane, const spatial::SurfaceQuery& skin,
+                   std::map<std::string, SkinLandmark>& landmarks) {
+  const double near = 0.6 * unit_of(landmarks), far = 5.0 * unit_of(landmarks);
+  int moved = 0;
+  // Beside the mesh, as a mask's ears are, a landmark is as far from the skin as it was.
+  const auto settled = [&](const Vec3& p, const SkinLandmark& before) -> std::optional<Vec3> {
+    const auto was = skin.closest(before.position, near);
+    if (!was.found()) return p;
+    const auto hit = skin.closest(p, near);
+    if (!hit.found()) return {};
+    return hit.position;
+  };
+  for_each_pair(landmarks, [&](SkinLandmark& left, SkinLandmark& right) {
+    if (left.is_given || right.is_given) return;
+    const Vec3 image = plane.image(right.position);
+    if ((left.position - image).norm() > far) return;
+    const Vec3 mean = 0.5 * (left.position + image);
+    const auto here = settled(mean, left), there = settled(plane.image(mean), right);
+    if (!here || !there) return;
+    left.position = *here;
+    right.position = *there;
+    moved += 2;
+  });
+  for (auto& [name, landmark] : landmarks) {
+    if (name.ends_with("_left") || name.ends_with("_right") || landmark.is_given) continue;
+    const Vec3 p = 0.5 * (landmark.position + plane.image(landmark.position));
+    if ((p - landmark.position).norm() > far) continue;
+    if (const auto here = settled(p, landmark)) {
+      landmark.position = *here;
+      ++moved;
+    }
+  }
+  return moved;
+}
+
+}  // namespace fascia::landmarks

@@ -1,0 +1,38 @@
+#!/usr/bin/env bash
+# Draws the pictures of README.md and docs/ anew: scripts/figures.sh [FASCIA] (default build/bin/fascia).
+set -euo pipefail
+cd "$(dirname "$0")/.."
+fascia=$(realpath "${1:-build/bin/fascia}")
+folder=docs/figures
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+rig=out/rig.glb
+if [ ! -e "$rig" ]; then
+  "$fascia" demo --out "$work/demo" --quiet
+  rig=$work/demo/rig.glb
+fi
+
+draw() {  # file, render's options
+  "$fascia" render "$rig" --quiet -o "$1" "${@:2}"
+}
+smile=(--set arkit:mouthSmileLeft=0.9 --set arkit:mouthSmileRight=0.9 --set arkit:cheekSquintLeft=0.5 --set arkit:cheekSquintRight=0.5)
+surprise=(--set arkit:browInnerUp=1 --set arkit:browOuterUpLeft=1 --set arkit:browOuterUpRight=1 --set arkit:eyeWideLeft=0.8
+  --set arkit:eyeWideRight=0.8 --set arkit:jawOpen=0.4)
+
+# README: skin, half of it taken off, skin as glass, an expression.
+draw "$work/1.png" --size 480x600 --view three-quarter --camera -8,0,1.04
+draw "$work/2.png" --size 480x600 --layers skin,skull,muscles,eyes,teeth --reveal left "${smile[@]}"
+draw "$work/3.png" --size 480x600 --layers skin,skull,muscles,eyes,teeth --view three-quarter --camera -60,0,1.04 "${smile[@]}"
+draw "$work/4.png" --size 480x600 --camera -14,0,1.04 "${smile[@]}"
+ffmpeg -y -loglevel error -i "$work/1.png" -i "$work/2.png" -i "$work/3.png" -i "$work/4.png" \
+  -filter_complex hstack=inputs=4 -frames:v 1 "$folder/hero.png"
+
+draw "$folder/smile.png" --size 600x720 --view front,three-quarter --beside-rest "${smile[@]}"
+draw "$folder/surprise.png" --size 600x720 --view front,three-quarter --beside-rest "${surprise[@]}"
+draw "$folder/strain.png" --size 720 --layers strain,eyes "${smile[@]}"
+draw "$folder/lights.png" --size 720 --view three-quarter --light dramatic --layers skin,eyes
+draw "$folder/smas.png" --size 900 --layers smas,skull --view three-quarter
+[ ! -e "$(dirname "$rig")/contact_sheet.png" ] || ffmpeg -y -loglevel error -i "$(dirname "$rig")/contact_sheet.png" -vf scale=1400:-1:flags=lanczos "$folder/overview.png"
+tools/figures/draw_muscles.sh "$fascia" "$folder" >/dev/null
+ls -l "$folder/hero.png" "$folder/smile.png" "$folder/surprise.png" "$folder/strain.png" "$folder/smas.png"

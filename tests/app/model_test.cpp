@@ -1,0 +1,240 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "app/model/command_line.h"
+#include "app/model/document.h"
+#include "app/model/input_script.h"
+#include "app/model/names.h"
+#include "app/model/orbit.h"
+#include "app/model/settings.h"
+#include "builder/rigging/edits.h"
+#include "geometry/error.h"
+
+namespace fascia::app {
+namespace {
+
+TEST(History, UndoBringsBackExactlyWhatWas) {
+  History<DocumentState> history;
+  DocumentState next;
+  set_pose(next, "jaw_open", 0.5);
+  history.commit(next, "Jaw open");
+  set_landmark(next, "nasion", Vec3(1, 2, 3));
+  history.commit(next, "Move nasion");
+  EXPECT_EQ(history.undo_label(), "Move nasion");
+  EXPECT_TRUE(history.undo());
+  EXPECT_FALSE(landmark_edit(history.state(), "nasion"));
+  EXPECT_EQ(history.redo_label(), "Move nasion");
+  EXPECT_TRUE(history.undo());
+  EXPECT_TRUE(history.state() == DocumentState());
+  EXPECT_FALSE(history.undo());
+  EXPECT_TRUE(history.redo());
+  EXPECT_TRUE(history.redo());
+  EXPECT_TRUE(history.state() == next);
+  EXPECT_FALSE(history.redo());
+}
+
+TEST(History, ADragIsOneStepAndTheNextDragAnother) {
+  History<int> history(0);
+  for (const int value : {1, 2, 3})
+    history.commit(value, "drag", "slider");
+  EXPECT_EQ(history.steps(), 1U);
+  history.seal();
+  history.commit(4, "drag", "slider");
+  EXPECT_EQ(history.steps(), 2U);
+  history.commit(5, "other", "another slider");
+  EXPECT_EQ(history.steps(), 3U);
+  history.undo();
+  history.undo();
+  EXPECT_EQ(history.state(), 3);
+  history.undo();
+  EXPECT_EQ(history.state(), 0);
+}
+
+TEST(History, WhatChangesNothingIsNoStepAndNewStepsDropUndoneOnes) {
+  History<int> history(7);
+  history.commit(7, "nothing");
+  EXPECT_FALSE(history.can_undo());
+  history.commit(8, "a");
+  history.undo();
+  history.commit(9, "b");
+  EXPECT_FALSE(history.can_redo());
+  EXPECT_EQ(history.state(), 9);
+}
+
+TEST(History, KeepsNoMoreThanItsLimit) {
+  History<int> history(0, 10);
+  for (int i = 1; i < 100; ++i)
+    history.commit(i, "step");
+  EXPECT_LT(history.steps(), 11U);
+  while (history.undo()) {
+  }
+  EXPECT_GT(history.state(), 80);
+}
+
+TEST(Document, EditsAreWhatTheBuilderReads) {
+  DocumentState state;
+  state.edits["units"] = "mm";  // of a file that was loaded: to be kept
+  set_landmark(state, "cheilion_left", Vec3(26.1, -35, 101.2));
+  set_muscle_number(state, "zygomaticus_major_superior_left", "strength", 1.4, 1.0);
+  set_muscle_present(state, "procerus_right", false);
+  set_muscle_variant(state, "frontalis_lateral_left", "wide");
+  const std::filesystem::path file = std::filesystem::temp_directory_path() / "fascia_app_edits.json";
+  write_edits_file(file, state);
+  const rigging::Edits edits = rigging::read_edits(file);
+  EXPECT_EQ(edits.units, "mm");
+  EXPECT_NEAR((edits.landmarks.at("cheilion_left") - Vec3(26.1, -35, 101.2)).norm(), 0.0, 1e-12);
+  EXPECT_EQ(edits.muscles.at("zygomaticus_major_superior_left").strength, 1.4);
+  EXPECT_EQ(edits.muscles.at("procerus_right").is_present, false);
+  EXPECT_EQ(edits.muscles.at("frontalis_lateral_left").variant, "wide");
+  EXPECT_EQ(read_edits_file(file), state.edits);
+  std::filesystem::remove(file);
+}
+
+TEST(Document, TakingBackTheLastEditLeavesNoTrace) {
+  DocumentState state;
+  set_landmark(state, "nasion", Vec3(1, 2, 3));
+  set_muscle_number(state, "procerus_left", "width", 2.0, 1.0);
+  set_muscle_present(state, "procerus_left", false);
+  clear_landmark(state, "nasion");
+  set_muscle_number(state, "procerus_left", "width", 1.0, 1.0);
+  set_muscle_present(state, "procerus_left", true);
+  EXPECT_TRUE(state == DocumentState());
+}
+
+TEST(Document, SurvivesBeingWrittenAndNonsenseIsRefused) {
+  DocumentState state;
+  state.head = "/heads/an na.obj";
+  set_pose(state, "arkit:jawOpen", 0.25);
+  set_landmark(state, "nasion", Vec3(0.1, 1e-17, -3));
+  state.take = {"take.csv", 0.5, 2.0, false};
+  EXPECT_TRUE(state_from_text(to_text(state), "x") == state);
+  for (const char* text :
+       {"", "[]", "{}", "{\"head\": 3}", "{\"head\":\"a\",\"edits\":[],\"pose\":{},\"take\":{}}"})
+    EXPECT_THROW(state_from_text(text, "x"), Error) << text;
+}
+
+TEST(Names, SidesComeOffAndOn) {
+  EXPECT_EQ(title_of("zygomaticus_major_left"), "Zygomaticus major");
+  EXPECT_EQ(full_title("zygomaticus_major_left"), "Zygomaticus major, left");
+  EXPECT_EQ(title_of("arkit:mouthSmileLeft"), "Mouth smile");
+  EXPECT_EQ(title_of("au:L12"), "AU 12");
+  EXPECT_EQ(mirrored("zygomaticus_major_left"), "zygomaticus_major_right");
+  EXPECT_EQ(mirrored("arkit:mouthSmileRight"), "arkit:mouthSmileLeft");
+  EXPECT_EQ(mirrored("au:R12"), "au:L12");
+  for (const char* name : {"jaw_open", "arkit:jawOpen", "au:12", "viseme:PP", "nasion", "arkit:jawLeft"})
+    EXPECT_EQ(mirrored(name), name);
+  for (const char* name : {"frontalis_medial_left", "arkit:browDownRight", "au:L4"})
+    EXPECT_EQ(mirrored(mirrored(name)), name);
+}
+
+TEST(Names, SearchTakesWordsInAnyOrder) {
+  EXPECT_TRUE(matches("Zygomaticus major", "maj zyg"));
+  EXPECT_TRUE(matches("Zygomaticus major", ""));
+  EXPECT_TRUE(matches("Zygomaticus major", "  MAJOR "));
+  EXPECT_FALSE(matches("Zygomaticus major", "minor"));
+}
+
+TEST(CommandLine, IsWhatAShellTakes) {
+  DocumentState state;
+  state.head = "/tmp/it's a head.obj";
+  set_pose(state, "jaw_open", 0.5);
+  EXPECT_EQ(shell_text(build_command(state, "", "rig.glb")),
+            "fascia build '/tmp/it'\\''s a head.obj' -o rig.glb");
+  EXPECT_EQ(shell_text(pose_command(state, "rig.glb", "out.obj")),
+            "fascia pose rig.glb --set jaw_open=0.5 -o out.obj");
+  EXPECT_EQ(shell_text(play_command({"a.csv", 0.5, 2.0, true}, "rig.glb", 30, "o.glb")),
+            "fascia play rig.glb --curves a.csv --fps 30 --from 0.5 --to 2 -o o.glb");
+}
+
+TEST(Orbit, ARayThroughAPointsPixelMeetsThePoint) {
+  Orbit orbit;
+  orbit.frame({Vec3(-0.1, -0.12, -0.1), Vec3(0.1, 0.12, 0.1)});
+  for (const double yaw : {0.0, 38.0, -120.0}) {
+    orbit.turn(yaw, 11.0);
+    for (const Vec3& point : {Vec3(0.03, 0.05, 0.08), Vec3(-0.07, -0.02, 0.01)}) {
+      const auto pixel = orbit.pixel(point, 900, 600);
+      ASSERT_TRUE(pixel);
+      const Ray ray = orbit.ray((*pixel)[0], (*pixel)[1], 900, 600);
+      const Vec3 to = point - ray.origin;
+      EXPECT_LT((to - to.dot(ray.direction) * ray.direction).norm(), 1e-12);
+    }
+  }
+}
+
+TEST(Orbit, GlidesToItsGoalAndStops) {
+  Orbit orbit;
+  orbit.frame({Vec3(-0.1, -0.12, -0.1), Vec3(0.1, 0.12, 0.1)});
+  orbit.go_to("left");
+  int frames = 0;
+  while (orbit.advance(1.0 / 60.0, false))
+    ASSERT_LT(++frames, 200);
+  EXPECT_GT(frames, 5);
+  EXPECT_DOUBLE_EQ(orbit.camera().yaw, 90.0);
+}
+
+TEST(Script, IsReadAndFaultsNameTheirLine) {
+  const auto steps =
+      parse_script("# a tour\nopen \"my head.obj\"  # with a comment\n\nset jaw_open 0.5\n", "tour");
+  ASSERT_EQ(steps.size(), 2U);
+  EXPECT_EQ(steps[0].words[0], "my head.obj");
+  EXPECT_EQ(steps[1].line, 4);
+  for (const auto& [text, what] : {std::pair("\nfly away", "tour:2: 'fly'"),
+                                   {"set jaw_open", "tour:1: use set"},
+                                   {"open \"a", "tour:1: a quotation mark"},
+                                   {"undo 3", "tour:1: use undo"}})
+    try {
+      parse_script(text, "tour");
+      FAIL() << text;
+    } catch (const Error& error) {
+      EXPECT_EQ(std::string(error.what()).rfind(what, 0), 0U) << error.what();
+    }
+}
+
+TEST(Settings, ComeBackAndNonsenseIsTakenAsDefault) {
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "fascia_app_settings";
+  Settings settings;
+  settings.is_light = true;
+  settings.panel_width = 444;
+  settings.favourites = {"jaw_open"};
+  settings.layers = layers_of("skin,muscles");
+  for (const char* file : {"a", "b", "a"})
+    settings.remember(file);
+  write_settings(folder / "view.json", settings);
+  const Settings read = read_settings(folder / "view.json");
+  EXPECT_TRUE(read.is_light);
+  EXPECT_EQ(read.panel_width, 444);
+  EXPECT_EQ(read.recent, (std::vector<std::string>{"a", "b"}));
+  EXPECT_EQ(read.favourites, settings.favourites);
+  EXPECT_TRUE(read.layers == settings.layers);
+  std::ofstream(folder / "view.json") << R"({"width": "wide", "height": -4, "scale": 1e9, "recent": 7})";
+  const Settings mended = read_settings(folder / "view.json");
+  EXPECT_EQ(mended.width, Settings().width);
+  EXPECT_EQ(mended.height, 480);
+  EXPECT_EQ(mended.scale, 4.0);
+  std::ofstream(folder / "view.json") << "nonsense";
+  EXPECT_EQ(read_settings(folder / "view.json").panel, Settings().panel);
+  std::filesystem::remove_all(folder);
+}
+
+TEST(Autosave, IsThereAfterACrashAndGoneAfterAGoodEnd) {
+  const std::filesystem::path file = std::filesystem::temp_directory_path() / "fascia_app_autosave.json";
+  std::filesystem::remove(file);
+  DocumentState state;
+  state.head = "head.obj";
+  set_pose(state, "jaw_open", 0.5);
+  Autosave(file).keep(state);  // and the program ends here
+  Autosave next(file);
+  ASSERT_TRUE(next.left_behind());
+  EXPECT_TRUE(*next.left_behind() == state);
+  next.remove();
+  EXPECT_FALSE(Autosave(file).left_behind());
+  std::ofstream(file) << "{\"head\":";
+  EXPECT_FALSE(Autosave(file).left_behind());
+  std::filesystem::remove(file);
+}
+
+}  // namespace
+}  // namespace fascia::app

@@ -1,0 +1,77 @@
+#include "geometry/flaps.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace fascia {
+namespace {
+
+/// A flat grid of `n` by `n` squares of two triangles each, facing up.
+TriangleMesh grid(int n) {
+  TriangleMesh mesh;
+  for (int y = 0; y <= n; ++y)
+    for (int x = 0; x <= n; ++x)
+      mesh.vertices.emplace_back(x, y, 0);
+  for (int y = 0; y < n; ++y)
+    for (int x = 0; x < n; ++x) {
+      const int a = y * (n + 1) + x, b = a + 1, c = a + n + 1, d = c + 1;
+      mesh.triangles.push_back({a, b, d});
+      mesh.triangles.push_back({a, d, c});
+    }
+  return mesh;
+}
+
+TEST(Flaps, AFinIsLeftOutAndNothingElse) {
+  TriangleMesh mesh = grid(8);
+  const size_t count = mesh.triangles.size();
+  const Triangle under = mesh.triangles[40];
+  mesh.vertices.emplace_back(4.5, 2.5, 1);
+  mesh.triangles.push_back({under[0], under[1], mesh.vertex_count() - 1});
+  const std::vector<bool> kept = without_flaps(mesh);
+  EXPECT_FALSE(kept.back());
+  EXPECT_EQ(std::count(kept.begin(), kept.end(), true), static_cast<std::ptrdiff_t>(count));
+}
+
+TEST(Flaps, WhereTwoSheetsCrossNeitherGoes) {
+  TriangleMesh mesh = grid(4);
+  TriangleMesh other = grid(4);
+  std::vector<int> map;
+  for (const Vec3& p : other.vertices) {
+    const Vec3 stood(p.x(), 2.0, p.y() - 2.0);  // upright, through the row y = 2
+    if (stood.z() == 0.0) {
+      map.push_back(static_cast<int>(2 * 5 + stood.x()));
+      continue;
+    }
+    map.push_back(mesh.vertex_count());
+    mesh.vertices.push_back(stood);
+  }
+  for (const Triangle& t : other.triangles)
+    mesh.triangles.push_back(
+        {map[static_cast<size_t>(t[0])], map[static_cast<size_t>(t[1])], map[static_cast<size_t>(t[2])]});
+  const std::vector<bool> kept = without_flaps(mesh);
+  EXPECT_EQ(std::count(kept.begin(), kept.end(), false), 0);
+}
+
+TEST(Flaps, TurnedTrianglesAreToldFromTheirNeighbours) {
+  TriangleMesh mesh = grid(8);
+  std::vector<bool> turned(mesh.triangles.size(), false);
+  for (const size_t t : {0U, 17U, 18U, 19U, 55U, 127U})
+    turned[t] = true;
+  for (size_t t = 0; t < turned.size(); ++t)
+    if (turned[t]) std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
+  EXPECT_EQ(facing_against(mesh), turned);
+}
+
+TEST(Flaps, OfTwoHalvesTheSmallerIsTurned) {
+  TriangleMesh mesh = grid(9);
+  const size_t first = mesh.triangles.size() * 4 / 9;
+  for (size_t t = 0; t < first; ++t)
+    std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
+  const std::vector<bool> against = facing_against(mesh);
+  for (size_t t = 0; t < against.size(); ++t)
+    EXPECT_EQ(against[t], t < first) << t;
+}
+
+}  // namespace
+}  // namespace fascia

@@ -1,0 +1,256 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "geometry/error.h"
+#include "view/environment.h"
+#include "view/face/appearance.h"
+#include "view/face/fibre_tubes.h"
+#include "view/face/heat_map.h"
+#include "view/renderer.h"
+#include "view/smooth_normals.h"
+#include "view/text.h"
+
+namespace fascia::view {
+namespace {
+
+constexpr int size = 64;
+
+/// One renderer for all tests here: to start one takes a moment.
+const Renderer& renderer() {
+  static const Renderer one(size, size);
+  return one;
+}
+
+double brightness(const Image& image, int x, int y) {
+  const uint8_t* p =
+      &image.pixels[3 * (static_cast<size_t>(y) * static_cast<size_t>(image.width) + static_cast<size_t>(x))];
+  return p[0] + p[1] + p[2];
+}
+
+DrawSurface square(double z, double half, Shading shading = Shading::plain) {
+  DrawSurface surface;
+  surface.positions = {Vec3(-half, -half, z), Vec3(half, -half, z), Vec3(half, half, z),
+                       Vec3(-half, half, z)};
+  surface.triangles = {{0, 1, 2}, {0, 2, 3}};
+  surface.uvs = {Vec2(0, 1), Vec2(1, 1), Vec2(1, 0), Vec2(0, 0)};
+  surface.shading = shading;
+  return surface;
+}
+
+/// A sphere about the origin, its poles on Y.
+DrawSurface sphere(double radius, Shading shading) {
+  DrawSurface surface;
+  const int rows = 24, columns = 48;
+  for (int r = 0; r <= rows; ++r)
+    for (int c = 0; c <= columns; ++c) {
+      const double a = EIGEN_PI * r / rows, b = 2 * EIGEN_PI * c / columns;
+      surface.positions.push_back(radius *
+                                  Vec3(std::sin(a) * std::sin(b), -std::cos(a), std::sin(a) * std::cos(b)));
+    }
+  for (int r = 0; r < rows; ++r)
+    for (int c = 0; c < columns; ++c) {
+      const int at = r * (columns + 1) + c, above = at + columns + 1;
+      surface.triangles.push_back({at, at + 1, above + 1});
+      surface.triangles.push_back({at, above + 1, above});
+    }
+  surface.shading = shading;
+  return surface;
+}
+
+Camera near_camera() {
+  Camera camera;
+  camera.distance = 0.5;
+  return camera;
+}
+
+TEST(Scene, TheSameListGivesTheSamePixels) {
+  DrawList list;
+  list.surfaces = {sphere(0.07, Shading::skin), sphere(0.075, Shading::xray)};
+  Look look;
+  look.has_backdrop = true;
+  EXPECT_EQ(renderer().draw_with(list, near_camera(), look).pixels,
+            renderer().draw_with(list, near_camera(), look).pixels);
+}
+
+TEST(Scene, EveryKindOfSurfaceIsDrawnInEveryLight) {
+  for (const Shading shading :
+       {Shading::plain, Shading::skin, Shading::mucosa, Shading::tooth, Shading::eye, Shading::hair,
+        Shading::bone, Shading::muscle, Shading::xray, Shading::data}) {
+    DrawList list;
+    list.surfaces = {sphere(0.07, shading)};
+    const Image image = renderer().draw(list, near_camera(), {0, 0, 0});
+    EXPECT_GT(brightness(image, size / 2, size / 2), 20) << static_cast<int>(shading);
+  }
+  for (const char* light : {"studio", "soft", "dramatic", "outdoor", "flat"}) {
+    Look look;
+    look.light = light;
+    DrawList list;
+    list.surfaces = {sphere(0.07, Shading::skin)};
+    const Image image = renderer().draw_with(list, near_camera(), look);
+    EXPECT_GT(brightness(image, size / 2, size / 2), 60) << light;
+  }
+  EXPECT_THROW(environment("candle"), Error);
+}
+
+TEST(Scene, ShadowsFallBehindWhatStandsInTheLight) {
+  // A wall, and before it a small square up on the side of the studio's key light.
+  DrawList list;
+  list.surfaces = {square(0, 0.1), square(0.04, 0.02)};
+  for (Vec3& p : list.surfaces[1].positions)
+    p += 0.04 * Vec3(std::sin(-38 * EIGEN_PI / 180) / std::cos(38 * EIGEN_PI / 180) * 1.0, 0.9, 0.0);
+  Look look;
+  look.has_occlusion = false;
+  const Image with = renderer().draw_with(list, near_camera(), look);
+  look.has_shadows = false;
+  const Image without = renderer().draw_with(list, near_camera(), look);
+  double darkest = 1e9;
+  for (int y = 20; y < 44; ++y)
+    for (int x = 20; x < 44; ++x)
+      darkest = std::min(darkest, brightness(with, x, y) / brightness(without, x, y));
+  EXPECT_LT(darkest, 0.8);
+}
+
+TEST(Scene, OcclusionDarkensAFold) {
+  // Two walls that meet in a sharp valley.
+  DrawSurface fold;
+  fold.positions = {Vec3(-0.05, -0.1, 0.08), Vec3(0, -0.1, 0), Vec3(0, 0.1, 0),
+                    Vec3(-0.05, 0.1, 0.08),  Vec3(0, -0.1, 0), Vec3(0.05, -0.1, 0.08),
+                    Vec3(0.05, 0.1, 0.08),   Vec3(0, 0.1, 0)};
+  fold.triangles = {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}};
+  DrawList list;
+  list.surfaces = {fold};
+  Look look;
+  look.light = "flat";
+  look.has_shadows = false;
+  const Image with = renderer().draw_with(list, near_camera(), look);
+  look.has_occlusion = false;
+  const Image without = renderer().draw_with(list, near_camera(), look);
+  EXPECT_LT(brightness(with, size / 2, size / 2), 0.9 * brightness(without, size / 2, size / 2));
+}
+
+TEST(Scene, MapsColourAndCutHoles) {
+  auto map = std::make_shared<Texture>();
+  map->width = map->height = 2;
+  map->pixels = {255, 0, 0,   255, 0,   255, 0,   255,
+                 0,   0, 255, 255, 255, 255, 255, 0};  // clear at the lower right
+  DrawList list;
+  list.surfaces = {square(0, 0.1, Shading::data)};
+  list.surfaces[0].colour = Vec3::Ones();
+  list.surfaces[0].colour_map = map;
+  list.surfaces[0].alpha_cutoff = 0.5;
+  Camera camera = near_camera();
+  camera.distance = 0.6;
+  const Image image = renderer().draw(list, camera, {0, 0, 0});
+  const auto channel = [&](int x, int y, int k) {
+    return image.pixels[static_cast<size_t>(3 * (y * size + x) + k)];
+  };
+  EXPECT_GT(channel(18, 18, 0), 2 * channel(18, 18, 1));  // upper left red
+  EXPECT_GT(channel(46, 18, 1), 2 * channel(46, 18, 0));  // upper right green
+  EXPECT_GT(channel(18, 46, 2), 2 * channel(18, 46, 0));  // lower left blue
+  EXPECT_EQ(brightness(image, 46, 46), 0.0);
+}
+
+TEST(Scene, ACutLeavesOutAHalf) {
+  DrawList list;
+  list.surfaces = {square(0, 0.1)};
+  list.surfaces[0].cut = Eigen::Vector4d(1, 0, 0, 0);
+  const Image image = renderer().draw(list, near_camera(), {0, 0, 0});
+  EXPECT_GT(brightness(image, 20, 32), 50);
+  EXPECT_EQ(brightness(image, 44, 32), 0);
+}
+
+TEST(Scene, ListsThatDoNotFitAreRefused) {
+  DrawList list;
+  list.surfaces = {square(0, 0.1)};
+  list.surfaces[0].uvs.pop_back();
+  EXPECT_THROW(renderer().draw(list, near_camera()), Error);
+  list.surfaces = {square(0, 0.1)};
+  list.surfaces[0].triangles.push_back({0, 1, 9});
+  EXPECT_THROW(renderer().draw(list, near_camera()), Error);
+}
+
+TEST(SmoothNormals, AreThoseOfASphereAcrossItsSeam) {
+  const DrawSurface ball = sphere(1.0, Shading::plain);
+  const std::vector<Vec3> normals = smooth_normals(ball.positions, ball.triangles, seams_of(ball.positions));
+  for (size_t v = 0; v < normals.size(); ++v)
+    EXPECT_GT(normals[v].dot(ball.positions[v]), 0.999) << v;
+}
+
+TEST(SmoothNormals, SeamsKeepTogetherWhatAPosePullsApartByRounding) {
+  DrawSurface ball = sphere(1.0, Shading::plain);
+  const std::vector<int> seams = seams_of(ball.positions);
+  for (size_t v = 0; v < ball.positions.size(); ++v)
+    ball.positions[v] *= 1.0 + 1e-9 * static_cast<double>(v % 3);
+  const std::vector<Vec3> normals = smooth_normals(ball.positions, ball.triangles, seams);
+  for (size_t v = 0; v < normals.size(); ++v)
+    EXPECT_EQ(normals[v], normals[static_cast<size_t>(seams[v])]);
+}
+
+TEST(Environment, AnEvenRoomLightsEverySideAlike) {
+  Environment room = environment("flat");
+  room.ceiling = room.wall = room.floor = Vec3::Constant(0.5);
+  room.boxes.clear();
+  const auto sh = irradiance(room);
+  EXPECT_NEAR(sh[0][0], 0.5, 2e-3);
+  for (size_t k = 1; k < 9; ++k)
+    EXPECT_NEAR(sh[k].norm(), 0.0, 3e-3) << k;
+  for (const float value : reflection_face(room, 2, 4, 0.5))
+    EXPECT_NEAR(value, 0.5, 1e-5);
+}
+
+TEST(HeatMap, StrainOfAStretchIsItsAreaLessOne) {
+  const DrawSurface flat = square(0, 1.0);
+  std::vector<Vec3> wide = flat.positions;
+  for (Vec3& p : wide)
+    p[0] *= 1.25;
+  for (const double strain : areal_strain(flat.positions, wide, flat.triangles))
+    EXPECT_NEAR(strain, 0.25, 1e-12);
+  const HeatScale scale{"", -1, 1, true};
+  EXPECT_GT(heat_colour(scale, 1)[0], heat_colour(scale, 1)[2]);
+  EXPECT_GT(heat_colour(scale, -1)[2], heat_colour(scale, -1)[0]);
+  EXPECT_EQ(heat_colour(scale, 7), heat_colour(scale, 1));
+  EXPECT_TRUE(heat_colour(scale, NAN).allFinite());
+}
+
+TEST(FibreTubes, CloseAroundTheirFibre) {
+  DrawSurface tubes;
+  FibreTubeOptions options;
+  options.has_tendons = false;
+  options.thinnest = options.thickest = 0.001;
+  add_fibre_tubes({{Vec3(0, 0, 0), Vec3(0.01, 0, 0), Vec3(0.02, 0.002, 0)}}, options, tubes);
+  EXPECT_EQ(tubes.positions.size(), 3u * 6u);
+  EXPECT_EQ(tubes.triangles.size(), 2u * 2u * 6u);
+  EXPECT_NEAR((tubes.positions[0] - Vec3(0, 0, 0)).norm(), 0.001, 1e-12);
+}
+
+TEST(Text, IsSmoothAndAsWideAsItSays) {
+  Image image(200, 30, {0, 0, 0});
+  write_text(image, "Lächeln, 12 °", 5, 6, 12, {255, 255, 255});
+  int grey = 0, last = 0;
+  for (int y = 0; y < 30; ++y)
+    for (int x = 0; x < 200; ++x) {
+      const double b = brightness(image, x, y);
+      grey += b > 60 && b < 700;
+      if (b > 60) last = std::max(last, x);
+    }
+  EXPECT_GT(grey, 40);
+  EXPECT_NEAR(last, 5 + text_width("Lächeln, 12 °", 12), 4);
+  EXPECT_LT(text_width("ii", 12), text_width("mm", 12));
+  write_text(image, "\xff\xfe broken", -40, -5, 12, {255, 255, 255});  // no UTF-8, outside: no crash
+}
+
+TEST(Texture, RefusesWhatIsNoPicture) {
+  EXPECT_EQ(decode_texture({}, true, 64), nullptr);
+  const std::vector<uint8_t> junk(100, 0x89);
+  EXPECT_EQ(decode_texture(junk, true, 64), nullptr);
+  const Image image(10, 6, {200, 10, 20});
+  const auto texture = decode_texture(encode_png(image), true, 4);
+  ASSERT_TRUE(texture);
+  EXPECT_LE(std::max(texture->width, texture->height), 4);
+  EXPECT_EQ(texture->pixels[0], 200);
+}
+
+}  // namespace
+}  // namespace fascia::view

@@ -1,0 +1,274 @@
+#include "view/face/face_scene.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/error.h"
+#include "view/face/fibre_tubes.h"
+#include "view/smooth_normals.h"
+
+namespace fascia::view {
+
+namespace {
+
+const Vec3 skin_colour(0.82, 0.62, 0.53), mucosa_colour(0.66, 0.33, 0.32), tooth_colour(0.91, 0.88, 0.80),
+    bone_colour(0.86, 0.80, 0.68), mandible_colour(0.84, 0.78, 0.67), hair_colour(0.16, 0.11, 0.08),
+    sclera_colour(0.90, 0.87, 0.84), fascia_colour(0.85, 0.68, 0.60), ligament_colour(0.93, 0.90, 0.82);
+
+bool begins(const std::string& text, const char* with) {
+  return text.rfind(with, 0) == 0;
+}
+
+bool is_eyeball(const std::string& part) {
+  return part == "eye_left" || part == "eye_right";
+}
+
+struct Substance {
+  Shading shading;
+  Vec3 colour;
+};
+
+Substance substance_of(const std::string& part) {
+  if (part == "skin") return {Shading::skin, skin_colour};
+  if (is_eyeball(part)) return {Shading::eye, sclera_colour};
+  if (begins(part, "teeth")) return {Shading::tooth, tooth_colour};
+  if (begins(part, "gums") || part == "tongue" || part == "mouth_interior")
+    return {Shading::mucosa, mucosa_colour};
+  if (part == "lashes" || part == "brows" || part == "hair") return {Shading::hair, hair_colour};
+  return {Shading::plain, Vec3(0.72, 0.70, 0.68)};
+}
+
+/// Cards that only their textures' transparency makes thin: drawn plain they would hide the face.
+bool is_card(const std::string& part) {
+  return part == "eye_surround" || part == "lashes" || part == "hair";
+}
+
+bool is_drawn(const std::string& part, const std::set<std::string>& layers) {
+  const bool has_skin = layers.count("skin") || layers.count("strain");
+  if (is_eyeball(part)) return layers.count("eyes") || has_skin;
+  if (begins(part, "teeth")) return has_skin || layers.count("teeth");
+  return has_skin;
+}
+
+bool has_depth(const std::set<std::string>& layers) {
+  return layers.count("skull") || layers.count("smas") || layers.count("muscles") || layers.count("teeth") ||
+         layers.count("ligaments");
+}
+
+std::vector<Vec3> points_of(std::span<const float> flat) {
+  std::vector<Vec3> points;
+  points.reserve(flat.size() / 3);
+  for (size_t i = 0; i + 2 < flat.size(); i += 3)
+    points.emplace_back(flat[i], flat[i + 1], flat[i + 2]);
+  return points;
+}
+
+/// Directions from the eyeball's centre, the gaze along +Z and the head's up as +Y as far as it may be.
+std::vector<Vec3> coordinates_in(const rig::Eye& eye, const std::vector<Vec3>& rest) {
+  if (!(eye.radius > 0.0F)) return {};
+  const Vec3 gaze = eye.gaze.cast<double>().normalized(), across = Vec3::UnitY().cross(gaze).normalized();
+  Mat3 frame;
+  frame.row(0) = across;
+  frame.row(1) = gaze.cross(across);
+  frame.row(2) = gaze;
+  std::vector<Vec3> all;
+  for (const Vec3& p : rest)
+    all.push_back(frame * (p - eye.centre.cast<double>()));
+  return all;
+}
+
+void add_surface(DrawList& list, const rig::Surface& from, Shading shading, const Vec3& colour,
+                 const Mat4& place) {
+  if (from.triangles.empty()) return;
+  DrawSurface surface;
+  for (const auto& p : from.positions)
+    surface.positions.push_back(transform_point(place, p.cast<double>()));
+  for (const auto& t : from.triangles)
+    surface.triangles.push_back({static_cast<int>(t[0]), static_cast<int>(t[1]), static_cast<int>(t[2])});
+  surface.shading = shading;
+  surface.colour = colour;
+  list.surfaces.push_back(std::move(surface));
+}
+
+void apply(const PrimitiveLook& look, DrawSurface& surface) {
+  const size_t count = surface.positions.size();
+  if (look.uvs.size() == count) {
+    surface.uvs = look.uvs;
+    surface.colour_map = look.colour_map;
+    surface.normal_map = look.normal_map;
+    surface.surface_map = look.surface_map;
+  }
+  surface.normal_strength = look.normal_strength;
+  if (look.has_material || surface.colour_map) surface.colour = look.colour;
+  if (look.colours.size() == count) surface.vertex_colours = look.colours;
+  surface.glow = look.glow;
+  if (surface.colour_map) {
+    surface.alpha_cutoff = look.alpha_cutoff;
+    surface.is_blended = look.is_blended && surface.shading != Shading::skin;
+  }
+  if (look.is_blended) surface.opacity = look.opacity;
+  if (surface.shading == Shading::plain) {
+    surface.roughness = look.roughness;
+    surface.metalness = look.metalness;
+  } else if (surface.surface_map) {
+    surface.roughness = look.roughness;
+  }
+}
+
+}  // namespace
+
+Vec3 muscle_colour(const std::string& name) {
+  std::string whole = name.substr(0, name.find("_left"));
+  whole = whole.substr(0, whole.find("_right"));
+  uint32_t hash = 2166136261U;
+  for (char c : whole)
+    hash = (hash ^ static_cast<uint8_t>(c)) * 16777619U;
+  const double hue = (hash % 3600) / 600.0, light = 0.75 + 0.2 * ((hash >> 16) % 100) / 100.0;
+  const auto channel = [&](double offset) {
+    const double at = std::fmod(hue + offset, 6.0);
+    return light * (1.0 - 0.75 * std::clamp(std::min(at, 4.0 - at), 0.0, 1.0));
+  };
+  return Vec3(channel(5.0), channel(3.0), channel(1.0));
+}
+
+const std::set<std::string>& FaceScene::layer_names() {
+  static const std::set<std::string> names = {"skin",    "eyes",      "teeth",     "skull", "smas",
+                                              "muscles", "ligaments", "landmarks", "strain"};
+  return names;
+}
+
+FaceScene::FaceScene(const rig::Rig& rig, std::vector<FacePart> parts, Appearance appearance)
+    : rig_(&rig), parts_(std::move(parts)), appearance_(std::move(appearance)) {
+  for (const FacePart& part : parts_) {
+    seams_.push_back(std::make_shared<const std::vector<int>>(seams_of(part.rest)));
+    eye_coordinates_.push_back(
+        is_eyeball(part.part)
+            ? coordinates_in(part.part == "eye_left" ? rig.skull.eye_left : rig.skull.eye_right, part.rest)
+            : std::vector<Vec3>());
+  }
+}
+
+DrawList FaceScene::list(const FaceState& state, const FaceView& view) const {
+  if (state.positions.size() != parts_.size())
+    throw Error("a face to draw has " + std::to_string(state.positions.size()) + " parts of " +
+                std::to_string(parts_.size()));
+  DrawList list;
+  add_parts(state, view, list);
+  add_bones(state, view, list);
+  add_muscles(state, view, list);
+  add_points(view, list);
+  return list;
+}
+
+void FaceScene::add_parts(const FaceState& state, const FaceView& view, DrawList& list) const {
+  const bool is_glass = has_depth(view.layers) && !view.reveal,
+             shows_strain = view.layers.count("strain") > 0;
+  for (size_t m = 0; m < parts_.size(); ++m) {
+    const FacePart& part = parts_[m];
+    if (!is_drawn(part.part, view.layers) || part.triangles.empty()) continue;
+    const PrimitiveLook& look = appearance_.of(part.mesh, part.primitive);
+    const bool is_painted =
+        view.has_textures && (look.has_material || look.colours.size() == part.rest.size());
+    if (is_card(part.part) && !is_painted) continue;
+    if (is_glass && (is_card(part.part) || part.part == "brows" || part.part == "other")) continue;
+    DrawSurface surface;
+    surface.positions = points_of(state.positions[m]);
+    if (surface.positions.size() != part.rest.size()) throw Error("a face to draw does not fit its rig");
+    surface.triangles = part.triangles;
+    surface.seams = seams_[m];
+    const Substance substance = substance_of(part.part);
+    surface.shading = substance.shading;
+    surface.colour = substance.colour;
+    if (part.colours.size() == part.rest.size() && !is_painted) surface.vertex_colours = part.colours;
+    if (is_painted) apply(look, surface);
+    if (!surface.colour_map && surface.vertex_colours.empty()) surface.eye_coordinates = eye_coordinates_[m];
+    const bool is_skin = part.part == "skin";
+    if (is_skin && shows_strain) {
+      const std::vector<double> strain = areal_strain(part.rest, surface.positions, part.triangles);
+      surface.shading = Shading::data;
+      surface.colour_map = nullptr;
+      surface.vertex_colours.clear();
+      for (double value : strain)
+        surface.vertex_colours.push_back(heat_colour(view.scale, 100.0 * value));
+    } else if (is_skin && is_glass) {
+      surface.shading = Shading::xray;
+      surface.colour_map = nullptr;
+      surface.vertex_colours.clear();
+      surface.colour = Vec3(0.80, 0.66, 0.60);
+      surface.opacity = 0.62;
+      surface.is_two_sided = false;
+    }
+    if (view.reveal && !is_eyeball(part.part) && !begins(part.part, "teeth")) surface.cut = view.reveal;
+    list.surfaces.push_back(std::move(surface));
+  }
+}
+
+void FaceScene::add_bones(const FaceState& state, const FaceView& view, DrawList& list) const {
+  const Mat4 still = Mat4::Identity();
+  const rig::Skull& skull = rig_->skull;
+  if (view.layers.count("skull")) {
+    add_surface(list, skull.cranium, Shading::bone, bone_colour, still);
+    add_surface(list, skull.mandible, Shading::bone, mandible_colour, state.jaw);
+    const auto has_teeth = [&](const char* name) {
+      return is_drawn(name, view.layers) &&
+             std::any_of(parts_.begin(), parts_.end(), [&](const FacePart& p) { return p.part == name; });
+    };
+    if (!has_teeth("teeth_upper")) add_surface(list, skull.teeth_upper, Shading::tooth, tooth_colour, still);
+    if (!has_teeth("teeth_lower"))
+      add_surface(list, skull.teeth_lower, Shading::tooth, tooth_colour, state.jaw);
+  }
+  if (view.layers.count("smas")) {
+    add_surface(list, rig_->smas.surface, Shading::muscle, fascia_colour, still);
+    if (!list.surfaces.empty() && (view.layers.count("muscles") || view.layers.count("skull")))
+      list.surfaces.back().opacity = 0.55;
+  }
+}
+
+void FaceScene::add_muscles(const FaceState& state, const FaceView& view, DrawList& list) const {
+  if (!view.layers.count("muscles")) return;
+  DrawSurface flesh;
+  flesh.shading = Shading::muscle;
+  for (const auto& [name, lines] : state.fibres) {
+    if (!view.muscles.empty() &&
+        std::find(view.muscles.begin(), view.muscles.end(), name) == view.muscles.end())
+      continue;
+    FibreTubeOptions options;
+    if (view.tells_muscles_apart) options.flesh = options.tendon = muscle_colour(name);
+    const auto found = state.activations.find(name);
+    const double pull = found == state.activations.end() ? 0.0 : std::clamp(found->second, 0.0, 1.0);
+    if (pull > 0.01) {
+      DrawSurface working;
+      working.shading = Shading::muscle;
+      options.flesh += pull * (Vec3(0.98, 0.34, 0.16) - options.flesh);
+      add_fibre_tubes(lines, options, working);
+      working.glow = pull * Vec3(0.62, 0.20, 0.06);
+      list.surfaces.push_back(std::move(working));
+    } else {
+      add_fibre_tubes(lines, options, flesh);
+    }
+  }
+  if (!flesh.triangles.empty()) list.surfaces.push_back(std::move(flesh));
+}
+
+void FaceScene::add_points(const FaceView& view, DrawList& list) const {
+  if (view.layers.count("ligaments")) {
+    DrawSurface bands;
+    bands.shading = Shading::bone;
+    FibreTubeOptions options;
+    options.flesh = ligament_colour;
+    options.has_tendons = false;
+    options.thinnest = options.thickest = 0.0005;
+    std::vector<std::vector<Vec3>> lines;
+    for (const rig::Ligament& ligament : rig_->smas.ligaments)
+      lines.push_back({ligament.bone.cast<double>(), ligament.skin.cast<double>()});
+    add_fibre_tubes(lines, options, bands);
+    if (!bands.triangles.empty()) list.surfaces.push_back(std::move(bands));
+  }
+  if (view.layers.count("landmarks"))
+    for (const auto& landmark : rig_->skull.landmarks)
+      list.lines.push_back(
+          {{{landmark.skin.cast<double>(), landmark.bone.cast<double>()}}, Vec3(0.1, 0.8, 0.9), 3.0});
+}
+
+}  // namespace fascia::view
