@@ -2,6 +2,8 @@
 #include <unistd.h>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
+#include <exception>
 #include <iostream>
 #include <memory>
 #include <new>
@@ -26,6 +28,23 @@ constexpr int exit_input = 1, exit_usage = 2, exit_internal = 3, exit_interrupte
 void on_interrupt(int) {
   fascia::formats::remove_partial_files();
   _exit(exit_interrupted);
+}
+
+/// Where no exception can be caught any more: destructors of JSON values need memory. Ends as documented,
+/// with nothing half-written left.
+[[noreturn]] void on_terminate() {
+  fascia::formats::remove_partial_files();
+  const char* message = "fascia: internal error; please report it\n";
+  int code = exit_internal;
+  try {
+    if (const std::exception_ptr error = std::current_exception()) std::rethrow_exception(error);
+  } catch (const std::bad_alloc&) {
+    message = "fascia: out of memory: the input is too large for this machine\n";
+    code = exit_input;
+  } catch (...) {
+  }
+  if (write(STDERR_FILENO, message, std::strlen(message)) < 0) code = exit_internal;
+  _exit(code);
 }
 
 /// With --json the failure is the one object on stdout as well.
@@ -67,6 +86,7 @@ void declare(const fascia::cli::Command& tool, fascia::cli::Common& common) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::set_terminate(on_terminate);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP})
     std::signal(signal, on_interrupt);
   // A file that grows too large or a reader that has gone is an error of writing, not an end without a word.

@@ -57,7 +57,10 @@ TEST_F(Faults, EveryCallThatWritesMayFail) {
       long calls = 0;
       const Outcome outcome = run_with_fault(job.words + at(job.output), kind, 0, &calls);
       ASSERT_EQ(outcome.code, 0) << job.words << outcome.err;
-      EXPECT_GT(calls, 0) << job.words << kind;
+      // Streams of the C library write and close without a call that could be caught here.
+      const bool is_stream =
+          job.output == "play.pc2" && std::string(kind) != "open" && std::string(kind) != "rename";
+      EXPECT_TRUE(is_stream || calls > 0) << job.words << kind;
       std::filesystem::remove(at(job.output));
       // Many writes of one stream are alike: the first, the last and some between.
       const long step = std::max(1L, calls / 6);

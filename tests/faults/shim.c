@@ -119,14 +119,17 @@ static int opened(int file, const char* path, int flags) {
 OPEN(open)
 OPEN(open64)
 
-FILE* fopen64(const char* path, const char* how) {
-  REAL(fopen64);
-  if (is_ours(path, how[0] == 'r' ? O_RDONLY : O_WRONLY) && fails("open")) {
-    errno = EROFS;
-    return NULL;
+#define FOPEN(name)                                                            \
+  FILE* name(const char* path, const char* how) {                              \
+    REAL(name);                                                                \
+    if (is_ours(path, how[0] == 'r' ? O_RDONLY : O_WRONLY) && fails("open")) { \
+      errno = EROFS;                                                           \
+      return NULL;                                                             \
+    }                                                                          \
+    return real(path, how);                                                    \
   }
-  return real(path, how);
-}
+FOPEN(fopen)
+FOPEN(fopen64)
 
 static int is_of_ours(int file) {
   return file >= 0 && file < (int)sizeof is_watched && is_watched[file];
