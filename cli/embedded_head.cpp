@@ -17,6 +17,7 @@ const char* materials = R"(newmtl skin
 Kd 1 1 1
 map_Kd head_skin.jpg
 norm head_skin_normal.jpg
+map_Pr head_skin_roughness.jpg
 Pr 0.5
 newmtl sclera
 Kd 0.90 0.87 0.84
@@ -113,7 +114,7 @@ void write_embedded_head(const anatomy::GenericAnatomy& anatomy, const std::file
   formats::write_text(head, text);
   std::filesystem::path library = head;
   formats::write_text(library.replace_extension(".mtl"), materials);
-  for (const char* picture : {"head_skin.jpg", "head_skin_normal.jpg"}) {
+  for (const char* picture : {"head_skin.jpg", "head_skin_normal.jpg", "head_skin_roughness.jpg"}) {
     const std::string_view bytes = anatomy::embedded_file(picture);
     formats::write_bytes(head.parent_path() / picture, bytes.data(), bytes.size());
   }

@@ -24,7 +24,7 @@ std::string progress_line(const std::string& what, double done, double seconds) 
   std::snprintf(percent, sizeof percent, "  %.0f %%", std::floor(100.0 * std::clamp(done, 0.0, 1.0)));
   std::string line = what + percent;
   if (done < 0.02 || seconds < 0.3) return line;
-  const double left = std::ceil(seconds / done * (1.0 - done));
+  const double left = std::ceil(std::max(0.0, seconds / done * (1.0 - done)));
   char text[48];
   if (left < 100.0)
     std::snprintf(text, sizeof text, ", %.0f s left", left);

@@ -108,6 +108,7 @@ SceneMaterial material_of(const tinyobj::material_t& from, PictureReader& pictur
     material.roughness = bounded(std::pow(2.0 / (from.shininess + 2.0), 0.25), 0.6);
   material.colour_map = pictures.read(from.diffuse_texname);
   material.normal_map = pictures.read(from.normal_texname);
+  material.roughness_map = pictures.read(from.roughness_texname);
   material.has_alpha = !from.alpha_texname.empty() || material.opacity < 1.0;
   return material;
 }

@@ -14,7 +14,8 @@ struct SceneMaterial {
   Vec3 colour = Vec3(0.8, 0.8, 0.8);  ///< sRGB, 0..1
   double opacity = 1.0, roughness = 0.6;
   bool has_alpha = false;  ///< whether it, or its colour map by its own alpha, lets through what is behind
-  std::shared_ptr<const std::vector<uint8_t>> colour_map, normal_map;  ///< PNG or JPEG files, or none
+  std::shared_ptr<const std::vector<uint8_t>> colour_map, normal_map,
+      roughness_map;  ///< PNG or JPEG files, or none
 };
 
 struct MaterialLibrary {

@@ -20,11 +20,11 @@ smile=(--set arkit:mouthSmileLeft=0.9 --set arkit:mouthSmileRight=0.9 --set arki
 surprise=(--set arkit:browInnerUp=1 --set arkit:browOuterUpLeft=1 --set arkit:browOuterUpRight=1 --set arkit:eyeWideLeft=0.8
   --set arkit:eyeWideRight=0.8 --set arkit:jawOpen=0.4)
 
-# README: skin, half of it taken off, skin as glass, an expression.
-draw "$work/1.png" --size 480x600 --view three-quarter --camera -8,0,1.04
-draw "$work/2.png" --size 480x600 --layers skin,skull,muscles,eyes,teeth --reveal left "${smile[@]}"
-draw "$work/3.png" --size 480x600 --layers skin,skull,muscles,eyes,teeth --view three-quarter --camera -60,0,1.04 "${smile[@]}"
-draw "$work/4.png" --size 480x600 --camera -14,0,1.04 "${smile[@]}"
+# README: the head, its muscles with those of a left smile pulling, skin as glass, the head again.
+draw "$work/1.png" --size 480x600
+draw "$work/2.png" --size 480x600 --layers skull,muscles,eyes,teeth --view three-quarter --set arkit:mouthSmileLeft=1
+draw "$work/3.png" --size 480x600 --layers skin,skull,muscles,eyes
+draw "$work/4.png" --size 480x600 --view three-quarter --camera -12,0
 ffmpeg -y -loglevel error -i "$work/1.png" -i "$work/2.png" -i "$work/3.png" -i "$work/4.png" \
   -filter_complex hstack=inputs=4 -frames:v 1 "$folder/hero.png"
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Sets up, builds with warnings as errors, and runs the tests.
 #   scripts/test.sh [--full]
-# --full: also 250 broken heads, clang, sanitizers, five minutes of random input in the window, the glTF validator,
-# the hosts and the demo.
+# --full: also 250 broken heads, clang, sanitizers, fuzzers (five minutes each), faults by the hundred, a cluster of two nodes,
+# builds that are reproducible, five minutes of random input in the window, the glTF validator, the hosts and the demo.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -26,6 +26,17 @@ if [ "$full" = 1 ]; then
   FASCIA_BROKEN_HEADS=6 build/bin/test_broken_heads --gtest_brief=1
   run_suite clang build/clang
   ASAN_OPTIONS=detect_leaks=0 run_suite asan build/asan
+  # Threads share work in the tool, in crowds of faces and in batches.
+  cmake --preset tsan >/dev/null
+  cmake --build build/tsan --target test_runtime test_snapshot test_batch
+  for program in test_runtime test_snapshot test_batch; do build/tsan/bin/$program; done
+  cmake --preset fuzz >/dev/null
+  cmake --build build/fuzz --target fuzz
+  tests/fuzz/run.sh build/fuzz/bin 300
+  FASCIA_THOROUGH=1 ctest --test-dir build --output-on-failure -R 'test_faults'
+  cmake --preset ci -DFASCIA_FULL_TESTS=ON >/dev/null
+  ctest --test-dir build --output-on-failure -R 'batch.slurm|snapshots.head'
+  scripts/reproducible.sh
   # Random keys and mouse in the window, five minutes.
   ASAN_OPTIONS=detect_leaks=0 xvfb-run -a -s '-screen 0 1600x1000x24' \
     build/asan/bin/fascia view --monkey "$(date +%j)" --seconds 300

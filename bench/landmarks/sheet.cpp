@@ -31,7 +31,10 @@ void add_landmark(view::DrawSurface& marks, const Vec3& centre, double confidenc
 view::Tile landmark_tile(const Found& found, const std::string& caption, double yaw) {
   view::DrawList list;
   for (const prepare::PreparedMesh& mesh : found.head.meshes) {
-    view::DrawSurface surface{mesh.positions, {}, Vec3(0.80, 0.66, 0.57), {}, 1.0, 0.15, true};
+    view::DrawSurface surface;
+    surface.positions = mesh.positions;
+    surface.colour = Vec3(0.80, 0.66, 0.57);
+    surface.shine = 0.15;
     for (const Triangle& t : mesh.triangles) {
       const prepare::Part part = mesh.parts[static_cast<size_t>(t[0])];
       if (part == prepare::Part::skin || part == prepare::Part::eye_left || part == prepare::Part::eye_right)

@@ -66,6 +66,11 @@ void add_materials(Json& json, gltf::Appendix& data, const formats::MaterialLibr
     else
       metal["baseColorFactor"] = {linear(from.colour[0]), linear(from.colour[1]), linear(from.colour[2]),
                                   from.opacity};
+    // glTF reads roughness from green and metal from blue, which the factor above makes nothing of.
+    if (const int map = add_texture(json, data, from.roughness_map); map >= 0) {
+      metal["metallicRoughnessTexture"] = {{"index", map}};
+      metal["roughnessFactor"] = 1.0;
+    }
     if (const int map = add_texture(json, data, from.normal_map); map >= 0)
       material["normalTexture"] = {{"index", map}};
     material["pbrMetallicRoughness"] = metal;

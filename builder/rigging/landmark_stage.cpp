@@ -7,7 +7,6 @@
 #include "builder/landmarks/find.h"
 #include "builder/landmarks/symmetry.h"
 #include "builder/prepare/repair.h"
-#include "builder/prepare/upright.h"
 #include "builder/rigging/find_landmarks.h"
 #include "builder/rigging/stages.h"
 
@@ -126,20 +125,6 @@ Points reference_points(const anatomy::GenericAnatomy& anatomy) {
   return points;
 }
 
-/// What follows tells up and front from the axes: by its landmarks the head is set upright to half a
-/// degree, so that it gets the same rig whichever way it looked.
-void set_upright(FoundLandmarks& found, const Points& reference) {
-  constexpr double least = 0.01;  // radians: a head that stands along the axes keeps them to the last digit
-  Points here;
-  for (const auto& [name, landmark] : found.landmarks)
-    here[name] = landmark.position;
-  const Mat3 rotation = prepare::uprighting(here, reference);
-  if (Eigen::AngleAxisd(rotation).angle() < least) return;
-  prepare::turn(found.head, rotation);
-  for (auto& [name, landmark] : found.landmarks)
-    landmark.position = rotation * landmark.position;
-}
-
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
@@ -176,7 +161,6 @@ FoundLandmarks find_landmarks(const formats::Scene& file, const formats::Landmar
   place_landmarks(result, located, given, anatomy, with_regions);
   if (const auto plane = landmarks::mirror_plane(result.landmarks, *result.head.surface))
     landmarks::make_symmetric(*plane, *result.head.surface, result.landmarks);
-  set_upright(result, reference);
   result.seconds = {located_at - started, prepared_at - located_at, now() - prepared_at};
   return result;
 }

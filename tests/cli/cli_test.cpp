@@ -174,7 +174,7 @@ TEST_F(Tool, FaultyInputIsOneAndNamed) {
                      "landmarks.json");
   expect_input_error("render " + at("rig.glb") + " --layers liver -o " + at("x.png"), "liver");
   expect_input_error("render " + at("rig.glb") + " --view inside -o " + at("x.png"), "inside");
-  expect_input_error("batch " + at("rig.glb") + " -o " + at("nowhere") + "/x", "nowhere");
+  expect_input_error("batch " + at("rig.glb") + " -o " + at("x"), "not a JSON object");
   EXPECT_FALSE(fs::exists(at("x.glb")));
   EXPECT_FALSE(fs::exists(at("x.png")));
 }

@@ -20,7 +20,7 @@ const std::map<std::string, std::set<std::string>> rooms = {
     {"rig", {"geometry", "gltf"}},
     {"sim", {}},
     {"builder", {"geometry", "formats", "anatomy", "rig", "sim", "gltf"}},
-    {"fit", {"geometry", "gltf", "rig", "sim"}},
+    {"fit", {"geometry", "gltf", "rig", "sim", "builder/spatial"}},
     {"runtime", {"rig/model", "rig/read", "gltf/read", "sim", "geometry"}},
     {"check", {"geometry", "anatomy", "rig/model", "rig/read", "builder/spatial"}},
     {"batch", {"geometry", "formats"}},
@@ -32,13 +32,13 @@ const std::map<std::string, std::set<std::string>> rooms = {
       "runtime", "snapshot", "view"}},
     {"samples", {}},
     // Beside the product: it may not include any of these.
-    {"tools", {"geometry", "formats", "anatomy", "rig", "builder", "view"}},
+    {"tools", {"geometry", "formats", "anatomy", "rig", "builder", "view", "sim", "fit", "bench"}},
     {"bench",
      {"geometry", "gltf", "formats", "anatomy", "rig", "sim", "builder", "check", "fit", "runtime", "view",
       "cli", "tests"}},
     {"tests",
      {"geometry", "gltf", "formats", "anatomy", "rig", "sim", "builder", "check", "fit", "runtime", "view",
-      "cli", "tools", "bench"}},
+      "cli", "tools", "bench", "app", "batch", "snapshot"}},
 };
 
 bool is_source(const fs::path& path) {

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """paint_head.py FIGURES_FOLDER DATA_FOLDER [SIZE]: paints the generic head's skin from anatomy/figures/head_paint.json and
-writes head_skin.jpg (colour) and head_skin_normal.jpg (pores and fine folds) beside head.obj. The same figures give
+writes head_skin.jpg (colour), head_skin_normal.jpg (pores and fine folds) and head_skin_roughness.jpg beside head.obj. The same figures give
 the same pictures."""
 
 import json
@@ -66,7 +66,7 @@ class Painter:
         self.blood = np.zeros(len(self.p), np.float32)
         self.melanin = np.zeros(len(self.p), np.float32)
         self.height = np.zeros(len(self.p), np.float32)  # mm, of the fine relief
-        self.rough = np.ones(len(self.p), np.float32)
+        self.rough = np.full(len(self.p), self.figures["roughness"]["skin"], np.float32)
 
     def texels(self, *names):
         return self.atlas.is_in(*names)[self.atlas.mask]
@@ -195,6 +195,7 @@ class Painter:
         dense = np.where(cover < 0.9, dense * smooth(0.25, 0.62, cover * 0.75 + 0.45 * grain), dense)
         hair = linear(f["colour"])[None] * (0.55 + 0.9 * grain)[:, None]
         self.height += 0.22 * cover * (grain - 0.5)
+        self.rough += dense * (self.figures["roughness"]["hair"] - self.rough)
         return colour * (1 - dense[:, None]) + hair * dense[:, None]
 
     def paint_brows(self, colour):
@@ -252,6 +253,8 @@ class Painter:
         f = self.figures
         first, second = noise.cells(self.p, f["pores"]["period"], 151)
         oily = np.exp(-np.sum(((self.half - np.array([12, 4, 112])) / np.array([30, 30, 40])) ** 2, axis=1))
+        self.rough += oily * (f["roughness"]["oily"] - f["roughness"]["skin"])
+        self.rough += self.lip_cover * (f["roughness"]["lips"] - self.rough)
         deep = f["pores"]["depth"] * (0.55 + 1.1 * oily) * (1 - self.lip_cover)
         self.height -= deep * smooth(0.34, 0.10, first)
         folds, near = noise.cells(self.p * np.array([1, 1.15, 1], np.float32), f["wrinkles"]["period"], 161)
@@ -285,7 +288,9 @@ class Painter:
         self.add_relief()
         picture = np.zeros((self.atlas.size, self.atlas.size, 3), np.float32)
         picture[self.atlas.mask] = np.power(np.clip(colour, 0, 1), 1 / 2.2)
-        return self.atlas.bleed(picture), self.normals()
+        rough = np.zeros((self.atlas.size, self.atlas.size, 1), np.float32)
+        rough[self.atlas.mask] = np.clip(self.rough, 0, 1)[:, None]
+        return self.atlas.bleed(picture), self.normals(), self.atlas.bleed(rough)[..., 0]
 
 
 def main():
@@ -293,10 +298,12 @@ def main():
         sys.exit(__doc__)
     figures, data = Path(sys.argv[1]), Path(sys.argv[2])
     size = int(sys.argv[3]) if len(sys.argv) == 4 else 2048  # texels; 0.2 mm on the face
-    colour, normal = Painter(figures, data, size).paint()
+    colour, normal, rough = Painter(figures, data, size).paint()
     Image.fromarray((colour * 255 + 0.5).astype(np.uint8)).save(data / "head_skin.jpg", quality=86, optimize=True)
     relief = Image.fromarray(((normal * 0.5 + 0.5) * 255 + 0.5).astype(np.uint8))
     relief.save(data / "head_skin_normal.jpg", quality=84, optimize=True)
+    gloss = Image.fromarray((rough * 255 + 0.5).astype(np.uint8)).resize((size // 4, size // 4), Image.BOX)
+    gloss.save(data / "head_skin_roughness.jpg", quality=88, optimize=True)
 
 
 if __name__ == "__main__":
