@@ -265,15 +265,16 @@ void ScriptRunner::advance(Workspace& work, Screen& screen, Window& window) {
     return;
   }
   if (waits_idle_) {
-    const int settled = 3;
+    const int settled = 3, longest_settling = 240;  // frames
     idle_frames_ = work.is_idle() ? idle_frames_ + 1 : 0;
-    if (!work.is_idle() && (work.is_building() || !work.jobs().empty()))
+    calm_frames_ = work.is_busy() ? 0 : calm_frames_ + 1;
+    if (work.is_busy() && (work.is_building() || !work.jobs().empty()))
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     if (++waited_frames_ > longest_wait)
       throw Error(file_.string() + ": the window has been busy for too long");
-    if (idle_frames_ < settled) return;
+    if (idle_frames_ < settled && calm_frames_ < longest_settling) return;
     waits_idle_ = false;
-    idle_frames_ = waited_frames_ = 0;
+    idle_frames_ = calm_frames_ = waited_frames_ = 0;
   }
   if (next_ >= steps_.size()) {
     has_ended_ = true;

@@ -49,7 +49,7 @@ class ScriptRunner {
   size_t next_ = 0;
   int waits_ = 0;  ///< frames
   bool waits_idle_ = false;
-  int idle_frames_ = 0, waited_frames_ = 0;
+  int idle_frames_ = 0, calm_frames_ = 0, waited_frames_ = 0;
   std::vector<Motion> motions_;
   SyntheticInput input_;
   std::string screenshot_, picture_;

@@ -276,13 +276,16 @@ void Workspace::update(double seconds) {
   if (!fault.empty()) notify(fault, Notice::Kind::error);
 }
 
-bool Workspace::is_idle() const {
+bool Workspace::is_busy() const {
   if (build_ || coming_reference_.valid() || shake_ || playback.is_playing || playback.is_recording)
-    return false;
+    return true;
   for (const auto& job : jobs_)
-    if (!job->is_done()) return false;
-  if (rebuilds_by_itself && has_unbuilt_edits() && state().edits != failed_edits_) return false;
-  return (!simulation || !simulation->is_moving()) && (!reference || !reference->is_moving());
+    if (!job->is_done()) return true;
+  return rebuilds_by_itself && has_unbuilt_edits() && state().edits != failed_edits_;
+}
+
+bool Workspace::is_idle() const {
+  return !is_busy() && (!simulation || !simulation->is_moving()) && (!reference || !reference->is_moving());
 }
 
 uint64_t Workspace::picture_stamp() const {

@@ -145,6 +145,8 @@ class Workspace {
   void update(double seconds);
   /// True when nothing is on its way: no build, no job, no motion.
   bool is_idle() const;
+  /// The same but for the face's own motion, which lips that touch may keep up for long.
+  bool is_busy() const;
   /// Counts up with everything that changes the picture of the face.
   uint64_t picture_stamp() const;
 

@@ -68,7 +68,8 @@ void Workspace::rebuild() {
   } catch (const std::exception& error) {
     return notify(error.what(), Notice::Kind::error);
   }
-  build_ = std::make_unique<BuildTask>(BuildOrder{rig->head, folder, edits, "medium", true});
+  build_ = std::make_unique<BuildTask>(
+      BuildOrder{rig->head, folder, state().edits.empty() ? "" : edits, "medium", true});
 }
 
 void Workspace::cancel_build() {

@@ -187,7 +187,7 @@ void Workspace::compare_with(Reference wanted, const std::string& file) {
 void Workspace::poke(const SkinHit& hit) {
   if (!frame) return;
   const double radius = 0.012;  // metres: a fingertip
-  const size_t most = 48;
+  const size_t most = 16;       // each takes some of the 64 places for touches
   poke_ =
       Poke{hit.part, hit.vertex, hit.position, soft_selection(*frame, hit.part, hit.vertex, radius, most)};
   if (poke_->grip.empty()) poke_->grip.emplace_back(hit.vertex, 1.0);

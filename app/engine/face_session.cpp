@@ -138,7 +138,8 @@ void FaceSession::apply(const FaceInputs& inputs) {
   const size_t most_touches = 64;
   for (size_t t = 0; t < std::min(inputs.touches.size(), most_touches); ++t) {
     const Touch& touch = inputs.touches[t];
-    check(fascia_face_touch(face, touch.mesh, touch.vertex, touch.force.data()), "touch");
+    // The strongest come first; what finds no place any more is left out.
+    if (fascia_face_touch(face, touch.mesh, touch.vertex, touch.force.data()) != FASCIA_OK) break;
   }
   check(fascia_face_set_acceleration(face, inputs.acceleration.data()), "acceleration");
   check(fascia_face_move_head(face, inputs.head.data(), 1.0F), "head");

@@ -10,7 +10,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr double frame_seconds = 1.0 / 60.0;
-constexpr double still_metres = 1e-6;  ///< a frame; below what a pixel shows
+constexpr double still_metres = 4e-6;  ///< a frame; below what a pixel shows
 constexpr int still_frames = 15;       ///< slow creep would stop short with fewer
 
 }  // namespace

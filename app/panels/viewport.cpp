@@ -233,7 +233,7 @@ void show_legend(const Workspace& work, const Area& area) {
 }
 
 void show_muscle_name(const Workspace& work, const Area& area) {
-  if (work.selected_muscle.empty()) return;
+  if (work.selected_muscle.empty() || !work.settings.layers.muscles) return;
   ImDrawList* list = ImGui::GetWindowDrawList();
   const std::string text = full_title(work.selected_muscle);
   ImGui::PushFont(fonts().large);

@@ -102,14 +102,14 @@ TEST_F(Window, ATourThroughTheApplication) {
   EXPECT_EQ(neutral.width, 128);
   EXPECT_EQ(neutral.height, 80);
   // The same state looks the same, another one does not.
-  EXPECT_LT(difference(neutral, picture("undone.png")), 1.0);
-  EXPECT_GT(difference(neutral, picture("posed.png")), 1.2);
+  EXPECT_LT(difference(neutral, picture("undone.png")), 0.5);
+  EXPECT_GT(difference(neutral, picture("posed.png")), 0.8);
   EXPECT_GT(difference(neutral, picture("start.png")), 10.0);
   EXPECT_GT(difference(neutral, picture("pulled.png")), 3.0);
   EXPECT_GT(difference(neutral, picture("light.png")), 40.0);
 
   // As they were when somebody looked at them.
-  for (const char* name : {"start", "neutral", "posed"}) {
+  for (const char* name : {"start", "neutral", "posed", "landmark", "muscle", "pulled", "light"}) {
     const fs::path kept = test::snapshots() / "app" / (std::string(name) + ".png");
     const view::Image now = picture(std::string(name) + ".png");
     if (std::getenv("FASCIA_RENEW_SNAPSHOTS")) {
