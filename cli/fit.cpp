@@ -4,6 +4,7 @@
 #include <chrono>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "cli/common.h"
 #include "cli/fit_landmarks.h"
@@ -66,25 +67,27 @@ bool is_landmark_file(const std::filesystem::path& path) {
   return path.extension() == ".json";
 }
 
-/// One mesh of another topology than the rig's, or one that is said to be a scan.
-bool is_scan(const Request& request, const fit::Subject& subject) {
-  if (request.reading.as != "auto") return request.reading.as == "scan";
+/// The target where it is a scan: one mesh of another topology than the rig's, or one that is said to be a
+/// scan.
+std::optional<formats::Scene> scan_of(const Request& request, const fit::Subject& subject) {
   const std::filesystem::path& path = request.target;
+  const std::string& as = request.reading.as;
   const std::string extension = path.extension().string();
-  if (std::filesystem::is_directory(path) || extension == ".pc2" || extension == ".mdd" ||
-      is_landmark_file(path))
-    return false;
-  return !has_rig_topology(subject, formats::read(path));
+  const bool may_be = as == "auto" && !std::filesystem::is_directory(path) && extension != ".pc2" &&
+                      extension != ".mdd" && !is_landmark_file(path);
+  if (as != "scan" && !may_be) return {};
+  formats::Scene scene = formats::read(path);
+  if (as != "scan" && has_rig_topology(subject, scene)) return {};
+  return scene;
 }
 
-void fit_one_scan(const Common& common, const Request& request, fit::Subject& subject, FitTargets& targets,
-                  std::vector<fit::FitResult>& results, std::vector<double>& motion,
-                  nlohmann::ordered_json& figures) {
+void fit_one_scan(const Common& common, const Request& request, const formats::Scene& scene,
+                  fit::Subject& subject, FitTargets& targets, std::vector<fit::FitResult>& results,
+                  std::vector<double>& motion, nlohmann::ordered_json& figures) {
   targets.names = {request.target.filename().string()};
   check_fit_output(request.output, targets);
-  common.progress("reading the scan");
   const bool may_move = request.reading.head_pose != "fixed";
-  const PlacedScan scan = place_scan(subject, formats::read(request.target), may_move);
+  const PlacedScan scan = place_scan(subject, scene, may_move);
   for (const std::string& warning : scan.warnings)
     common.warn(warning);
   common.progress("fit " + targets.names.front());
@@ -126,8 +129,8 @@ void run(const Common& common, const Request& request) {
   std::vector<fit::FitResult> results;
   std::vector<double> motion;
   nlohmann::ordered_json scan_figures;
-  if (is_scan(request, subject))
-    fit_one_scan(common, request, subject, targets, results, motion, scan_figures);
+  if (const auto scan = scan_of(request, subject))
+    fit_one_scan(common, request, *scan, subject, targets, results, motion, scan_figures);
   else
     fit_targets(common, request, subject, targets, results, motion);
   write_fit(request.output, subject, targets, results, request.reading.fps);

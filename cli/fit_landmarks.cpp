@@ -10,6 +10,7 @@
 #include "builder/rigging/gltf_source.h"
 #include "builder/skull/procrustes.h"
 #include "builder/spatial/surface_query.h"
+#include "cli/still_landmarks.h"
 #include "formats/landmark_file.h"
 #include "geometry/error.h"
 
@@ -51,20 +52,6 @@ const std::vector<std::pair<int, const char*>> ibug_68 = {
     {54, "cheilion_left"},
     {57, "labiale_inferius"},
 };
-
-/// Landmarks by which the head's own motion is told.
-const std::vector<std::string> still_landmarks = {"nasion",
-                                                  "sellion",
-                                                  "rhinion",
-                                                  "exocanthion_left",
-                                                  "exocanthion_right",
-                                                  "endocanthion_left",
-                                                  "endocanthion_right",
-                                                  "tragion_left",
-                                                  "tragion_right",
-                                                  "glabella",
-                                                  "subnasale",
-                                                  "pronasale"};
 
 struct Frame {
   double time = 0.0;
@@ -165,17 +152,9 @@ class SkinLandmarks {
     TriangleMesh skin;
     for (size_t v = 0; v < subject.vertex_count(); ++v)
       skin.vertices.push_back(subject.rest().segment<3>(static_cast<Eigen::Index>(3 * v)));
-    const rig::RigFile& file = subject.file();
-    for (const rig::Binding& binding : file.rig.tissue.bindings.front()) {
-      if (binding.part != "skin") continue;
-      const size_t p = file.primitive_of(binding);
-      const int first = static_cast<int>(subject.first_vertex(p));
-      for (const auto& t : file.primitives[p].triangles)
-        skin.triangles.push_back(
-            {static_cast<int>(t[0]) + first, static_cast<int>(t[1]) + first, static_cast<int>(t[2]) + first});
-    }
+    skin.triangles = subject.skin_triangles();
     const spatial::SurfaceQuery surface(skin);
-    for (const rig::Landmark& landmark : file.rig.skull.landmarks) {
+    for (const rig::Landmark& landmark : subject.file().rig.skull.landmarks) {
       const spatial::ClosestPoint foot = surface.nearest_place(landmark.skin.cast<double>(), 0.01);
       if (!foot.found()) continue;
       Place place;

@@ -1,7 +1,6 @@
 #include "cli/fit_scan.h"
 
 #include <Eigen/Geometry>
-#include <array>
 #include <cmath>
 
 #include "builder/prepare/prepare.h"
@@ -9,6 +8,7 @@
 #include "builder/skull/procrustes.h"
 #include "builder/spatial/surface_query.h"
 #include "cli/fit_match.h"
+#include "cli/still_landmarks.h"
 #include "geometry/error.h"
 
 namespace fascia::cli {
@@ -18,16 +18,10 @@ namespace {
 constexpr double near = 0.025;      // metres: a scan this near the head is on it
 constexpr double same_size = 0.08;  // a scale nearer to 1 is the same person's, measured by moving landmarks
 
-/// Landmarks that expressions leave about where they are.
-constexpr std::array still_landmarks = {
-    "nasion",           "sellion",           "glabella",          "rhinion",
-    "exocanthion_left", "exocanthion_right", "endocanthion_left", "endocanthion_right",
-    "tragion_left",     "tragion_right",     "pronasale",         "subnasale"};
-
 /// Share of the rig's landmarks that lie near the mesh.
 double share_near(const fit::Subject& subject, const spatial::SurfaceQuery& surface) {
   int count = 0, close = 0;
-  for (const std::string name : still_landmarks)
+  for (const std::string_view name : still_landmarks)
     for (const rig::Landmark& landmark : subject.file().rig.skull.landmarks) {
       if (landmark.name != name) continue;
       ++count;
@@ -59,9 +53,9 @@ PlacedScan place_scan(const fit::Subject& subject, const formats::Scene& scene, 
   if (!may_search || share_near(subject, spatial::SurfaceQuery(out.mesh)) > 0.7) return out;
   const rigging::FoundLandmarks found = face_of(scene);
   std::vector<Vec3> from, to;
-  for (const std::string name : still_landmarks)
+  for (const std::string_view name : still_landmarks)
     for (const rig::Landmark& landmark : subject.file().rig.skull.landmarks) {
-      const auto at = found.landmarks.find(name);
+      const auto at = found.landmarks.find(std::string(name));
       if (landmark.name != name || at == found.landmarks.end()) continue;
       from.push_back(at->second.position);
       to.push_back(landmark.skin.cast<double>());

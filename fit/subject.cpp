@@ -78,6 +78,19 @@ bool Subject::follows(size_t vertex) const {
   return jaw_shares_[vertex] != 0.0F || weights_.outerIndexPtr()[row + 1] > weights_.outerIndexPtr()[row];
 }
 
+std::vector<Triangle> Subject::skin_triangles() const {
+  std::vector<Triangle> triangles;
+  for (const rig::Binding& binding : file_.rig.tissue.bindings.front()) {
+    if (binding.part != "skin") continue;
+    const size_t p = file_.primitive_of(binding);
+    const int first = static_cast<int>(first_vertex(p));
+    for (const auto& t : file_.primitives[p].triangles)
+      triangles.push_back(
+          {static_cast<int>(t[0]) + first, static_cast<int>(t[1]) + first, static_cast<int>(t[2]) + first});
+  }
+  return triangles;
+}
+
 int32_t Subject::channel(const std::string& name) const {
   for (size_t c = 0; c < channels().size(); ++c)
     if (channels()[c].name == name) return static_cast<int32_t>(c);

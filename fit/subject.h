@@ -39,6 +39,8 @@ class Subject {
   const std::vector<uint8_t>& eyes() const { return eyes_; }  ///< #vertices: 0 none, 1 left, 2 right
   /// True where tissue or jaw moves the vertex; eyes are moved apart.
   bool follows(size_t vertex) const;
+  /// Triangles of all that the rig binds as skin, by vertices of the subject.
+  std::vector<Triangle> skin_triangles() const;
 
   /// Index of a channel, or -1.
   int32_t channel(const std::string& name) const;

@@ -42,26 +42,15 @@ struct Skin {
 
 Skin skin_of(const Subject& subject, int most) {
   Skin skin;
-  const rig::RigFile& file = subject.file();
-  std::vector<bool> is_skin(subject.vertex_count(), false);
-  for (const rig::Binding& binding : file.rig.tissue.bindings.front()) {
-    if (binding.part != "skin") continue;
-    const size_t p = file.primitive_of(binding);
-    const int first = static_cast<int>(subject.first_vertex(p));
-    for (const auto& t : file.primitives[p].triangles)
-      skin.triangles.push_back(
-          {static_cast<int>(t[0]) + first, static_cast<int>(t[1]) + first, static_cast<int>(t[2]) + first});
-    for (size_t v = 0; v < file.primitives[p].positions.size(); ++v)
-      is_skin[static_cast<size_t>(first) + v] = true;
-  }
+  skin.triangles = subject.skin_triangles();
   if (skin.triangles.empty()) throw Error("the rig binds no skin: build it again");
   const TriangleMesh mesh{skin.positions(subject, Eigen::VectorXd::Zero(subject.rest().size())),
                           skin.triangles};
   const spatial::SurfaceQuery surface(mesh);
   const std::vector<Vec3> normals = vertex_normals(mesh);
   std::vector<size_t> outer;
-  for (size_t v = 0; v < is_skin.size(); ++v)
-    if (is_skin[v] && !normals[v].isZero(0) &&
+  for (size_t v = 0; v < normals.size(); ++v)  // without a normal: no vertex of the skin
+    if (!normals[v].isZero(0) &&
         !surface.blocked(mesh.vertices[v] + 2e-4 * normals[v], normals[v], seen_from))
       outer.push_back(v);
   // Every so many of those that move, and as many again of the others: the face tells more than the scalp.

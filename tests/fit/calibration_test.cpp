@@ -3,15 +3,13 @@
 #include "fit/calibration.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "cli/demo_curves.h"
 #include "formats/scene.h"
 #include "geometry/error.h"
-#include "tests/cli/tool.h"
+#include "tests/fit/embedded_subject.h"
 
 namespace fascia::fit {
 namespace {
@@ -19,36 +17,9 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-class Calibrate : public ::testing::Test {
+class Calibrate : public EmbeddedSubject {
  protected:
-  static void SetUpTestSuite() {
-    folder = new fs::path(fs::temp_directory_path() / ("fascia_calibrate_test_" + std::to_string(getpid())));
-    fs::remove_all(*folder);
-    fs::create_directories(*folder);
-    cli::write_embedded_head(*folder / "head.obj", *folder / "landmarks.json");
-    const cli::Outcome built = run("build " + at("head.obj") + " --landmarks " + at("landmarks.json") +
-                                   " --detail low -o " + at("rig.glb") + " --quiet");
-    ASSERT_EQ(built.code, 0) << built.err;
-    subject = new Subject(rig::read(formats::read_bytes(at("rig.glb"))), "low");
-  }
-  static void TearDownTestSuite() {
-    delete subject;
-    fs::remove_all(*folder);
-    delete folder;
-  }
-  static std::string at(const std::string& name) { return (*folder / name).string(); }
-  static cli::Outcome run(const std::string& arguments) { return cli::run_tool(*folder, arguments); }
-
   using Named = std::map<std::string, float>;
-
-  static std::vector<float> values_of(const Named& set) {
-    std::vector<float> values;
-    for (const rig::Channel& channel : subject->channels()) {
-      const auto entry = set.find(channel.name);
-      values.push_back(entry == set.end() ? channel.rest : entry->second);
-    }
-    return values;
-  }
 
   /// What a person looks like whose muscles pull `strength` times as much as `set` says.
   static CalibrationCase seen(const std::string& name, const Named& set, const Named& strength) {
@@ -65,13 +36,7 @@ class Calibrate : public ::testing::Test {
   static double gain(const Calibration& calibration, const std::string& channel) {
     return calibration.gains[static_cast<size_t>(subject->channel(channel))];
   }
-
-  static fs::path* folder;
-  static Subject* subject;
 };
-
-fs::path* Calibrate::folder = nullptr;
-Subject* Calibrate::subject = nullptr;
 
 const std::map<std::string, float> weak_smile_strong_brow = {{"zygomaticus_major_superior_left", 0.6F},
                                                              {"zygomaticus_major_superior_right", 0.6F},

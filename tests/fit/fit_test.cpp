@@ -1,16 +1,14 @@
 // Activations found again from what they make, on the embedded head at low detail.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "cli/demo_curves.h"
 #include "fit/fit.h"
 #include "formats/scene.h"
 #include "geometry/error.h"
-#include "tests/cli/tool.h"
+#include "tests/fit/embedded_subject.h"
 
 namespace fascia::fit {
 namespace {
@@ -18,32 +16,9 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-class Fit : public ::testing::Test {
+class Fit : public EmbeddedSubject {
  protected:
-  static void SetUpTestSuite() {
-    folder = new fs::path(fs::temp_directory_path() / ("fascia_fit_test_" + std::to_string(getpid())));
-    fs::remove_all(*folder);
-    fs::create_directories(*folder);
-    cli::write_embedded_head(*folder / "head.obj", *folder / "landmarks.json");
-    const cli::Outcome built = run("build " + at("head.obj") + " --landmarks " + at("landmarks.json") +
-                                   " --detail low -o " + at("rig.glb") + " --quiet");
-    ASSERT_EQ(built.code, 0) << built.err;
-    subject = new Subject(rig::read(formats::read_bytes(at("rig.glb"))), "low");
-  }
-  static void TearDownTestSuite() {
-    delete subject;
-    fs::remove_all(*folder);
-    delete folder;
-  }
-  static std::string at(const std::string& name) { return (*folder / name).string(); }
-  static cli::Outcome run(const std::string& arguments) { return cli::run_tool(*folder, arguments); }
-
-  static std::vector<float> rest() {
-    std::vector<float> values;
-    for (const rig::Channel& channel : subject->channels())
-      values.push_back(channel.rest);
-    return values;
-  }
+  static std::vector<float> rest() { return values_of({}); }
   static void set(std::vector<float>& values, const std::string& name, float value) {
     const int32_t channel = subject->channel(name);
     ASSERT_GE(channel, 0) << name;
@@ -53,13 +28,7 @@ class Fit : public ::testing::Test {
     subject->pose(values, false);
     return {subject->displacements(values), std::vector<double>(subject->vertex_count(), 1.0)};
   }
-
-  static fs::path* folder;
-  static Subject* subject;
 };
-
-fs::path* Fit::folder = nullptr;
-Subject* Fit::subject = nullptr;
 
 /// Columns and adjoint against differences of the pose itself.
 TEST_F(Fit, DerivativesAreThoseOfThePose) {

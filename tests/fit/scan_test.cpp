@@ -2,17 +2,15 @@
 #include "fit/scan/scan.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <Eigen/Geometry>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "cli/demo_curves.h"
 #include "formats/scene.h"
 #include "geometry/error.h"
-#include "tests/cli/tool.h"
+#include "tests/fit/embedded_subject.h"
 
 namespace fascia::fit {
 namespace {
@@ -20,35 +18,8 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-class FitScan : public ::testing::Test {
+class FitScan : public EmbeddedSubject {
  protected:
-  static void SetUpTestSuite() {
-    folder = new fs::path(fs::temp_directory_path() / ("fascia_fit_scan_test_" + std::to_string(getpid())));
-    fs::remove_all(*folder);
-    fs::create_directories(*folder);
-    cli::write_embedded_head(*folder / "head.obj", *folder / "landmarks.json");
-    const cli::Outcome built = run("build " + at("head.obj") + " --landmarks " + at("landmarks.json") +
-                                   " --detail low -o " + at("rig.glb") + " --quiet");
-    ASSERT_EQ(built.code, 0) << built.err;
-    subject = new Subject(rig::read(formats::read_bytes(at("rig.glb"))), "low");
-  }
-  static void TearDownTestSuite() {
-    delete subject;
-    fs::remove_all(*folder);
-    delete folder;
-  }
-  static std::string at(const std::string& name) { return (*folder / name).string(); }
-  static cli::Outcome run(const std::string& arguments) { return cli::run_tool(*folder, arguments); }
-
-  static std::vector<float> pose(const std::map<std::string, float>& set) {
-    std::vector<float> values;
-    for (const rig::Channel& channel : subject->channels()) {
-      const auto entry = set.find(channel.name);
-      values.push_back(entry == set.end() ? channel.rest : entry->second);
-    }
-    return values;
-  }
-
   static Eigen::VectorXd displacements(const std::vector<float>& values) {
     subject->pose(values, false);
     return subject->displacements(values);
@@ -116,16 +87,10 @@ class FitScan : public ::testing::Test {
             {"frontalis_medial_left", 0.5F},
             {"frontalis_medial_right", 0.5F}};
   }
-
-  static fs::path* folder;
-  static Subject* subject;
 };
 
-fs::path* FitScan::folder = nullptr;
-Subject* FitScan::subject = nullptr;
-
 TEST_F(FitScan, FindsTheMotionBehindAnotherTopology) {
-  const Eigen::VectorXd truth = displacements(pose(smile_with_open_mouth()));
+  const Eigen::VectorXd truth = displacements(values_of(smile_with_open_mouth()));
   const ScanFit found = fit_scan(*subject, scan(truth));
   EXPECT_GT(share(truth, found.result.displacements), 0.95);
   EXPECT_LT(found.result.rms_mm, 0.15);
@@ -133,7 +98,7 @@ TEST_F(FitScan, FindsTheMotionBehindAnotherTopology) {
 }
 
 TEST_F(FitScan, BringsTheScanOntoTheHead) {
-  const Eigen::VectorXd truth = displacements(pose(smile_with_open_mouth()));
+  const Eigen::VectorXd truth = displacements(values_of(smile_with_open_mouth()));
   TriangleMesh moved = scan(truth, 0.0005);
   const Eigen::Isometry3d motion =
       Eigen::Translation3d(0.004, -0.006, 0.005) * Eigen::AngleAxisd(0.08, Vec3(0.3, 1.0, 0.2).normalized());
@@ -170,7 +135,7 @@ TEST_F(FitScan, RefusesWhatIsElsewhere) {
 }
 
 TEST_F(FitScan, LandmarksAloneTellTheFace) {
-  const std::vector<float> values = pose(smile_with_open_mouth());
+  const std::vector<float> values = values_of(smile_with_open_mouth());
   const Eigen::VectorXd truth = displacements(values);
   json rest, posed;
   for (const rig::Landmark& landmark : subject->file().rig.skull.landmarks) {
@@ -196,14 +161,14 @@ TEST_F(FitScan, LandmarksAloneTellTheFace) {
                                   at("rest.json") + " -o " + at("found.json") + " --json");
   ASSERT_EQ(fitted.code, 0) << fitted.err;
   const auto found = json::parse(fitted.out)["activations"].get<std::map<std::string, float>>();
-  EXPECT_GT(share(truth, displacements(pose(found))), 0.93);
+  EXPECT_GT(share(truth, displacements(values_of(found))), 0.93);
   const cli::Outcome refused =
       run("fit " + at("rig.glb") + " --target " + at("found.json") + " -o " + at("x.json"));
   EXPECT_EQ(refused.code, 1) << "activations are no landmarks";
 }
 
 TEST_F(FitScan, TheToolTakesAScanInAnyPoseAndUnit) {
-  const Eigen::VectorXd truth = displacements(pose(smile_with_open_mouth()));
+  const Eigen::VectorXd truth = displacements(values_of(smile_with_open_mouth()));
   const TriangleMesh mesh = scan(truth);
   const Mat3 turn = Eigen::AngleAxisd(0.5, Vec3(0.1, 1.0, 0.1).normalized()).toRotationMatrix();
   std::ofstream file(at("scan.obj"));
@@ -218,7 +183,7 @@ TEST_F(FitScan, TheToolTakesAScanInAnyPoseAndUnit) {
       run("fit " + at("rig.glb") + " --target " + at("scan.obj") + " -o " + at("scan.json") + " --json");
   ASSERT_EQ(fitted.code, 0) << fitted.err;
   const auto found = json::parse(fitted.out)["activations"].get<std::map<std::string, float>>();
-  EXPECT_GT(share(truth, displacements(pose(found))), 0.9);
+  EXPECT_GT(share(truth, displacements(values_of(found))), 0.9);
 }
 
 }  // namespace
