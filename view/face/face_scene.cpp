@@ -147,6 +147,15 @@ FaceScene::FaceScene(const rig::Rig& rig, std::vector<FacePart> parts, Appearanc
             ? coordinates_in(part.part == "eye_left" ? rig.skull.eye_left : rig.skull.eye_right, part.rest)
             : std::vector<Vec3>());
   }
+  std::vector<std::vector<Vec3>> rest;
+  std::vector<std::vector<Triangle>> triangles;
+  for (size_t m = 0; m < parts_.size(); ++m) {
+    if (parts_[m].part != "skin") continue;
+    skin_parts_.push_back(m);
+    rest.push_back(parts_[m].rest);
+    triangles.push_back(parts_[m].triangles);
+  }
+  skin_normals_.emplace(rest, triangles);
 }
 
 DrawList FaceScene::list(const FaceState& state, const FaceView& view) const {
@@ -161,7 +170,24 @@ DrawList FaceScene::list(const FaceState& state, const FaceView& view) const {
   return list;
 }
 
+std::vector<std::vector<Vec3>> FaceScene::skin_normals(
+    const std::vector<std::vector<Vec3>>& positions) const {
+  std::vector<std::vector<Vec3>> skin, normals(parts_.size());
+  for (const size_t m : skin_parts_)
+    skin.push_back(positions[m]);
+  std::vector<std::vector<Vec3>> found = skin_normals_->of(skin);
+  for (size_t k = 0; k < skin_parts_.size(); ++k)
+    normals[skin_parts_[k]] = std::move(found[k]);
+  return normals;
+}
+
 void FaceScene::add_parts(const FaceState& state, const FaceView& view, DrawList& list) const {
+  std::vector<std::vector<Vec3>> positions;
+  for (size_t m = 0; m < parts_.size(); ++m) {
+    positions.push_back(points_of(state.positions[m]));
+    if (positions[m].size() != parts_[m].rest.size()) throw Error("a face to draw does not fit its rig");
+  }
+  std::vector<std::vector<Vec3>> normals = skin_normals(positions);
   const bool is_glass = has_depth(view.layers) && !view.reveal,
              shows_strain = view.layers.count("strain") > 0;
   for (size_t m = 0; m < parts_.size(); ++m) {
@@ -173,8 +199,8 @@ void FaceScene::add_parts(const FaceState& state, const FaceView& view, DrawList
     if (is_card(part.part) && !is_painted) continue;
     if (is_glass && (is_card(part.part) || part.part == "brows" || part.part == "other")) continue;
     DrawSurface surface;
-    surface.positions = points_of(state.positions[m]);
-    if (surface.positions.size() != part.rest.size()) throw Error("a face to draw does not fit its rig");
+    surface.positions = positions[m];
+    surface.normals = std::move(normals[m]);
     surface.triangles = part.triangles;
     surface.seams = seams_[m];
     const Substance substance = substance_of(part.part);

@@ -11,6 +11,7 @@
 #include "rig/model/rig.h"
 #include "view/face/appearance.h"
 #include "view/face/heat_map.h"
+#include "view/face/joint_normals.h"
 #include "view/scene.h"
 
 namespace fascia::view {
@@ -60,6 +61,7 @@ class FaceScene {
   const Appearance& appearance() const { return appearance_; }
 
  private:
+  std::vector<std::vector<Vec3>> skin_normals(const std::vector<std::vector<Vec3>>& positions) const;
   void add_parts(const FaceState& state, const FaceView& view, DrawList& list) const;
   void add_bones(const FaceState& state, const FaceView& view, DrawList& list) const;
   void add_muscles(const FaceState& state, const FaceView& view, DrawList& list) const;
@@ -70,6 +72,8 @@ class FaceScene {
   Appearance appearance_;
   std::vector<std::shared_ptr<const std::vector<int>>> seams_;
   std::vector<std::vector<Vec3>> eye_coordinates_;
+  std::vector<size_t> skin_parts_;
+  std::optional<JointNormals> skin_normals_;  ///< of `skin_parts_`
 };
 
 /// A colour of its own for each muscle, the same for both sides; sRGB.
