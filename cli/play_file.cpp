@@ -72,7 +72,7 @@ std::vector<NodeMotion> turned_nodes(const PlayRequest& request, const Take& tak
   return head_motion(edit.json, take, meshes, axes, pivot);
 }
 
-/// Records the take and measures it. Vertices outside the sample may be off farther than those in it: then
+/// Records the take with its errors. Vertices outside the sample may be off farther than those in it: then
 /// once more, aiming lower, as long as more targets are free.
 Recording record_within(const Common& common, const PlayRequest& request, const Take& take, const Face& face,
                         double tolerance) {
@@ -157,7 +157,7 @@ PlayFigures play_file(const Common& common, const PlayRequest& request) {
   Progress progress(common, "play",
                     {{"simulation", 1.0},
                      {"principal components", wants_cache ? 0.0 : 0.2},
-                     {"measurement", wants_cache ? 0.0 : 1.0},
+                     {"measurement", 0.0},  // of motions that are too rich to keep
                      {"writing", 0.2}});
   progress.begin("simulation");
   if (wants_cache)

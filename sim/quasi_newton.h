@@ -26,11 +26,33 @@ struct LineSearch {
   double least_curvature = 1e-6;  ///< share of a step's slope that its change of the gradient must show
 };
 
+/// Where a line search looks next after a step of `length` did not do: at the minimum of the cubic through
+/// both ends' values and slopes (Nocedal & Wright 2006, equation 3.59), or where values differ by less than
+/// their rounding where the slopes say it is flat; between a tenth and a half of the step. Slopes are those
+/// of a whole step.
+inline double shorter_step(double length, double value, double slope, double trial, double trial_slope,
+                           double rounding) {
+  constexpr double least = 0.1, most = 0.5;
+  double next = most * length;
+  if (!std::isfinite(trial) || !std::isfinite(trial_slope)) return next;
+  if (std::abs(trial - value) <= rounding * std::abs(value)) {
+    if (trial_slope > slope) next = length * slope / (slope - trial_slope);
+  } else {
+    const double first = slope + trial_slope - 3.0 * (trial - value) / length;
+    const double squared = first * first - slope * trial_slope;
+    if (squared >= 0.0) {
+      const double second = std::sqrt(squared);
+      next = length - length * (trial_slope + second - first) / (trial_slope - slope + 2.0 * second);
+    }
+  }
+  return std::isfinite(next) ? std::clamp(next, least * length, most * length) : most * length;
+}
+
 /// The limited-memory BFGS method on a preconditioner (Nocedal & Wright 2006, algorithms 7.4 and 7.5; Liu,
-/// Bouaziz & Kavan 2017, algorithm 1), with backtracking until the function falls (Armijo): one text for
-/// every number type. Moves the unknowns of `space` to a minimum; on return they are at the best point found,
-/// and where the function is not finite at the start they stay as they were. Allocates nothing if `space`
-/// does not.
+/// Bouaziz & Kavan 2017, algorithm 1), with backtracking by interpolation until the function falls (Armijo):
+/// one text for every number type. Moves the unknowns of `space` to a minimum; on return they are at the best
+/// point found, and where the function is not finite at the start they stay as they were. Allocates nothing
+/// if `space` does not.
 ///
 /// A space holds the unknowns x and the lists the method works on:
 ///   history                     how many corrections are kept
@@ -54,6 +76,7 @@ MinimiseResult minimise(Space& space, const MinimiseOptions& options, const Line
   MinimiseResult result;
   std::array<double, history> curvatures{};
   size_t first = 0, count = 0;
+  bool interpolates = true;  // where rounding misleads interpolation, plain halving has the last word
   double value = space.evaluate();
   for (int iteration = 0;; ++iteration) {
     result.iterations = iteration;
@@ -95,13 +118,17 @@ MinimiseResult minimise(Space& space, const MinimiseOptions& options, const Line
       fell = trial <= value + 1e-4 * length * slope || (trial <= value + search.rounding * std::abs(value) &&
                                                         std::abs(space.slope()) <= 0.9 * std::abs(slope));
       if (fell) break;
-      space.go(-0.5 * length);
-      length *= 0.5;
+      const double next = interpolates
+                              ? shorter_step(length, value, slope, trial, space.slope(), search.rounding)
+                              : 0.5 * length;
+      space.go(next - length);
+      length = next;
     }
     if (!fell) {
       space.go(-length);
       space.keep_gradient();
-      if (count == 0) return result;  // as low as rounding lets it go
+      if (count == 0 && !interpolates) return result;  // as low as rounding lets it go
+      interpolates = count > 0;
       count = 0;
       continue;
     }
@@ -114,6 +141,7 @@ MinimiseResult minimise(Space& space, const MinimiseOptions& options, const Line
       else
         first = (first + 1) % history;
     }
+    interpolates = true;
     value = trial;
   }
 }

@@ -12,6 +12,7 @@
 #include "builder/smas/smas.h"
 #include "formats/landmark_file.h"
 #include "formats/scene.h"
+#include "geometry/for_each.h"
 #include "rig/model/rig.h"
 
 /// The whole way from a head mesh to its rig, stage after stage.
@@ -26,6 +27,8 @@ struct BuildOptions {
   Edits edits;                        ///< the user's changes to landmarks and muscles
   /// Called as each stage begins, with its name; may be empty.
   std::function<void(const std::string& stage)> progress;
+  /// How independent parts of a stage are run; empty: one after the other. The rig is the same.
+  ForEach for_each;
 };
 
 struct StageTime {

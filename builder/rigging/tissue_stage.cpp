@@ -132,6 +132,7 @@ rig::Tissue build_tissue(const formats::Scene& scene, const prepare::PreparedHea
                          BuildReport& report) {
   tissue::TissueOptions tissue_options;
   tissue_options.levels = levels_up_to(options.detail);
+  tissue_options.for_each = options.for_each;
   tissue::TissueResult built = tissue::build(inputs, tissue_options);
   report.warnings.insert(report.warnings.end(), built.warnings.begin(), built.warnings.end());
   for (const auto& figures : built.figures) {
@@ -141,10 +142,11 @@ rig::Tissue build_tissue(const formats::Scene& scene, const prepare::PreparedHea
                                 " turned prisms at rest");
   }
   const std::vector<MeshPart> parts = take_apart(scene, head);
-  for (std::vector<rig::Binding>& bindings : built.tissue.bindings) {
+  run_each(options.for_each, built.tissue.bindings.size(), [&](size_t level) {
+    std::vector<rig::Binding>& bindings = built.tissue.bindings[level];
     bindings = put_together(scene, head, parts, bindings);
     share_vertices(scene, bindings);
-  }
+  });
   return std::move(built.tissue);
 }
 

@@ -50,6 +50,27 @@ std::string closed_features(const FaceRegion& region) {
   return closed;
 }
 
+/// A level with all that its columns carry. Throws Error when it came out unsound.
+rig::TissueLevel complete_level(const TissueInputs& inputs, const FaceRegion& region, const Beneath& beneath,
+                                const LevelOptions& wanted, const TissueOptions& options,
+                                const Columns& columns) {
+  rig::TissueLevel level = make_level(inputs, wanted, columns);
+  add_fibres(inputs, columns, level);
+  add_lip_seal(inputs, columns, level);
+  add_lids(inputs, region, columns, level);
+  add_lip_rolls(inputs, region, beneath, columns, level);
+  add_pressures(inputs, columns, level);
+  if (options.contact) {
+    add_ligaments(inputs, columns, level);
+    add_contact(inputs, columns, level);
+    add_facing(inputs, region, columns, level);
+  }
+  if (const char* fault = sim::lattice_fault(sim::lattice_of(level)))
+    throw Error("the " + wanted.name + " tissue lattice came out unsound (" + fault +
+                "): check the head's skin around lips and lids");
+  return level;
+}
+
 }  // namespace
 
 TissueResult build(const TissueInputs& inputs, const TissueOptions& options) {
@@ -61,27 +82,21 @@ TissueResult build(const TissueInputs& inputs, const TissueOptions& options) {
     result.warnings.push_back(closed +
                               " are closed in the skin, so they do not part: cut the mesh open there");
   const Beneath beneath = find_beneath(inputs, region, options);
-  for (const LevelOptions& wanted : options.levels) {
+  const size_t levels = options.levels.size();
+  result.tissue.levels.resize(levels);
+  result.tissue.bindings.resize(levels);
+  result.figures.resize(levels);
+  run_each(options.for_each, levels, [&](size_t k) {
+    // The finest first: it takes longest.
+    const size_t at = levels - 1 - k;
+    const LevelOptions& wanted = options.levels[at];
     const Columns columns = make_columns(inputs, region, beneath, wanted, options);
-    rig::TissueLevel level = make_level(inputs, wanted, columns);
-    add_fibres(inputs, columns, level);
-    add_lip_seal(inputs, columns, level);
-    add_lids(inputs, region, columns, level);
-    add_lip_rolls(inputs, region, beneath, columns, level);
-    add_pressures(inputs, columns, level);
-    if (options.contact) {
-      add_ligaments(inputs, columns, level);
-      add_contact(inputs, columns, level);
-      add_facing(inputs, region, columns, level);
-    }
-    if (const char* fault = sim::lattice_fault(sim::lattice_of(level)))
-      throw Error("the " + wanted.name + " tissue lattice came out unsound (" + fault +
-                  "): check the head's skin around lips and lids");
+    rig::TissueLevel level = complete_level(inputs, region, beneath, wanted, options, columns);
     const std::vector<Follow> skin = follow_skin(inputs, region, columns);
-    result.tissue.bindings.push_back(bind_parts(inputs, region, columns, skin));
-    result.figures.push_back(figures_of(level));
-    result.tissue.levels.push_back(std::move(level));
-  }
+    result.tissue.bindings[at] = bind_parts(inputs, region, columns, skin);
+    result.figures[at] = figures_of(level);
+    result.tissue.levels[at] = std::move(level);
+  });
   return result;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "anatomy/mechanics.h"
+#include "geometry/for_each.h"
 #include "geometry/mesh.h"
 #include "rig/model/rig.h"
 
@@ -54,6 +55,7 @@ struct TissueOptions {
   double edge_ratio = 2.7;       ///< edge length far from lips and lids over that at them
   double edge_growth = 0.045;    ///< distance over which it grows
   double corner_growth = 0.012;  ///< distance over which it grows
+  ForEach for_each;              ///< how levels are made: the same on any number of threads
 };
 
 }  // namespace fascia::tissue

@@ -128,6 +128,7 @@ Components components(const MotionSpace& space, size_t limit, double tolerance) 
   const Index directions = coefficients.rows();
   if (directions == 0 || coefficients.cols() == 0) {  // nothing moves farther than the space follows
     result.shapes.resize(static_cast<Index>(3 * space.vertices().size()), 0);
+    result.mix.resize(directions, 0);
     result.weights.resize(0, static_cast<Index>(space.frames()));
     return result;
   }
@@ -159,6 +160,7 @@ Components components(const MotionSpace& space, size_t limit, double tolerance) 
     fit.mix.col(k) *= peak;
   }
   result.shapes = space.mixed(fit.mix);
+  result.mix = std::move(fit.mix);
   return result;
 }
 

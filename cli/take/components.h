@@ -9,6 +9,7 @@ namespace fascia::cli {
 /// A take's motion as few shapes and their weights over time.
 struct Components {
   Eigen::MatrixXf shapes;      ///< 3 #moving vertices x #components
+  Eigen::MatrixXf mix;         ///< #directions x #components: what each shape is made of
   Eigen::MatrixXf weights;     ///< #components x #frames; the largest of each component is 1
   double sampled_error = 0.0;  ///< at the space's sampled vertices, in its unit
   size_t wanted = 0;  ///< how many components would reach the tolerance; 0: more than the space follows

@@ -1,5 +1,7 @@
 #include "cli/take/motion_space.h"
 
+#include <tbb/parallel_for.h>
+
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
@@ -104,7 +106,34 @@ void MotionSpace::take_block() {
     if (directions_.size() >= options_.most_directions) give_up_the_least();
     extend(worst);
   }
+  if (is_whole_) measure_block();
   waiting_ = 0;
+}
+
+/// How far the block's frames are off at any vertex.
+void MotionSpace::measure_block() {
+  const auto known = static_cast<Index>(directions_.size()), count = static_cast<Index>(waiting_);
+  const auto length = static_cast<Index>(3 * moving_.size());
+  const auto coefficients = coefficients_.block(0, static_cast<Index>(frames_ - waiting_), known, count);
+  constexpr Index rows = 3 * 1024;
+  const auto pieces = static_cast<size_t>((length + rows - 1) / rows);
+  Eigen::MatrixXf most = Eigen::MatrixXf::Zero(count, static_cast<Index>(pieces));
+  tbb::parallel_for(size_t{0}, pieces, [&](size_t piece) {
+    const Index first = static_cast<Index>(piece) * rows, here = std::min(rows, length - first);
+    Eigen::MatrixXf part(rows, known);
+    copy_rows(first, here, part);
+    Eigen::MatrixXf off = part.topRows(here) * coefficients;
+    for (Index f = 0; f < count; ++f) {
+      const float* frame = block_[static_cast<size_t>(f)].data();
+      for (Index i = 0; i < here; i += 3) {
+        const float* place = frame + 3 * moving_[static_cast<size_t>((first + i) / 3)];
+        off.col(f).segment<3>(i) -= Eigen::Map<const Eigen::Vector3f>(place);
+      }
+      most(f, static_cast<Index>(piece)) = largest_length(off.col(f));
+    }
+  });
+  for (Index f = 0; f < count; ++f)
+    left_.push_back(pieces > 0 ? most.row(f).maxCoeff() : 0.0F);
 }
 
 Eigen::VectorXf MotionSpace::whole(std::span<const float> frame) const {
@@ -159,6 +188,8 @@ void MotionSpace::copy_rows(Index row, Index count, Eigen::MatrixXf& to) const {
 /// so many directions is not worth following as closely.
 void MotionSpace::give_up_the_least() {
   options_.tolerance *= 1.5;
+  is_whole_ = false;
+  left_.clear();
   const auto known = static_cast<Index>(directions_.size());
   const Index kept = known - known / 4;
   const auto seen = coefficients_.topLeftCorner(known, static_cast<Index>(frames_));

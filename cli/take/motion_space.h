@@ -14,8 +14,8 @@ namespace fascia::cli {
 /// that leaves a vertex more than the tolerance off, what is left becomes a new direction (a greedy reduced
 /// basis; Haasdonk 2013, Convergence rates of the POD-greedy method). Both are done at a sample of the
 /// vertices only, on which the directions are orthonormal, and carried over to all: the skin follows a
-/// lattice with far fewer degrees of freedom than the sample has (gappy POD; Everson & Sirovich 1995). What
-/// that leaves at the other vertices is for the caller to measure.
+/// lattice with far fewer degrees of freedom than the sample has (gappy POD; Everson & Sirovich 1995). How
+/// far a frame is then off at any vertex of all is measured before it is let go.
 class MotionSpace {
  public:
   struct Options {
@@ -42,6 +42,9 @@ class MotionSpace {
   const std::vector<uint32_t>& vertices() const { return moving_; }
   /// #directions x #frames.
   const Eigen::MatrixXf& coefficients() const { return coefficients_; }
+  /// #frames: how far a frame's directions are off it at any vertex, in the frames' unit. Empty when some
+  /// directions had to be given up.
+  const std::vector<float>& left() const { return left_; }
   /// 3 #sampled x #directions: the directions at the sampled vertices, with orthonormal columns.
   const Eigen::MatrixXf& sampled_directions() const { return sampled_directions_; }
   /// 3 #vertices() x #columns: the directions mixed by `mix` (#directions x #columns).
@@ -50,6 +53,7 @@ class MotionSpace {
  private:
   void take_block();
   void find_moving();
+  void measure_block();
   void extend(Eigen::Index column);
   void give_up_the_least();
   void copy_rows(Eigen::Index row, Eigen::Index count, Eigen::MatrixXf& to) const;
@@ -66,6 +70,8 @@ class MotionSpace {
   Eigen::MatrixXf sampled_directions_;
   Eigen::MatrixXf coefficients_;  ///< room for more columns than frames while frames come
   Eigen::MatrixXf sampled_frames_, sampled_left_;
+  std::vector<float> left_;  ///< by frame
+  bool is_whole_ = true;     ///< no direction was given up
 };
 
 }  // namespace fascia::cli

@@ -1,6 +1,9 @@
 #include "cli/take/recording.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "cli/take/keyframes.h"
@@ -24,6 +27,54 @@ MatrixXf sampled_rows(const MatrixXf& shapes, Index most) {
   for (Index v = 0; v < count; ++v)
     rows.middleRows<3>(3 * v) = shapes.middleRows<3>(3 * v * stride);
   return rows;
+}
+
+/// What is written of the mesh `motion` stands for when shapes may take `aim` of it.
+void write_down(const MotionSpace& space, const RecordingOptions& options, double aim, MeshMotion& motion) {
+  motion.components = components(space, options.most_targets, share_of_components * aim);
+  motion.keys = keys_of_shapes(motion.components.weights, sampled_rows(motion.components.shapes, 600),
+                               share_of_keys * aim);
+}
+
+/// The largest error frame by frame is at most what the directions leave of it and what shapes and linear
+/// weights leave of those.
+void bound_errors(const MotionSpace& space, MeshMotion& motion) {
+  motion.largest_error = 0.0;
+  if (space.left().size() != space.frames()) return;
+  const MatrixXf rest =
+      space.coefficients() - motion.components.mix * between_keys(motion.components.weights, motion.keys);
+  constexpr Index block = 64;
+  std::vector<float> errors = space.left();
+  motion.left = *std::max_element(errors.begin(), errors.end());
+  tbb::parallel_for(Index{0}, (rest.cols() + block - 1) / block, [&](Index b) {
+    const Index first = b * block, count = std::min(block, rest.cols() - first);
+    const MatrixXf off = space.mixed(rest.middleCols(first, count));
+    for (Index f = 0; f < count; ++f) {
+      float most = 0.0F;
+      for (Index i = 0; i + 2 < off.rows(); i += 3)
+        most = std::max(most, off.col(f).segment<3>(i).squaredNorm());
+      errors[static_cast<size_t>(first + f)] += std::sqrt(most);
+    }
+  });
+  const auto worst = std::max_element(errors.begin(), errors.end());
+  motion.largest_error = static_cast<double>(*worst);
+  motion.largest_error_frame = static_cast<size_t>(worst - errors.begin());
+  motion.is_measured = true;
+}
+
+/// Writes down a mesh's motion; where its errors add up to more than they may, once more, aiming lower.
+void write_down_within(const MotionSpace& space, const RecordingOptions& options, MeshMotion& motion) {
+  double aim = options.tolerance;
+  for (int attempt = 0; attempt < 3; ++attempt) {
+    write_down(space, options, aim, motion);
+    bound_errors(space, motion);
+    const bool is_full = motion.components.weights.rows() >= static_cast<Index>(options.most_targets);
+    const auto left = static_cast<double>(motion.left);
+    if (!motion.is_measured || is_full || motion.largest_error <= options.tolerance ||
+        left > 0.5 * options.tolerance)
+      return;
+    aim *= 0.95 * (options.tolerance - left) / (motion.largest_error - left);
+  }
 }
 
 /// Measures one mesh, some frames at a time.
@@ -121,30 +172,34 @@ Recording record(const Common& common, const Take& take, Face& face, const Recor
     MeshMotion motion;
     motion.mesh = meshes[m];
     motion.vertices = spaces[m].vertices();
-    motion.components = components(spaces[m], options.most_targets, share_of_components * options.tolerance);
-    motion.keys = keys_of_shapes(motion.components.weights, sampled_rows(motion.components.shapes, 600),
-                                 share_of_keys * options.tolerance);
+    write_down_within(spaces[m], options, motion);
     recording.meshes.push_back(std::move(motion));
   }
   return recording;
 }
 
 void measure(const Common& common, const Take& take, Face& face, Recording& recording) {
-  std::vector<Measurement> measurements;
-  measurements.reserve(recording.meshes.size());
+  std::vector<MeshMotion*> unknown;
   for (MeshMotion& motion : recording.meshes)
-    measurements.emplace_back(motion);
+    if (!motion.is_measured) unknown.push_back(&motion);
+  if (unknown.empty()) return;
+  std::vector<Measurement> measurements;
+  measurements.reserve(unknown.size());
+  for (MeshMotion* motion : unknown)
+    measurements.emplace_back(*motion);
   std::vector<float> frame;
   common.progress("measurement");
   Progress progress(common, "frame", take.frames());
   perform(take, face, progress, [&](size_t) {
     for (size_t m = 0; m < measurements.size(); ++m) {
-      displacement(face, recording.meshes[m].mesh, frame);
+      displacement(face, unknown[m]->mesh, frame);
       measurements[m].add(frame);
     }
   });
   for (Measurement& measurement : measurements)
     measurement.finish();
+  for (MeshMotion* motion : unknown)
+    motion->is_measured = true;
 }
 
 }  // namespace fascia::cli

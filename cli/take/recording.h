@@ -26,9 +26,12 @@ struct MeshMotion {
   MeshOfFile mesh;
   std::vector<uint32_t> vertices;  ///< those that move, in the order of the shapes' rows
   Components components;
-  std::vector<size_t> keys;    ///< frames that have weights; between them they are linear
-  double largest_error = 0.0;  ///< of what is written, at any vertex of any frame, in the mesh's unit
+  std::vector<size_t> keys;  ///< frames that have weights; between them they are linear
+  double largest_error =
+      0.0;  ///< of what is written, at most, at any vertex of any frame, in the mesh's unit
   size_t largest_error_frame = 0;
+  float left = 0.0F;         ///< of that, what the directions leave in their worst frame
+  bool is_measured = false;  ///< whether the errors are known yet
 };
 
 /// What a first run through a take leaves.
@@ -44,11 +47,13 @@ struct RecordingOptions {
 };
 
 /// Runs through the take on a fresh face and keeps of it what can be written. Memory grows by the channels
-/// and the directions of motion, not by vertices times frames.
+/// and the directions of motion, not by vertices times frames. Errors are sums of what directions leave of a
+/// frame and what shapes and keys leave of the directions; they are known but of meshes whose motion has too
+/// many directions to keep.
 Recording record(const Common& common, const Take& take, Face& face, const RecordingOptions& options);
 
 /// Runs through the take again on another fresh face and measures how far what is written is off, at every
-/// vertex of every frame.
+/// vertex of every frame, for the meshes of which that is not known.
 void measure(const Common& common, const Take& take, Face& face, Recording& recording);
 
 }  // namespace fascia::cli
