@@ -13,6 +13,7 @@ import copy
 import json
 import os
 import random
+import resource
 import signal
 import struct
 import subprocess
@@ -181,22 +182,25 @@ def commands(fascia, name, file, rig, head, out):
 def run(command, limit, memory):
     """What went wrong, or nothing."""
     with tempfile.TemporaryFile() as told:
-        process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=told)
+        process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=told,
+                                   preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (limit, limit + 1)))
         begin = time.monotonic()
         while True:
             done, status, used = os.wait4(process.pid, os.WNOHANG)
             if done:
                 break
-            if time.monotonic() - begin > limit:
+            if time.monotonic() - begin > 10 * limit:  # it waits for something
                 process.kill()
                 os.wait4(process.pid, 0)
-                return f"more than {limit} s"
+                return f"no end in {10 * limit} s"
             time.sleep(0.003)
         process.returncode = 0  # it is reaped
         told.seek(0)
         text = told.read().decode("utf-8", "replace").strip()
     if used.ru_maxrss > memory * 1024:
         return f"{used.ru_maxrss // 1024} MB"
+    if os.WIFSIGNALED(status) and os.WTERMSIG(status) in (signal.SIGXCPU, signal.SIGKILL):
+        return f"more than {limit} s of the processor"
     if os.WIFSIGNALED(status):
         return f"{signal.Signals(os.WTERMSIG(status)).name}: {text[-300:]}"
     code = os.WEXITSTATUS(status)
@@ -216,7 +220,7 @@ def main():
     parser.add_argument("--seconds", type=float, default=120.0)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--count", type=int, default=1 << 60)
-    parser.add_argument("--limit", type=float, default=20.0, help="seconds a command")
+    parser.add_argument("--limit", type=int, default=20, help="seconds of the processor a command")
     parser.add_argument("--memory", type=int, default=1024, help="MB a command")
     parser.add_argument("--keep", default="findings")
     given = parser.parse_intermixed_args()
