@@ -82,9 +82,24 @@ configure_file(${CMAKE_CURRENT_LIST_DIR}/fascia.pc.in ${PROJECT_BINARY_DIR}/inst
 install(FILES ${PROJECT_BINARY_DIR}/install/fasciaConfig.cmake ${PROJECT_BINARY_DIR}/install/fasciaConfigVersion.cmake
   DESTINATION ${package_folder} COMPONENT development)
 install(FILES ${PROJECT_BINARY_DIR}/install/fascia.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
+# The licence and what changed, under the packages' names.
+string(TIMESTAMP FASCIA_DATE "%a, %d %b %Y %H:%M:%S +0000" UTC)  # SOURCE_DATE_EPOCH's where that is set
+configure_file(${CMAKE_CURRENT_LIST_DIR}/debian_changelog.in ${PROJECT_BINARY_DIR}/install/changelog.Debian @ONLY)
+find_program(FASCIA_GZIP gzip)
+if(FASCIA_GZIP)
+  execute_process(COMMAND ${FASCIA_GZIP} -9nf ${PROJECT_BINARY_DIR}/install/changelog.Debian)
+  execute_process(COMMAND ${FASCIA_GZIP} -9nc ${PROJECT_SOURCE_DIR}/CHANGELOG.md
+                  OUTPUT_FILE ${PROJECT_BINARY_DIR}/install/changelog.gz)
+  set(changelogs ${PROJECT_BINARY_DIR}/install/changelog.gz ${PROJECT_BINARY_DIR}/install/changelog.Debian.gz)
+endif()
+set(FASCIA_PACKAGE_runtime libfascia${PROJECT_VERSION_MAJOR})
+set(FASCIA_PACKAGE_development libfascia-dev)
+set(FASCIA_PACKAGE_tool fascia)
+set(FASCIA_PACKAGE_builder libfascia-builder-dev)
 foreach(component runtime development tool builder)
-  install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/fascia-${component}
-    COMPONENT ${component} RENAME copyright)
+  set(documents ${CMAKE_INSTALL_DATADIR}/doc/${FASCIA_PACKAGE_${component}})
+  install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${documents} COMPONENT ${component} RENAME copyright)
+  install(FILES ${changelogs} DESTINATION ${documents} COMPONENT ${component})
 endforeach()
 
 if(FASCIA_BUILD_BUILDER)
