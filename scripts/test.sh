@@ -43,5 +43,6 @@ if [ "$full" = 1 ]; then
   ASAN_OPTIONS=detect_leaks=0 xvfb-run -a -s '-screen 0 1600x1000x24' \
     build/asan/bin/fascia view --monkey "$(date +%j)" --seconds 300
   tests/validator/validate.sh build/bin/fascia
+  scripts/packages.sh
   scripts/hosts.sh
 fi
