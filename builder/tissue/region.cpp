@@ -42,35 +42,94 @@ std::optional<std::array<Vec3, 4>> lid_places(const TissueInputs& inputs, const 
   return places;
 }
 
+/// What lies between an eye's lids: an ellipse of quarters through the lids' landmarks, before the eye.
+struct LidEllipse {
+  std::array<Vec3, 4> places;
+  Vec3 middle, front;
+  double width = 0.0;
+
+  /// A place on it `share` of the way from the middle, at `turn` quarters.
+  Vec3 at(double turn, double share) const {
+    const double angle = 0.5 * EIGEN_PI * (turn - std::floor(turn));
+    const auto from = static_cast<size_t>(turn) % 4;
+    return middle + share * (std::cos(angle) * (places[from] - middle) +
+                             std::sin(angle) * (places[(from + 1) % 4] - middle));
+  }
+
+  /// Whether `p`, seen from the front, lies within `share` of it.
+  bool holds(const Vec3& p, double share) const {
+    const auto flat = [&](const Vec3& d) { return Vec3(d - d.dot(front) * front); };
+    const Vec3 d = flat(p - middle);
+    for (size_t k = 0; k < 4; ++k) {
+      const Vec3 a = flat(places[k] - middle), b = flat(places[(k + 1) % 4] - middle);
+      const double area = a.cross(b).dot(front);
+      if (area == 0.0) continue;
+      const double along_a = d.cross(b).dot(front) / area, along_b = a.cross(d).dot(front) / area;
+      if (along_a >= 0.0 && along_b >= 0.0) return std::hypot(along_a, along_b) < share;
+    }
+    return false;
+  }
+};
+
+/// The ellipse of an eye without an eyeball; nothing when it has one, or landmarks are missing or no fissure.
+std::optional<LidEllipse> empty_fissure(const TissueInputs& inputs, bool left) {
+  const std::string side = left ? "_left" : "_right";
+  const bool has_eyeball = std::any_of(inputs.parts.begin(), inputs.parts.end(),
+                                       [&](const PartMesh& part) { return part.part == "eye" + side; });
+  const auto places = lid_places(inputs, side);
+  if (has_eyeball || !places) return {};
+  const auto& [outer, upper, inner, lower] = *places;
+  const Vec3 lateral = outer - inner;
+  LidEllipse ellipse;
+  ellipse.places = *places;
+  ellipse.middle = 0.25 * (outer + upper + inner + lower);
+  ellipse.width = lateral.norm();
+  ellipse.front = lateral.cross(upper - lower);
+  if (!(ellipse.front.norm() > 1e-3 * ellipse.width * ellipse.width)) return {};
+  ellipse.front = ellipse.front.normalized() * (ellipse.front.z() < 0.0 ? -1.0 : 1.0);
+  return ellipse;
+}
+
+/// Whether what fills the fissure is the eye itself, one surface with its lids; a socket's wall lies far
+/// behind it.
+bool is_filled(const LidEllipse& ellipse, const spatial::SurfaceQuery& skin) {
+  constexpr double empty = 0.22;  // of the fissure's width
+  const auto wall =
+      skin.first_hit(ellipse.middle + ellipse.width * ellipse.front, -ellipse.front, 4.0 * ellipse.width);
+  return wall && wall->distance < (1.0 + empty) * ellipse.width;
+}
+
+/// Skin vertices that are an eye in one surface with its lids: the lids move before it.
+std::vector<bool> eyes_in_skin(const TissueInputs& inputs) {
+  constexpr double within = 0.9;        // of the way to the lids' edges
+  constexpr double least_height = 0.1;  // of its width: lids nearer to each other are closed
+  std::vector<bool> eye(inputs.skin.vertices.size(), false);
+  const spatial::SurfaceQuery query(inputs.skin);
+  for (const bool left : {true, false}) {
+    const auto ellipse = empty_fissure(inputs, left);
+    if (!ellipse || !is_filled(*ellipse, query)) continue;
+    if ((ellipse->places[1] - ellipse->places[3]).norm() < least_height * ellipse->width) continue;
+    for (size_t v = 0; v < eye.size(); ++v)
+      if ((inputs.skin.vertices[v] - ellipse->middle).norm() < 0.7 * ellipse->width &&
+          ellipse->holds(inputs.skin.vertices[v], within))
+        eye[v] = true;
+  }
+  return eye;
+}
+
 /// Closes the fissures of eyes that are empty sockets, so that what lies in them is not seen from outside.
 void hang_curtains(const TissueInputs& inputs, TriangleMesh& blocking) {
-  constexpr double margin = 1.12, behind = 0.03, empty = 0.22;  // of the fissure's width but for the first
+  constexpr double margin = 1.12, behind = 0.03;  // of the way to the edges; of the fissure's width
   const spatial::SurfaceQuery query(blocking);
-  for (const std::string side : {"_left", "_right"}) {
-    const bool has_eyeball = std::any_of(inputs.parts.begin(), inputs.parts.end(),
-                                         [&](const PartMesh& part) { return part.part == "eye" + side; });
-    const auto places = lid_places(inputs, side);
-    if (has_eyeball || !places) continue;
-    const auto& [outer, upper, inner, lower] = *places;
-    const Vec3 lateral = outer - inner;
-    const double width = lateral.norm();
-    Vec3 front = lateral.cross(upper - lower);
-    if (!(front.norm() > 1e-3 * width * width)) continue;
-    front = front.normalized() * (front.z() < 0.0 ? -1.0 : 1.0);
-    const Vec3 middle = 0.25 * (outer + upper + inner + lower);
-    // An eye that is one surface with its lids stands in the fissure; a socket's wall lies far behind it.
-    const auto wall = query.first_hit(middle + width * front, -front, 4.0 * width);
-    if (wall && wall->distance < (1.0 + empty) * width) continue;
+  for (const bool left : {true, false}) {
+    const auto ellipse = empty_fissure(inputs, left);
+    if (!ellipse || is_filled(*ellipse, query)) continue;
+    const Vec3 back = -behind * ellipse->width * ellipse->front;
     const int first = blocking.vertex_count();
     constexpr int corners = 24;
-    blocking.vertices.push_back(middle - behind * width * front);
+    blocking.vertices.push_back(ellipse->middle + back);
     for (int k = 0; k < corners; ++k) {
-      // Quarters of ellipses from place to place.
-      const double turn = 4.0 * k / corners, share = 0.5 * EIGEN_PI * (turn - std::floor(turn));
-      const auto from = static_cast<size_t>(turn);
-      const Vec3 rim = std::cos(share) * ((*places)[from] - middle) +
-                       std::sin(share) * ((*places)[(from + 1) % 4] - middle);
-      blocking.vertices.push_back(middle + margin * rim - behind * width * front);
+      blocking.vertices.push_back(ellipse->at(4.0 * k / corners, margin) + back);
       blocking.triangles.push_back({first, first + 1 + k, first + 1 + (k + 1) % corners});
     }
   }
@@ -186,16 +245,19 @@ Opening opening_of_loop(const TissueInputs& inputs, const TriangleMesh& mesh, co
 
 /// The outer vertices beyond which the skin goes on, or ends at the neck or behind the ears. Where it ends
 /// within the face, as a mask does at the chin, nothing holds it but the bone beneath.
-std::vector<bool> rim_of(const TissueInputs& inputs, const TriangleMesh& skin, const FaceRegion& region) {
+std::vector<bool> rim_of(const TissueInputs& inputs, const TriangleMesh& skin, const FaceRegion& region,
+                         const std::vector<bool>& eye) {
   const Vec3 glabella = landmark(inputs, "glabella"), gnathion = landmark(inputs, "gnathion");
   // The throat begins some way below the chin: a fifth of the face's height.
   const double neck = gnathion.y() - 0.2 * (glabella.y() - gnathion.y());
   const double ears = std::min(landmark(inputs, "tragion_left").z(), landmark(inputs, "tragion_right").z());
   std::vector<int> triangles(region.outer.size(), 0);
-  for (const fascia::Triangle& t : skin.triangles)
+  for (const fascia::Triangle& t : skin.triangles) {
+    if (std::any_of(t.begin(), t.end(), [&](int v) { return eye[static_cast<size_t>(v)]; })) continue;
     for (const int corner : t)
       if (const int v = region.region_vertex[static_cast<size_t>(corner)]; v >= 0)
         ++triangles[static_cast<size_t>(v)];
+  }
   for (const fascia::Triangle& t : region.mesh.triangles)
     for (const int v : t)
       --triangles[static_cast<size_t>(v)];
@@ -282,10 +344,11 @@ FaceRegion find_region(const TissueInputs& inputs, const TissueOptions& options)
     margin[v] = margin_at(inputs, skin.vertices[v]);
   std::vector<bool> outer = seen_from_outside(inputs, margin);
   calm(skin, outer);
+  const std::vector<bool> eye = eyes_in_skin(inputs);
 
   std::vector<bool> within(skin.vertices.size());
   for (size_t v = 0; v < within.size(); ++v)
-    within[v] = margin[v] > 0.0;
+    within[v] = margin[v] > 0.0 && !eye[v];
   // The outer face: what hangs together with the tip of the nose.
   const Vec3 tip = landmark(inputs, "pronasale");
   int start = -1;
@@ -359,7 +422,17 @@ FaceRegion find_region(const TissueInputs& inputs, const TissueOptions& options)
         edges_of[static_cast<size_t>(region.opening[beyond])].push_back({static_cast<int>(v)});
         break;
       }
-  region.rim = rim_of(inputs, skin, region);
+  for (const fascia::Triangle& t : skin.triangles) {
+    if (std::none_of(t.begin(), t.end(), [&](int v) { return eye[static_cast<size_t>(v)]; })) continue;
+    for (const int corner : t)
+      if (const int v = region.region_vertex[static_cast<size_t>(corner)];
+          v >= 0 && region.outer[static_cast<size_t>(v)]) {
+        edges.push_back({v});
+        edges_of[static_cast<size_t>(opening_at(inputs, region.mesh.vertices[static_cast<size_t>(v)]))]
+            .push_back({v});
+      }
+  }
+  region.rim = rim_of(inputs, skin, region, eye);
   for (const auto& loop : boundary_loops(region.mesh, connectivity(region.mesh)))
     if (const Opening hole = opening_of_loop(inputs, region.mesh, loop); hole != Opening::none)
       for (const int v : loop) {
