@@ -5,22 +5,21 @@
 #include "app/workspace.h"
 #include "formats/files.h"
 #include "geometry/error.h"
+#include "geometry/text.h"
 
 namespace fascia::app {
 
 namespace {
 
 bool is_mesh_file(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = extension_of(file);
   return extension == ".glb" || extension == ".gltf" || extension == ".obj" || extension == ".ply" ||
          extension == ".stl" || extension == ".vrm";
 }
 
 /// An edits file is JSON that has one of the builder's lists; other JSON is a recording.
 bool is_edits_file(const std::filesystem::path& file) {
-  if (file.extension() != ".json") return false;
+  if (extension_of(file) != ".json") return false;
   const std::vector<uint8_t> bytes = formats::read_bytes(file);
   const auto json = nlohmann::ordered_json::parse(bytes.begin(), bytes.end(), nullptr, false);
   return json.is_object() &&

@@ -12,6 +12,7 @@
 #include "formats/content_hash.h"
 #include "formats/files.h"
 #include "geometry/error.h"
+#include "geometry/text.h"
 
 namespace fascia::batch {
 
@@ -19,12 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
-
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
 
 /// A name that any file system and any shell takes.
 std::string plain(const std::string& name) {
@@ -63,7 +58,7 @@ std::vector<Head> heads_in(const fs::path& folder) {
   for (const auto& entry :
        fs::recursive_directory_iterator(folder, fs::directory_options::skip_permission_denied)) {
     std::error_code status;
-    if (entry.is_regular_file(status) && kinds.count(lower(entry.path().extension().string())))
+    if (entry.is_regular_file(status) && kinds.count(extension_of(entry.path())))
       heads.push_back({"", entry.path(), "", "", {}});
   }
   std::sort(heads.begin(), heads.end(), [](const Head& a, const Head& b) { return a.file < b.file; });
@@ -162,7 +157,7 @@ Task checked(const Task& task, const std::string& where) {
 /// Files beside a glTF that hold its numbers.
 std::vector<fs::path> buffers_of(const Head& head, const std::vector<uint8_t>& bytes) {
   std::vector<fs::path> files;
-  if (lower(head.file.extension().string()) != ".gltf") return files;
+  if (extension_of(head.file) != ".gltf") return files;
   const Json json = Json::parse(
       bytes.begin(), bytes.end(), [](int depth, Json::parse_event_t, Json&) { return depth < 64; }, false);
   if (!json.is_object() || !json.contains("buffers") || !json["buffers"].is_array()) return files;

@@ -13,6 +13,7 @@
 #include "formats/scene.h"
 #include "geometry/error.h"
 #include "geometry/nearest_names.h"
+#include "geometry/text.h"
 #include "rig/write/write.h"
 
 namespace fascia::cli {
@@ -78,7 +79,7 @@ std::vector<ShapeToBake> shapes_of(const Face& face, const BakeRequest& request)
 
 std::string format_of(const BakeRequest& request) {
   if (!request.format.empty()) return request.format;
-  const std::string extension = request.output.extension().string();
+  const std::string extension = extension_of(request.output);
   if (extension == ".glb") return "glb";
   if (extension == ".pc2") return "pc2";
   throw Error("'" + request.output.string() +

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/page.h"
+#include "geometry/text.h"
 
 namespace fascia::cli {
 
@@ -78,7 +79,7 @@ auto failed_checks(const std::vector<Record>& records) {
 std::string names(const std::vector<std::string>& ids) {
   std::string text;
   for (size_t i = 0; i < std::min(ids.size(), most_names); ++i)
-    text += (i > 0 ? ", " : "") + page::escaped(ids[i]);
+    text += (i > 0 ? ", " : "") + escaped_markup(ids[i]);
   return ids.size() > most_names ? text + " and " + std::to_string(ids.size() - most_names) + " more" : text;
 }
 
@@ -87,21 +88,21 @@ std::string groups_part(const std::string& title,
   if (groups.empty()) return "";
   std::string out = "<h2>" + title + "</h2>\n<table>\n";
   for (const auto& [what, ids] : groups)
-    out += "<tr><td>" + page::escaped(what) + "</td><td class=n>" + std::to_string(ids.size()) + "</td><td>" +
-           names(ids) + "</td></tr>\n";
+    out += "<tr><td>" + escaped_markup(what) + "</td><td class=n>" + std::to_string(ids.size()) +
+           "</td><td>" + names(ids) + "</td></tr>\n";
   return out + "</table>\n";
 }
 
 std::string card(const Record& record) {
   std::string out = "<div style=\"width:250px\"><img width=240 height=240 loading=lazy alt=\"\" src=\"" +
-                    page::escaped(record.id) + "/thumbnail.png\"><br>" + page::escaped(record.id) + "<br>";
+                    escaped_markup(record.id) + "/thumbnail.png\"><br>" + escaped_markup(record.id) + "<br>";
   if (record.failed_checks.empty())
     return out +
            (record.checks < 0 ? "not checked" : "all " + std::to_string(record.checks) + " checks hold") +
            "</div>\n";
   out += "<span class=far>" + std::to_string(record.failed_checks.size()) + " checks fail:</span> ";
   for (size_t i = 0; i < record.failed_checks.size(); ++i)
-    out += (i > 0 ? ", " : "") + page::escaped(record.failed_checks[i]);
+    out += (i > 0 ? ", " : "") + escaped_markup(record.failed_checks[i]);
   return out + "</div>\n";
 }
 

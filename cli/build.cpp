@@ -12,6 +12,7 @@
 #include "cli/rig_build.h"
 #include "formats/scene.h"
 #include "geometry/error.h"
+#include "geometry/text.h"
 #include "rig/write/write.h"
 
 namespace fascia::cli {
@@ -178,7 +179,7 @@ void add_anatomy_option(const Command& command, std::filesystem::path& directory
 rigging::BuildReport build_file(const Common& common, const BuildRequest& request, int* failed_checks) {
   check_output(request.output, {request.head, request.landmarks, request.edits});
   if (!request.report.empty()) make_output_folder(request.report);
-  if (request.output.extension() != ".glb")
+  if (extension_of(request.output) != ".glb")
     throw Error("'" + request.output.string() + "': a rig is a .glb file; give -o NAME.glb");
   // Shares of a build at medium detail; where another stage takes longest, the time left follows as it is
   // seen.

@@ -12,6 +12,7 @@
 #include "fit/calibration.h"
 #include "formats/scene.h"
 #include "geometry/error.h"
+#include "geometry/text.h"
 #include "rig/write/write.h"
 
 namespace fascia::cli {
@@ -76,9 +77,7 @@ class Tables {
 };
 
 bool is_mesh_file(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = extension_of(path);
   return extension == ".obj" || extension == ".ply" || extension == ".glb" || extension == ".gltf" ||
          extension == ".stl";
 }
@@ -180,7 +179,7 @@ void say_table(const Common& common, const fit::Calibration& calibration) {
 
 void run(const Common& common, const Request& request) {
   check_output(request.output, {request.rig, request.scans});
-  if (request.output.extension() != ".glb")
+  if (extension_of(request.output) != ".glb")
     throw Error("'" + request.output.string() + "': a rig is written as .glb");
   const std::vector<uint8_t> bytes = formats::read_bytes(request.rig);
   fit::Subject subject(rig::read(bytes, request.rig.string()), request.level);

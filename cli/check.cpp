@@ -12,6 +12,7 @@
 #include "cli/progress.h"
 #include "formats/scene.h"
 #include "geometry/error.h"
+#include "geometry/text.h"
 
 namespace fascia::cli {
 
@@ -61,7 +62,7 @@ std::string table_of(const std::vector<check::Row>& rows) {
 void run(const Common& common, const Request& request) {
   if (!request.sheet.empty()) {
     check_output(request.sheet, {request.rig});
-    if (request.sheet.extension() != ".png")
+    if (extension_of(request.sheet) != ".png")
       throw Error("'" + request.sheet.string() + "': a sheet is written as .png; give --sheet NAME.png");
   }
   Progress progress(common, "check", {{"poses", 1.0}, {"sheet", request.sheet.empty() ? 0.0 : 1.0}});

@@ -9,6 +9,7 @@
 #include "formats/scene.h"
 #include "formats/write.h"
 #include "geometry/error.h"
+#include "geometry/text.h"
 #include "rig/read/read.h"
 
 namespace fascia::cli {
@@ -76,7 +77,8 @@ void add_muscles(formats::Drawing& drawing, const rig::Rig& rig, const ToInput& 
 }
 
 void write_landmarks(const std::filesystem::path& output, const rig::Rig& rig, const ToInput& to_input) {
-  if (output.extension() != ".json") throw Error("'" + output.string() + "': landmarks are written as .json");
+  if (extension_of(output) != ".json")
+    throw Error("'" + output.string() + "': landmarks are written as .json");
   const double metres = 1.0 / to_input.scale();
   Json json;
   // Only these three have a name in a landmark file; other units stand as the head file's own.

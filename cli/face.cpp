@@ -12,6 +12,7 @@
 #include "formats/landmark_file.h"
 #include "formats/scene.h"
 #include "geometry/error.h"
+#include "geometry/text.h"
 
 namespace fascia::cli {
 
@@ -68,8 +69,7 @@ std::map<std::string, Vec3> bone_landmarks(const Request& request, const formats
 std::string depth_table(const Request& request, anatomy::GenericAnatomy& anatomy,
                         std::vector<std::string>& warnings) {
   if (request.depths.empty()) return reconstruction::nearest_table(anatomy, request.person, warnings);
-  if (anatomy.depth_table(request.depths) || std::filesystem::path(request.depths).extension() != ".json")
-    return request.depths;
+  if (anatomy.depth_table(request.depths) || extension_of(request.depths) != ".json") return request.depths;
   const std::vector<std::string> added = anatomy::add_depth_tables(anatomy, request.depths);
   std::erase_if(anatomy.depth_tables, [&](const anatomy::TissueDepthTable& table) {
     return std::find(added.begin(), added.end(), table.name) == added.end();
@@ -91,9 +91,9 @@ void check_outputs(const Request& request) {
   const std::vector<std::filesystem::path> inputs = {request.skull, request.landmarks};
   for (const auto& path : {request.output, request.landmarks_out, request.sheet, request.rig})
     if (!path.empty()) check_output(path, inputs);
-  if (!request.sheet.empty() && request.sheet.extension() != ".png")
+  if (!request.sheet.empty() && extension_of(request.sheet) != ".png")
     throw Error("'" + request.sheet.string() + "': a sheet is written as .png");
-  if (!request.landmarks_out.empty() && request.landmarks_out.extension() != ".json")
+  if (!request.landmarks_out.empty() && extension_of(request.landmarks_out) != ".json")
     throw Error("'" + request.landmarks_out.string() + "': landmarks are written as .json");
 }
 

@@ -16,6 +16,7 @@
 #include "fit/fit.h"
 #include "formats/scene.h"
 #include "geometry/error.h"
+#include "geometry/text.h"
 
 namespace fascia::cli {
 
@@ -64,7 +65,7 @@ nlohmann::ordered_json summary(const std::vector<fit::FitResult>& results,
 }
 
 bool is_landmark_file(const std::filesystem::path& path) {
-  return path.extension() == ".json";
+  return extension_of(path) == ".json";
 }
 
 /// The target where it is a scan: one mesh of another topology than the rig's, or one that is said to be a
@@ -72,7 +73,7 @@ bool is_landmark_file(const std::filesystem::path& path) {
 std::optional<formats::Scene> scan_of(const Request& request, const fit::Subject& subject) {
   const std::filesystem::path& path = request.target;
   const std::string& as = request.reading.as;
-  const std::string extension = path.extension().string();
+  const std::string extension = extension_of(path);
   const bool may_be = as == "auto" && !std::filesystem::is_directory(path) && extension != ".pc2" &&
                       extension != ".mdd" && !is_landmark_file(path);
   if (as != "scan" && !may_be) return {};

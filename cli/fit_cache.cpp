@@ -6,6 +6,7 @@
 
 #include "formats/obj_lines.h"
 #include "geometry/error.h"
+#include "geometry/text.h"
 
 namespace fascia::cli {
 
@@ -19,7 +20,7 @@ PointCache read_cache(const std::filesystem::path& path, double fps) {
     cache.first = 32;
     for (size_t f = 0; f < cache.frames && f < cache.bytes.size(); ++f)
       cache.times.push_back(static_cast<double>(f) / fps);
-  } else if (path.extension() == ".mdd" && cache.bytes.size() >= 8) {
+  } else if (extension_of(path) == ".mdd" && cache.bytes.size() >= 8) {
     cache.is_big_endian = true;
     cache.frames = cache.word(0);
     cache.points = cache.word(4);

@@ -10,6 +10,7 @@
 #include "cli/picture.h"
 #include "formats/scene.h"
 #include "geometry/error.h"
+#include "geometry/text.h"
 #include "view/renderer.h"
 
 namespace fascia::cli {
@@ -198,7 +199,7 @@ void add_certainty(const fit::Subject& subject, const fit::FitResult& result,
 }
 
 void check_fit_output(const std::filesystem::path& path, const FitTargets& targets) {
-  const std::string extension = path.extension().string();
+  const std::string extension = extension_of(path);
   if (targets.kind == FitTargets::Kind::mesh && extension != ".json")
     throw Error("'" + path.string() + "': the activations of one mesh are written as .json");
   if (targets.kind == FitTargets::Kind::take && extension != ".csv" && extension != ".json")
@@ -233,8 +234,8 @@ void write_fit(const std::filesystem::path& path, const fit::Subject& subject, c
   std::vector<double> times = targets.times;
   for (size_t i = times.size(); i < results.size(); ++i)
     times.push_back(static_cast<double>(i) / fps);
-  formats::write_text(path, path.extension() == ".csv" ? csv_of(subject, times, results)
-                                                       : curves_of(subject, times, results));
+  formats::write_text(path, extension_of(path) == ".csv" ? csv_of(subject, times, results)
+                                                         : curves_of(subject, times, results));
 }
 
 void write_fit_report(const std::filesystem::path& folder, const fit::Subject& subject,

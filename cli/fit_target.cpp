@@ -9,6 +9,7 @@
 #include "cli/fit_shapes.h"
 #include "formats/scene.h"
 #include "geometry/error.h"
+#include "geometry/text.h"
 
 namespace fascia::cli {
 
@@ -37,7 +38,7 @@ FitTargets cache_targets(const std::filesystem::path& path, const TargetMaker& m
 FitTargets sequence_targets(const std::filesystem::path& folder, const TargetMaker& maker, double fps) {
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    const std::string extension = entry.path().extension().string();
+    const std::string extension = extension_of(entry.path());
     if (entry.is_regular_file() && (extension == ".obj" || extension == ".ply" || extension == ".glb"))
       files.push_back(entry.path());
   }
@@ -93,9 +94,7 @@ struct MorphTargets {
 FitTargets open_fit_targets(const Common& common, const std::filesystem::path& path,
                             const fit::Subject& subject, const FitTargetOptions& options) {
   const TargetMaker maker(subject, options.head_pose != "fixed");
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = extension_of(path);
   if (std::filesystem::is_directory(path)) return sequence_targets(path, maker, options.fps);
   if (extension == ".pc2" || extension == ".mdd") return cache_targets(path, maker, options.fps);
   const auto scene = std::make_shared<formats::Scene>(formats::read(path));

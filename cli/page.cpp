@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <cstdio>
 
+#include "geometry/text.h"
+
 namespace fascia::cli::page {
 
 namespace {
@@ -32,23 +34,6 @@ std::string base64(const std::vector<uint8_t>& bytes) {
 
 }  // namespace
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '"')
-      out += "&quot;";
-    else
-      out += c;
-  }
-  return out;
-}
-
 std::string number(double value, int digits) {
   char text[48];
   std::snprintf(text, sizeof text, "%.*f", digits, value);
@@ -63,14 +48,14 @@ std::string row(const std::vector<std::string>& cells, const char* tag, size_t f
 }
 
 std::string picture(const view::Image& image, const std::string& about) {
-  return "<img alt=\"" + escaped(about) + "\" src=\"data:image/png;base64," +
+  return "<img alt=\"" + escaped_markup(about) + "\" src=\"data:image/png;base64," +
          base64(view::encode_png(image)) + "\">";
 }
 
 std::string whole(const std::string& title, const std::string& body) {
-  return "<!DOCTYPE html>\n<html lang=en><head><meta charset=utf-8><title>" + escaped(title) +
-         "</title>\n<style>" + style + "</style></head>\n<body>\n<h1>" + escaped(title) + "</h1>\n" + body +
-         "</body></html>\n";
+  return "<!DOCTYPE html>\n<html lang=en><head><meta charset=utf-8><title>" + escaped_markup(title) +
+         "</title>\n<style>" + style + "</style></head>\n<body>\n<h1>" + escaped_markup(title) + "</h1>\n" +
+         body + "</body></html>\n";
 }
 
 }  // namespace fascia::cli::page

@@ -8,9 +8,6 @@
 /// Pages of HTML that need nothing beside them.
 namespace fascia::cli::page {
 
-/// Text as it may stand in HTML.
-std::string escaped(const std::string& text);
-
 /// `digits` after the point.
 std::string number(double value, int digits = 1);
 

@@ -5,6 +5,7 @@
 #include "cli/common.h"
 #include "cli/play_file.h"
 #include "geometry/error.h"
+#include "geometry/text.h"
 
 namespace fascia::cli {
 
@@ -15,7 +16,7 @@ void run(const Common& common, const PlayRequest& request) {
   std::vector<std::string> files;
   for (const std::filesystem::path& path : figures.files) {
     files.push_back(path.string());
-    const bool is_glb = path.extension() == ".glb";
+    const bool is_glb = extension_of(path) == ".glb";
     char error[32];
     std::snprintf(error, sizeof error, "%.3f", figures.largest_error_mm);
     common.say("wrote " + path.string() + ": " + std::to_string(figures.frames) + " frames" +

@@ -8,6 +8,7 @@
 #include "cli/take/take_animation.h"
 #include "formats/scene.h"
 #include "geometry/error.h"
+#include "geometry/text.h"
 #include "rig/read/read.h"
 #include "rig/write/write.h"
 
@@ -133,7 +134,7 @@ PlayFigures play_file(const Common& common, const PlayRequest& request) {
   check_output(request.output, {request.rig, request.curves});
   CacheKind kind{};
   const bool wants_cache = is_cache(request.output, kind);
-  if (!wants_cache && request.output.extension() != ".glb")
+  if (!wants_cache && extension_of(request.output) != ".glb")
     throw Error("'" + request.output.string() + "': an animation is written as .glb, .pc2 or .mdd");
   Curves curves(request.curves, request.curve_frames_per_second, request.time_unit);
   curves.trim(request.from, request.to);

@@ -5,6 +5,7 @@
 #include "cli/posed_output.h"
 #include "cli/posing.h"
 #include "geometry/error.h"
+#include "geometry/text.h"
 
 namespace fascia::cli {
 
@@ -18,7 +19,7 @@ struct Request {
 
 void run(const Common& common, const Request& request) {
   check_output(request.output, {request.rig, request.file});
-  const std::string extension = request.output.extension().string();
+  const std::string extension = extension_of(request.output);
   if (extension != ".glb" && extension != ".obj" && extension != ".ply")
     throw Error("'" + request.output.string() + "': a pose is written as .glb, .obj or .ply");
   const auto values = activations(request.set, request.file);

@@ -10,6 +10,7 @@
 #include "formats/scene.h"
 #include "formats/write.h"
 #include "geometry/error.h"
+#include "geometry/text.h"
 #include "rig/read/read.h"
 #include "rig/write/write.h"
 
@@ -92,7 +93,7 @@ void write_posed_glb(const std::filesystem::path& rig, const Face& face,
 void write_posed_mesh(const std::filesystem::path& rig, const Face& face,
                       const std::filesystem::path& output) {
   const rig::RigFile file = rig::read(formats::read_bytes(rig), rig.string());
-  if (file.source.format == "obj" && output.extension() == ".obj") {
+  if (file.source.format == "obj" && extension_of(output) == ".obj") {
     formats::write_text(output, obj_like_source(file.source, face));
     return;
   }

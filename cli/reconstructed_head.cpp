@@ -14,6 +14,7 @@
 #include "formats/obj_lines.h"
 #include "formats/scene.h"
 #include "geometry/error.h"
+#include "geometry/text.h"
 #include "view/renderer.h"
 
 namespace fascia::cli {
@@ -148,9 +149,9 @@ Vec3 spread_colour(double metres) {
 
 void write_reconstructed_head(const std::filesystem::path& path, const anatomy::GenericAnatomy& anatomy,
                               const Result& result, const Vec3& offset) {
-  if (path.extension() == ".obj")
+  if (extension_of(path) == ".obj")
     write_obj(path, anatomy, result, offset);
-  else if (path.extension() == ".glb")
+  else if (extension_of(path) == ".glb")
     write_glb(path, anatomy, result);
   else
     throw Error("'" + path.string() + "': a head is written as .glb or .obj");
@@ -161,7 +162,7 @@ void write_reconstructed_landmarks(const std::filesystem::path& path, const std:
                                    const Vec3& offset) {
   using Json = nlohmann::ordered_json;
   Json json;
-  const bool is_upright = head.extension() == ".glb";
+  const bool is_upright = extension_of(head) == ".glb";
   const double unit = is_upright ? 1.0 : result.metres;
   const Mat4 upright = scan_to_metres(result);
   for (const auto& [name, value] : {std::pair{"m", 1.0}, {"cm", 0.01}, {"mm", 0.001}})

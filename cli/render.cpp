@@ -11,6 +11,7 @@
 #include "cli/take/performance.h"
 #include "formats/scene.h"
 #include "geometry/error.h"
+#include "geometry/text.h"
 #include "view/image.h"
 #include "view/video.h"
 
@@ -166,7 +167,7 @@ class Picture {
 
 void run(const Common& common, const RenderRequest& request) {
   check_output(request.output, {request.rig});
-  const std::string extension = request.output.extension().string();
+  const std::string extension = extension_of(request.output);
   if (extension != ".png" && !view::is_film(request.output))
     throw Error("'" + request.output.string() +
                 "': a picture is written as .png, a film as .mp4, .gif or .webp");

@@ -7,6 +7,7 @@
 #include "cli/page.h"
 #include "formats/scene.h"
 #include "geometry/error.h"
+#include "geometry/text.h"
 
 namespace fascia::cli {
 
@@ -14,7 +15,6 @@ namespace {
 
 using Figures = rigging::BuildReport::LandmarkFigures;
 
-using page::escaped;
 using page::number;
 using page::row;
 
@@ -22,7 +22,7 @@ std::string warnings_part(const rigging::BuildReport& report) {
   if (report.warnings.empty()) return "<p>No warnings.</p>\n";
   std::string out = "<div class=warn><ul>\n";
   for (const std::string& warning : report.warnings)
-    out += "<li>" + escaped(warning) + "</li>\n";
+    out += "<li>" + escaped_markup(warning) + "</li>\n";
   return out + "</ul></div>\n";
 }
 
@@ -34,7 +34,7 @@ std::string times_part(const rigging::BuildReport& report) {
   }
   std::string out = "<table>\n";
   for (const auto& stage : report.stages)
-    out += row({escaped(stage.name), number(stage.seconds, 2) + " s",
+    out += row({escaped_markup(stage.name), number(stage.seconds, 2) + " s",
                 "<span class=bar style=\"width:" + number(240 * stage.seconds / longest, 0) + "px\"></span>"},
                "td", 1);
   return out + row({"<b>all</b>", "<b>" + number(total, 2) + " s</b>", ""}) + "</table>\n";
@@ -45,7 +45,7 @@ std::string figures_part(const rigging::BuildReport& report) {
   for (const auto& muscle : report.muscles)
     fibres += static_cast<size_t>(muscle.fibres);
   std::string out = "<table>\n";
-  out += row({"units of the file", escaped(report.units)});
+  out += row({"units of the file", escaped_markup(report.units)});
   out += row({"landmarks given, found",
               std::to_string(report.landmarks_given) + ", " + std::to_string(report.landmarks_found)});
   out += row({"bone off its targets, rms and largest",
@@ -64,7 +64,7 @@ std::string figures_part(const rigging::BuildReport& report) {
   out += row({"SMAS vertices outside skin and bone", std::to_string(report.smas_outside_layers)});
   out += row({"muscles, fibres", std::to_string(report.muscles.size()) + ", " + std::to_string(fibres)});
   for (const auto& level : report.tissue)
-    out += row({"tissue, " + escaped(level.name),
+    out += row({"tissue, " + escaped_markup(level.name),
                 std::to_string(level.nodes) + " nodes, " + std::to_string(level.springs) + " springs"});
   return out + "</table>\n";
 }
@@ -112,7 +112,7 @@ std::string landmarks_part(const std::vector<Figures>& landmarks) {
       row({"landmark", "origin", "confidence", "depth mm", "table mm", "SD mm", "residual mm"}, "th", 2);
   for (const Figures& landmark : landmarks) {
     const std::string origin = landmark.given ? "given" : "found";
-    const std::string name = escaped(landmark.name) + (landmark.required ? " *" : "");
+    const std::string name = escaped_markup(landmark.name) + (landmark.required ? " *" : "");
     if (!landmark.has_bone) {
       out += row({name, origin, number(landmark.confidence, 2), "", "", "", ""}, "td", 2);
       continue;
@@ -135,7 +135,7 @@ std::string pictures_part(const std::filesystem::path& rig, const rigging::Build
   try {
     stages = stage_pictures(rig, report);
   } catch (const Error& error) {
-    return "<p class=warn>No pictures: " + escaped(error.what()) + "</p>\n";
+    return "<p class=warn>No pictures: " + escaped_markup(error.what()) + "</p>\n";
   }
   std::string out;
   for (const StagePictures& stage : stages) {

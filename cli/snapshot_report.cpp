@@ -8,6 +8,7 @@
 #include "cli/take/performance.h"
 #include "formats/scene.h"
 #include "geometry/error.h"
+#include "geometry/text.h"
 #include "rig/read/read.h"
 #include "snapshot/junit.h"
 #include "view/renderer.h"
@@ -164,7 +165,7 @@ std::string pictures(const SnapshotReport& report, const snapshot::Snapshot& the
     enter(face, now, state, report);
     const Triptych three = drawings(face, file.rig, then, now, state, tolerance);
     const std::string name = now.states[state].name;
-    out += "<h2>" + page::escaped(name) + "</h2>\n<div class=views>" +
+    out += "<h2>" + escaped_markup(name) + "</h2>\n<div class=views>" +
            page::picture(renderer.draw(three.then, camera), name + " as recorded") +
            page::picture(renderer.draw(three.now, camera), name + " now") +
            page::picture(renderer.draw(three.heat, camera), name + ", difference") + "</div>\n";
@@ -185,7 +186,7 @@ std::string snapshot_page(const SnapshotReport& report, const snapshot::Snapshot
   try {
     body += pictures(report, then, now, comparison);
   } catch (const Error& error) {
-    body += "<p class=warn>No pictures: " + page::escaped(error.what()) + "</p>\n";
+    body += "<p class=warn>No pictures: " + escaped_markup(error.what()) + "</p>\n";
   }
   body += "<h2>What differs most</h2>\n<table>\n" +
           page::row({"pose or frame", "region", "mean mm", "largest mm", "vertex", "allowed mm"}, "th", 2);
@@ -193,7 +194,7 @@ std::string snapshot_page(const SnapshotReport& report, const snapshot::Snapshot
     const snapshot::Region& region = then.regions[difference.region];
     const std::string mean = page::number(difference.mean_mm, 3);
     body +=
-        page::row({page::escaped(then.states[difference.state].name), page::escaped(region.name),
+        page::row({escaped_markup(then.states[difference.state].name), escaped_markup(region.name),
                    difference.ok ? mean : "<span class=far>" + mean + "</span>",
                    page::number(difference.largest_mm, 3), std::to_string(difference.vertex.vertex),
                    page::number(report.tolerance_mm > 0.0 ? report.tolerance_mm : region.tolerance_mm, 3)},
@@ -201,7 +202,7 @@ std::string snapshot_page(const SnapshotReport& report, const snapshot::Snapshot
   }
   body += "</table>\n<h2>Why it was recorded</h2>\n<ul>\n";
   for (const std::string& reason : then.reasons)
-    body += "<li>" + page::escaped(reason) + "</li>\n";
+    body += "<li>" + escaped_markup(reason) + "</li>\n";
   return page::whole("Snapshot of " + report.rig.filename().string(), body + "</ul>\n");
 }
 

@@ -7,17 +7,11 @@
 #include "formats/detail.h"
 #include "formats/partial.h"
 #include "geometry/error.h"
+#include "geometry/text.h"
 
 namespace fascia::formats {
 
 namespace {
-
-std::string lower_extension(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
 
 FileKind kind_of(const std::filesystem::path& path, const std::vector<uint8_t>& bytes) {
   const auto starts_with = [&](const char* text) {
@@ -26,7 +20,7 @@ FileKind kind_of(const std::filesystem::path& path, const std::vector<uint8_t>& 
   };
   if (starts_with("glTF")) return FileKind::glb;
   if (starts_with("ply\n") || starts_with("ply\r") || starts_with("ply ")) return FileKind::ply;
-  const std::string extension = lower_extension(path);
+  const std::string extension = extension_of(path);
   if (extension == ".glb") return FileKind::glb;
   if (extension == ".gltf" || extension == ".vrm") return FileKind::gltf;
   if (extension == ".obj") return FileKind::obj;

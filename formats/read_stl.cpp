@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "formats/detail.h"
+#include "geometry/text.h"
 #include "gltf/read/text.h"
 
 namespace fascia::formats::detail {
@@ -55,8 +56,7 @@ void read_binary(const Scene& scene, TriangleMesh& soup) {
 void read_ascii(const Scene& scene, TriangleMesh& soup) {
   std::istringstream words(std::string(scene.bytes.begin(), scene.bytes.end()));
   for (std::string word; words >> word;) {
-    std::transform(word.begin(), word.end(), word.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    word = lower_case(word);
     if (word != "vertex") continue;
     Vec3 p;
     for (int k = 0; k < 3; ++k) {

@@ -8,6 +8,7 @@
 
 #include "formats/files.h"
 #include "geometry/error.h"
+#include "geometry/text.h"
 #include "gltf/edit/edit.h"
 #include "gltf/read/container.h"
 
@@ -230,7 +231,7 @@ std::vector<uint8_t> glb_of(const Drawing& drawing) {
 }  // namespace
 
 void write(const std::filesystem::path& path, const Drawing& drawing) {
-  const std::string extension = path.extension().string();
+  const std::string extension = extension_of(path);
   if (extension == ".obj") {
     write_text(path, obj_text(drawing));
   } else if (extension == ".ply") {

@@ -60,7 +60,9 @@ fascia_result fascia_curves_load(const void* bytes, size_t size, fascia_curves**
 fascia_result fascia_curves_load_as(const void* bytes, size_t size, const fascia_curves_options* options,
                                     fascia_curves** curves) {
   return guarded([&] {
-    require(bytes != nullptr && curves != nullptr, "fascia_curves_load: bytes or curves is null");
+    require(curves != nullptr && (bytes != nullptr || size == 0),
+            "fascia_curves_load: bytes or curves is null");
+    require(size > 0, "the file is empty");
     const fascia_curves_options chosen = taken(options, {sizeof(fascia_curves_options), 0, 0.0, 0.0});
     require(chosen.frames_per_second >= 0.0 && chosen.time_unit >= 0.0 &&
                 std::isfinite(chosen.frames_per_second) && std::isfinite(chosen.time_unit),

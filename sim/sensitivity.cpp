@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/block_solve.h"
 #include "sim/formulas/activation_force.h"
 #include "sim/formulas/elements.h"
 
@@ -97,7 +98,7 @@ bool Sensitivity::linearise(const Controls& controls, std::span<const Vec3> x, b
   assemble();
   if (factor_.info() != Eigen::Success) return false;
   if (pulls_.cols() > 0) {
-    solved_pulls_ = factor_.solve(pulls_);
+    solved_pulls_ = block_solve(factor_, pulls_);
     Eigen::MatrixXd small = pulls_.transpose() * solved_pulls_;
     small.diagonal().array() += 1.0;
     pull_factor_.compute(small);
@@ -246,7 +247,7 @@ void Sensitivity::assemble() {
 }
 
 Eigen::MatrixXd Sensitivity::solve(const Eigen::MatrixXd& right) const {
-  Eigen::MatrixXd solution = factor_.solve(right);
+  Eigen::MatrixXd solution = block_solve(factor_, right);
   if (pulls_.cols() > 0) solution -= solved_pulls_ * pull_factor_.solve(pulls_.transpose() * solution);
   return solution;
 }

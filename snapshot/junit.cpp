@@ -3,29 +3,9 @@
 #include <cstdio>
 #include <map>
 
+#include "geometry/text.h"
+
 namespace fascia::snapshot {
-
-namespace {
-
-/// Text in XML: what XML 1.0 has no place for becomes '?'.
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '"')
-      out += "&quot;";
-    else
-      out += static_cast<unsigned char>(c) < 32 && c != '\n' && c != '\t' ? '?' : c;
-  }
-  return out;
-}
-
-}  // namespace
 
 std::string sentence(const Snapshot& then, const Difference& difference, double tolerance_mm) {
   char numbers[160];
@@ -41,13 +21,14 @@ std::string junit(const Snapshot& then, const Comparison& comparison, const std:
   for (const Difference& difference : comparison.differences)
     if (!difference.ok) failures[difference.state] += sentence(then, difference) + "\n";
   std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n <testsuite name=\"" +
-                     escaped(suite) + "\" tests=\"" + std::to_string(then.states.size()) + "\" failures=\"" +
-                     std::to_string(failures.size()) + "\" errors=\"0\">\n";
+                     escaped_markup(suite) + "\" tests=\"" + std::to_string(then.states.size()) +
+                     "\" failures=\"" + std::to_string(failures.size()) + "\" errors=\"0\">\n";
   for (size_t s = 0; s < then.states.size(); ++s) {
-    text += "  <testcase classname=\"" + escaped(suite) + "\" name=\"" + escaped(then.states[s].name) + "\"";
+    text += "  <testcase classname=\"" + escaped_markup(suite) + "\" name=\"" +
+            escaped_markup(then.states[s].name) + "\"";
     if (const auto found = failures.find(s); found != failures.end())
       text += ">\n   <failure message=\"the face moves otherwise than in the snapshot\">" +
-              escaped(found->second) + "</failure>\n  </testcase>\n";
+              escaped_markup(found->second) + "</failure>\n  </testcase>\n";
     else
       text += "/>\n";
   }

@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "geometry/error.h"
+#include "geometry/text.h"
 
 namespace fascia::view {
 
@@ -38,7 +39,7 @@ std::string encoding_of(const std::string& extension) {
 }  // namespace
 
 bool is_film(const std::filesystem::path& path) {
-  const std::string extension = path.extension().string();
+  const std::string extension = extension_of(path);
   return extension == ".mp4" || extension == ".gif" || extension == ".webp";
 }
 
@@ -48,7 +49,7 @@ Video::Video(const std::filesystem::path& path, int width, int height, double fr
     throw Error("films are made by ffmpeg, which is not installed (Debian: apt-get install ffmpeg)");
   state_->path = path;
   state_->beside = path;
-  const std::string extension = is_film(path) ? path.extension().string() : ".mp4";
+  const std::string extension = is_film(path) ? extension_of(path) : ".mp4";
   state_->beside += ".part" + extension;
   state_->width = width;
   state_->height = height;

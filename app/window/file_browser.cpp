@@ -9,20 +9,11 @@
 
 #include "app/window/theme.h"
 #include "app/window/widgets.h"
+#include "geometry/text.h"
 
 namespace fascia::app {
 
 namespace fs = std::filesystem;
-
-namespace {
-
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
-}  // namespace
 
 void FileBrowser::ask_to_open(const std::string& title, std::vector<std::string> endings, Chosen chosen) {
   is_saving_ = false;
@@ -60,14 +51,14 @@ void FileBrowser::read_folder() {
     std::error_code kind;
     const bool is_folder = entry->is_directory(kind);
     if (name.empty() || name[0] == '.') continue;
-    const std::string ending = lower(entry->path().extension().string());
+    const std::string ending = extension_of(entry->path());
     if (!is_folder && !endings_.empty() &&
         std::find(endings_.begin(), endings_.end(), ending) == endings_.end())
       continue;
     entries_.push_back({name, is_folder});
   }
   std::sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) {
-    return a.is_folder != b.is_folder ? a.is_folder : lower(a.name) < lower(b.name);
+    return a.is_folder != b.is_folder ? a.is_folder : lower_case(a.name) < lower_case(b.name);
   });
 }
 

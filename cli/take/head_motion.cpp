@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "cli/take/keyframes.h"
+#include "geometry/text.h"
 
 namespace fascia::cli {
 
@@ -58,9 +59,7 @@ std::optional<size_t> head_joint(const Json& gltf, const std::vector<size_t>& no
   for (const size_t n : nodes) {
     if (!gltf["nodes"][n].contains("skin")) continue;
     for (const Json& joint : gltf["skins"].at(gltf["nodes"][n]["skin"].get<size_t>())["joints"]) {
-      std::string name = gltf["nodes"].at(joint.get<size_t>()).value("name", "");
-      std::transform(name.begin(), name.end(), name.begin(),
-                     [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+      const std::string name = lower_case(gltf["nodes"].at(joint.get<size_t>()).value("name", ""));
       const size_t at = name.rfind("head");
       if (at != std::string::npos && at + 4 == name.size()) return joint.get<size_t>();
     }

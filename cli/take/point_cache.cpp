@@ -9,6 +9,7 @@
 #include "formats/partial.h"
 #include "formats/scene.h"
 #include "geometry/error.h"
+#include "geometry/text.h"
 #include "rig/read/read.h"
 
 namespace fascia::cli {
@@ -61,7 +62,7 @@ std::vector<CachedObject> cached_objects(const std::filesystem::path& rig, const
 }
 
 bool is_cache(const std::filesystem::path& path, CacheKind& kind) {
-  const std::string extension = path.extension().string();
+  const std::string extension = extension_of(path);
   if (extension == ".pc2")
     kind = CacheKind::pc2;
   else if (extension == ".mdd")

@@ -102,6 +102,18 @@ fascia_result outcome_with(const Change& change) {
   return made;
 }
 
+TEST(Asset, AnEmptyFileIsCalledEmpty) {
+  // An empty vector's data may be null; the user hears of the file, not of pointers.
+  fascia_asset* asset = nullptr;
+  EXPECT_EQ(fascia_asset_load(nullptr, 0, &asset), FASCIA_ERROR_ARGUMENT);
+  EXPECT_STREQ(fascia_last_message(), "the file is empty");
+  fascia_curves* curves = nullptr;
+  EXPECT_EQ(fascia_curves_load("", 0, &curves), FASCIA_ERROR_ARGUMENT);
+  EXPECT_STREQ(fascia_last_message(), "the file is empty");
+  EXPECT_EQ(fascia_asset_load(nullptr, 4, &asset), FASCIA_ERROR_ARGUMENT);
+  EXPECT_EQ(asset, nullptr);
+}
+
 TEST(Asset, WhatCannotBeSimulatedIsRefusedWithItsPlace) {
   EXPECT_EQ(outcome_with([](auto&) {}), FASCIA_OK);
   const auto says = [](const char* what) {
