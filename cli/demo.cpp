@@ -104,16 +104,26 @@ std::vector<SheetPose> sheet_poses() {
   };
 }
 
-view::Look studio() {
+view::Look studio_look() {
   view::Look look;
   look.background = {52, 56, 62};
   look.has_backdrop = true;
   return look;
 }
 
-view::Image contact_sheet(const Common& common, const std::filesystem::path& rig_path, const rig::Rig& rig) {
-  Face face(rig_path, {FASCIA_SPACE_METRES, "own", "low"});
-  const view::Renderer renderer(440, 440);
+/// The rig once loaded, and what draws it: the sheet and the film share them.
+struct Studio {
+  const rig::Rig& rig;
+  Face face;
+  view::Renderer renderer;
+
+  Studio(const std::filesystem::path& path, const rig::Rig& read_rig)
+      : rig(read_rig), face(path, {FASCIA_SPACE_METRES, "own", "low"}), renderer(16, 16) {}
+};
+
+view::Image contact_sheet(const Common& common, Studio& with) {
+  auto& [rig, face, renderer] = with;
+  renderer.resize(440, 440);
   std::vector<view::Tile> tiles;
   Progress progress(common, "pose", sheet_poses().size());
   for (const SheetPose& pose : sheet_poses()) {
@@ -124,21 +134,23 @@ view::Image contact_sheet(const Common& common, const std::filesystem::path& rig
       face.set(name, value);
     face.pose();
     tiles.push_back({renderer.draw_with(draw_face(face, rig, layers_from(pose.layers)),
-                                        view::named_camera(pose.view, face_box(rig), 0.98), studio()),
+                                        view::named_camera(pose.view, face_box(rig), 0.98), studio_look()),
                      pose.caption});
   }
   return view::contact_sheet(tiles, 4);
 }
 
-void film(const Common& common, const std::filesystem::path& rig_path, const rig::Rig& rig,
-          const std::filesystem::path& curves_path, const std::filesystem::path& output) {
+void film(const Common& common, Studio& with, const std::filesystem::path& curves_path,
+          const std::filesystem::path& output) {
+  auto& [rig, face, renderer] = with;
   const Curves curves(curves_path);
-  Face face(rig_path, {FASCIA_SPACE_METRES, "own", "low"});
   const int size = 540, frames_per_second = 24;
-  const view::Renderer renderer(size, size);
+  renderer.resize(size, size);
+  face.clear();
+  face.reset();
   view::Video video(output, size, size, frames_per_second);
   const std::set<std::string> layers = layers_from("skin,eyes");
-  view::Look look = studio();
+  view::Look look = studio_look();
   look.samples = 4;
   const int count = static_cast<int>(curves.duration() * frames_per_second) + 1;
   Progress progress(common, "frame", static_cast<size_t>(count));
@@ -159,7 +171,7 @@ void run(const Common& common, const std::filesystem::path& folder,
   make_output_folder(folder);
   Clock clock(common);
   Progress progress(common, "demo",
-                    {{"build", 2.0}, {"play", 1.0}, {"bake", 1.0}, {"sheet", 3.0}, {"film", 12.0}});
+                    {{"build", 2.0}, {"play", 1.0}, {"bake", 1.0}, {"sheet", 4.0}, {"film", 20.0}});
   progress.begin("build");
   const std::filesystem::path head = folder / "head.obj", landmarks = folder / "head_landmarks.json",
                               rig_path = folder / "rig.glb", curves = folder / "curves.csv";
@@ -199,10 +211,11 @@ void run(const Common& common, const std::filesystem::path& folder,
   clock.say("baked the ARKit shapes into " + (folder / "arkit.glb").string());
   const rig::RigFile file = rig::read(formats::read_bytes(rig_path), rig_path.string());
   progress.begin("sheet");
-  view::write_png(folder / "contact_sheet.png", contact_sheet(common, rig_path, file.rig));
+  Studio studio(rig_path, file.rig);
+  view::write_png(folder / "contact_sheet.png", contact_sheet(common, studio));
   clock.say("drew " + (folder / "contact_sheet.png").string());
   progress.begin("film");
-  film(common, rig_path, file.rig, curves, folder / "demo.mp4");
+  film(common, studio, curves, folder / "demo.mp4");
   clock.say("filmed " + (folder / "demo.mp4").string());
   common.say("look at " + (folder / "contact_sheet.png").string() + " and " + (folder / "demo.mp4").string() +
              " first; open " + (folder / "play.glb").string() + " in any glTF viewer");

@@ -18,14 +18,28 @@ struct Renderer::State {
   State(int w, int h) : width(w), height(h) {}
 };
 
-Renderer::Renderer(int width, int height) {
+namespace {
+
+void check_size(int width, int height) {
   if (width < 1 || height < 1 || width > 8192 || height > 8192)
     throw Error("a picture must be 1 to 8192 pixels wide and high");
+}
+
+}  // namespace
+
+Renderer::Renderer(int width, int height) {
+  check_size(width, height);
   state_ = std::make_unique<State>(width, height);
 }
 
 Renderer::~Renderer() {
   state_->context.make_current();
+}
+
+void Renderer::resize(int width, int height) {
+  check_size(width, height);
+  state_->width = width;
+  state_->height = height;
 }
 
 Image Renderer::draw(const DrawList& list, const Camera& camera, Colour background) const {

@@ -18,6 +18,10 @@ class Renderer {
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
+  /// Pictures have another size from now on; what was made for drawing is kept. Throws as the constructor
+  /// does.
+  void resize(int width, int height);
+
   Image draw(const DrawList& list, const Camera& camera, Colour background = {38, 42, 48}) const;
   /// The same with lights and finish of one's own.
   Image draw_with(const DrawList& list, const Camera& camera, const Look& look) const;

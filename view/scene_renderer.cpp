@@ -16,7 +16,8 @@ namespace {
 
 constexpr int reflection_size = 64, reflection_levels = 6;  // pixels; smaller versions, each rougher
 constexpr double occlusion_radius = 0.030;                  // m: across a mouth's corner or an eye's
-enum Unit { colour_unit, normal_unit, surface_unit, reflection_unit, shadow_unit, occlusion_unit };
+constexpr int screen_divisor = 2;  // the picture's pixels to one of shadows and occlusion
+enum Unit { colour_unit, normal_unit, surface_unit, reflection_unit, shadow_unit, screen_unit };
 
 void set_matrix(const Program& program, const char* name, const Mat4& matrix) {
   const Eigen::Matrix4f single = matrix.cast<float>();
@@ -31,6 +32,13 @@ void set_vector(const Program& program, const char* name, const Vec3& v) {
 void set_cut(const Program& program, const DrawSurface& surface) {
   const Eigen::Vector4f cut = surface.cut.value_or(Eigen::Vector4d(0, 0, 0, 1)).cast<float>();
   glUniform4fv(program.place("cut"), 1, cut.data());
+}
+
+void set_culling(const DrawSurface& surface) {
+  if (surface.is_two_sided)
+    glDisable(GL_CULL_FACE);
+  else
+    glEnable(GL_CULL_FACE);
 }
 
 double usual_roughness(const DrawSurface& surface) {
@@ -100,14 +108,14 @@ struct SceneRenderer::State {
   Program depth{surface_vertex_shader(), depth_fragment_shader()};
   Program geometry{surface_vertex_shader(), geometry_fragment_shader()};
   Program lines{surface_vertex_shader(), line_fragment_shader()};
-  Program occlusion{screen_vertex_shader(), occlusion_fragment_shader()};
-  Program blur{screen_vertex_shader(), occlusion_blur_fragment_shader()};
+  Program screen_light{screen_vertex_shader(), screen_light_fragment_shader()};
+  Program blur{screen_vertex_shader(), screen_blur_fragment_shader()};
   Program backdrop{screen_vertex_shader(), backdrop_fragment_shader()};
   Program copy{screen_vertex_shader(), copy_fragment_shader()};
-  std::map<Shading, std::unique_ptr<Program>> surfaces;
+  std::map<std::pair<Shading, bool>, std::unique_ptr<Program>> surfaces;  // by shading and holes
   Canvas shadow_map{0, Canvas::Depth::texture, 0};
   Canvas geometry_map{GL_RGBA16F, Canvas::Depth::buffer, 0};
-  Canvas raw_occlusion{GL_RG16F, Canvas::Depth::none, 0}, smooth_occlusion{GL_RG16F, Canvas::Depth::none, 0};
+  Canvas raw_light{GL_RGBA16F, Canvas::Depth::none, 0}, smooth_light{GL_RGBA16F, Canvas::Depth::none, 0};
   std::unique_ptr<Canvas> drawn;
   Canvas resolved{GL_RGBA8, Canvas::Depth::none, 0}, gathered{GL_RGBA16F, Canvas::Depth::none, 0};
   std::vector<std::unique_ptr<VertexBuffers>> surface_buffers, line_buffers;
@@ -121,13 +129,17 @@ struct SceneRenderer::State {
   ~State();
   void upload(const DrawList& list);
   void use_light(const std::string& name);
-  const Program& program(Shading shading);
+  const Program& program(const DrawSurface& surface);
   void draw_screen() const;
   void draw_shadows(const DrawList& list, const LightFrame& frame, int size);
-  void draw_occlusion(const DrawList& list, const Camera& camera, int width, int height);
+  void draw_geometry(const DrawList& list, const Camera& camera, double aspect, int width, int height);
+  void draw_screen_light(const Camera& camera, const LightFrame& frame, const Look& look, double aspect,
+                         int width, int height);
+  void set_holes(const Program& program, const DrawSurface& surface);
+  void set_shadows(const Program& program, const LightFrame& frame, const Look& look, double turn);
   void set_surface(const Program& program, const DrawSurface& surface);
   void set_frame(const Program& program, const Camera& camera, const LightFrame& frame, const Look& look,
-                 int width, int height, double turn);
+                 double turn);
   void draw_round(const DrawList& list, const Camera& camera, const LightFrame& frame, const Look& look,
                   int width, int height, const Mat4& to_clip, double turn);
   void draw_backdrop(const Look& look, int width, int height);
@@ -166,7 +178,7 @@ void SceneRenderer::State::use_light(const std::string& name) {
       const int size = reflection_size >> level;
       const std::vector<float> pixels =
           reflection_face(room, face, size, static_cast<double>(level) / (reflection_levels - 1));
-      glTexImage2D(GL_TEXTURE_CUBE_MAP_POSITIVE_X + static_cast<GLenum>(face), level, GL_RGB16F, size, size,
+      glTexImage2D(GL_TEXTURE_CUBE_MAP_POSITIVE_X + static_cast<GLenum>(face), level, GL_RGB32F, size, size,
                    0, GL_RGB, GL_FLOAT, pixels.data());
     }
   glTexParameteri(GL_TEXTURE_CUBE_MAP, GL_TEXTURE_MAX_LEVEL, reflection_levels - 1);
@@ -175,14 +187,16 @@ void SceneRenderer::State::use_light(const std::string& name) {
   light = name;
 }
 
-const Program& SceneRenderer::State::program(Shading shading) {
-  std::unique_ptr<Program>& made = surfaces[shading];
+const Program& SceneRenderer::State::program(const DrawSurface& surface) {
+  const bool has_holes = surface.cut || surface.alpha_cutoff >= 0.0;
+  std::unique_ptr<Program>& made = surfaces[{surface.shading, has_holes}];
   if (!made) {
-    made = std::make_unique<Program>(surface_vertex_shader(), surface_fragment_shader(shading));
+    made = std::make_unique<Program>(surface_vertex_shader(),
+                                     surface_fragment_shader(surface.shading, has_holes));
     made->use();
     const std::pair<const char*, int> units[] = {
         {"colour_map", colour_unit},      {"normal_map", normal_unit}, {"surface_map", surface_unit},
-        {"reflections", reflection_unit}, {"shadow_map", shadow_unit}, {"occlusion_map", occlusion_unit}};
+        {"reflections", reflection_unit}, {"shadow_map", shadow_unit}, {"screen_map", screen_unit}};
     for (const auto& [name, unit] : units)
       made->set(name, unit);
   }
@@ -205,76 +219,88 @@ void SceneRenderer::State::draw_shadows(const DrawList& list, const LightFrame& 
   for (size_t i = 0; i < list.surfaces.size(); ++i) {
     const DrawSurface& surface = list.surfaces[i];
     if (!is_solid(surface)) continue;
-    const bool has_holes = surface.colour_map && (surface.alpha_cutoff >= 0.0 || surface.is_blended);
-    depth.set("has_holes", has_holes ? 1 : 0);
-    depth.set("cutoff", surface.alpha_cutoff >= 0.0 ? surface.alpha_cutoff : 0.5);
-    set_cut(depth, surface);
-    if (has_holes) bind_texture(colour_unit, GL_TEXTURE_2D, textures.name(surface.colour_map));
+    set_holes(depth, surface);
     surface_buffers[i]->draw_triangles();
   }
 }
 
-void SceneRenderer::State::draw_occlusion(const DrawList& list, const Camera& camera, int width, int height) {
-  const int w = (width + 1) / 2, h = (height + 1) / 2;
-  geometry_map.bind(w, h);
+void SceneRenderer::State::set_holes(const Program& p, const DrawSurface& surface) {
+  const bool has_holes = surface.colour_map && (surface.alpha_cutoff >= 0.0 || surface.is_blended);
+  p.set("has_holes", has_holes ? 1 : 0);
+  p.set("cutoff", surface.alpha_cutoff >= 0.0 ? surface.alpha_cutoff : 0.5);
+  set_cut(p, surface);
+  if (has_holes) bind_texture(colour_unit, GL_TEXTURE_2D, textures.name(surface.colour_map));
+}
+
+void SceneRenderer::State::set_shadows(const Program& p, const LightFrame& frame, const Look& look,
+                                       double turn) {
+  p.set("has_shadows", look.has_shadows ? 1 : 0);
+  p.set("key_size", room.key_size);
+  set_matrix(p, "to_light", frame.matrix);
+  p.set("light_span", frame.span);
+  p.set("light_range", frame.range);
+  p.set("turn", turn);
+}
+
+void SceneRenderer::State::draw_geometry(const DrawList& list, const Camera& camera, double aspect, int width,
+                                         int height) {
+  geometry_map.bind(width, height);
   glClearColor(0, 0, 0, 0);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   glEnable(GL_DEPTH_TEST);
   geometry.use();
-  const double aspect = static_cast<double>(width) / height;
+  geometry.set("colour_map", colour_unit);
   set_matrix(geometry, "to_eye", eye_matrix(camera));
   set_matrix(geometry, "to_clip", clip_matrix(camera, aspect) * eye_matrix(camera));
   for (size_t i = 0; i < list.surfaces.size(); ++i) {
     const DrawSurface& surface = list.surfaces[i];
-    if (!is_solid(surface) || is_glass(surface) || surface.alpha_cutoff >= 0.0 ||
-        surface.shading == Shading::hair)
-      continue;
-    set_cut(geometry, surface);
-    if (surface.is_two_sided)
-      glDisable(GL_CULL_FACE);
-    else
-      glEnable(GL_CULL_FACE);
+    if (is_glass(surface) || surface.shading == Shading::hair) continue;
+    set_holes(geometry, surface);
+    set_culling(surface);
     surface_buffers[i]->draw_triangles();
   }
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_CULL_FACE);
-  raw_occlusion.bind(w, h);
-  occlusion.use();
-  occlusion.set("geometry", 0);
-  glUniform2f(occlusion.place("size"), static_cast<float>(w), static_cast<float>(h));
+}
+
+void SceneRenderer::State::draw_screen_light(const Camera& camera, const LightFrame& frame, const Look& look,
+                                             double aspect, int width, int height) {
+  raw_light.bind(width, height);
+  const Program& p = screen_light;
+  p.use();
+  p.set("geometry", 0);
+  p.set("shadow_map", shadow_unit);
+  p.set("has_occlusion", look.has_occlusion ? 1 : 0);
+  set_shadows(p, frame, look, 0.0);
+  glUniform2f(p.place("size"), static_cast<float>(width), static_cast<float>(height));
   const double half = std::tan(camera.field_of_view * EIGEN_PI / 360.0);
-  glUniform2f(occlusion.place("scale"), static_cast<float>(half * aspect), static_cast<float>(half));
-  occlusion.set("radius", occlusion_radius);
+  glUniform2f(p.place("scale"), static_cast<float>(half * aspect), static_cast<float>(half));
+  p.set("radius", occlusion_radius);
+  set_matrix(p, "from_eye", eye_matrix(camera).inverse());
+  bind_texture(shadow_unit, GL_TEXTURE_2D, shadow_map.depth());
   bind_texture(0, GL_TEXTURE_2D, geometry_map.colour());
   draw_screen();
-  smooth_occlusion.bind(w, h);
+  smooth_light.bind(width, height);
   blur.use();
-  blur.set("occlusion", 0);
-  bind_texture(0, GL_TEXTURE_2D, raw_occlusion.colour());
+  blur.set("light", 0);
+  bind_texture(0, GL_TEXTURE_2D, raw_light.colour());
   draw_screen();
 }
 
 void SceneRenderer::State::set_frame(const Program& p, const Camera& camera, const LightFrame& frame,
-                                     const Look& look, int width, int height, double turn) {
+                                     const Look& look, double turn) {
   set_vector(p, "camera", eye_of(camera));
   set_vector(p, "view_direction", (camera.target - eye_of(camera)).normalized());
   set_vector(p, "key_direction", room.key_direction);
   set_vector(p, "key_irradiance", room.key_irradiance);
-  p.set("key_size", room.key_size);
   p.set("exposure", look.exposure);
   p.set("reflection_levels", static_cast<double>(reflection_levels - 1));
   float flat[27];
   for (size_t k = 0; k < 27; ++k)
     flat[k] = static_cast<float>(harmonics[k / 3][static_cast<Eigen::Index>(k % 3)]);
   glUniform3fv(p.place("harmonics"), 9, flat);
-  p.set("has_shadows", look.has_shadows ? 1 : 0);
-  p.set("has_occlusion", look.has_occlusion ? 1 : 0);
-  set_matrix(p, "to_light", frame.matrix);
-  p.set("light_span", frame.span);
-  p.set("light_range", frame.range);
-  glUniform2f(p.place("picture_size"), static_cast<float>(width), static_cast<float>(height));
-  glUniform2f(p.place("picture_origin"), 0.0F, 0.0F);
-  p.set("turn", turn);
+  set_shadows(p, frame, look, turn);
+  p.set("screen_scale", 1.0 / screen_divisor);
 }
 
 void SceneRenderer::State::set_surface(const Program& p, const DrawSurface& surface) {
@@ -301,10 +327,7 @@ void SceneRenderer::State::set_surface(const Program& p, const DrawSurface& surf
   p.set("is_drawn_eye", !surface.eye_coordinates.empty() && !(has_uvs && surface.colour_map) ? 1 : 0);
   set_vector(p, "glow", surface.glow);
   set_cut(p, surface);
-  if (surface.is_two_sided)
-    glDisable(GL_CULL_FACE);
-  else
-    glEnable(GL_CULL_FACE);
+  set_culling(surface);
 }
 
 void SceneRenderer::State::draw_backdrop(const Look& look, int width, int height) {
@@ -326,14 +349,14 @@ void SceneRenderer::State::draw_round(const DrawList& list, const Camera& camera
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LESS);
   const auto prepare = [&](size_t i) {
-    const Program& p = program(list.surfaces[i].shading);
+    const Program& p = program(list.surfaces[i]);
     p.use();
     set_matrix(p, "to_clip", to_clip);
-    set_frame(p, camera, frame, look, width, height, turn);
+    set_frame(p, camera, frame, look, turn);
     set_surface(p, list.surfaces[i]);
     bind_texture(reflection_unit, GL_TEXTURE_CUBE_MAP, reflections);
     bind_texture(shadow_unit, GL_TEXTURE_2D, shadow_map.depth());
-    bind_texture(occlusion_unit, GL_TEXTURE_2D, smooth_occlusion.colour());
+    bind_texture(screen_unit, GL_TEXTURE_2D, smooth_light.colour());
   };
   for (size_t i = 0; i < list.surfaces.size(); ++i) {
     if (is_glass(list.surfaces[i])) continue;
@@ -389,7 +412,11 @@ void SceneRenderer::draw(const DrawList& list, const Camera& camera, const Targe
   s.use_light(look.light);
   const LightFrame frame = light_frame(s.room.key_direction, list);
   if (look.has_shadows) s.draw_shadows(list, frame, width * height > 700 * 700 ? 2048 : 1024);
-  if (look.has_occlusion) s.draw_occlusion(list, camera, width, height);
+  const double aspect = static_cast<double>(width) / height;
+  const int w = (width + screen_divisor - 1) / screen_divisor,
+            h = (height + screen_divisor - 1) / screen_divisor;
+  s.draw_geometry(list, camera, aspect, w, h);
+  s.draw_screen_light(camera, frame, look, aspect, w, h);
 
   const int samples = std::min({4, s.most_samples, std::max(1, look.samples)});
   const int rounds = std::max(1, look.samples / std::max(1, samples));
@@ -405,8 +432,7 @@ void SceneRenderer::draw(const DrawList& list, const Camera& camera, const Targe
     }
     const Mat4 eye = eye_matrix(camera);
     s.drawn->bind(width, height);
-    s.draw_round(list, camera, frame, look, width, height,
-                 nudge * clip_matrix(camera, static_cast<double>(width) / height) * eye, share);
+    s.draw_round(list, camera, frame, look, width, height, nudge * clip_matrix(camera, aspect) * eye, share);
     s.resolved.bind(width, height);
     glBindFramebuffer(GL_READ_FRAMEBUFFER, s.drawn->framebuffer());
     glBlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);

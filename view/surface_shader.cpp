@@ -17,21 +17,15 @@ uniform vec3 glow;
 uniform vec4 cut;
 uniform sampler2D colour_map, normal_map, surface_map;
 uniform vec3 key_direction, key_irradiance;
-uniform float key_size;
 uniform vec3 harmonics[9];
 uniform samplerCube reflections;
 uniform float reflection_levels;
-uniform bool has_shadows, has_occlusion;
-uniform sampler2D shadow_map, occlusion_map;
-uniform mat4 to_light;
-uniform float light_span, light_range;   // metres
-uniform vec2 picture_size, picture_origin;
-uniform vec3 view_direction;             // along which distances in occlusion_map are measured
-uniform float turn;                      // 0..1, another for each round of samples
+uniform sampler2D screen_map;   // openness, distance, share of the key's light, thickness (screen_light_source)
+uniform float screen_scale;     // its pixels to one of the picture's
+uniform vec3 view_direction;    // along which its distances are measured
 out vec4 pixel;
 
 vec3 to_linear(vec3 c) { return pow(max(c, 0.0), vec3(2.2)); }
-float grain(vec2 at) { return fract(52.9829189 * fract(dot(floor(at), vec2(0.06711056, 0.00583715)))); }
 
 // The shoulder and toe of film: Uchimura 2017, HDR theory and practice (Gran Turismo).
 vec3 filmic(vec3 x) {
@@ -56,6 +50,13 @@ vec3 reflected(vec3 direction, float rough) {
 
 // Percentage-closer soft shadows: Fernando 2005. Also how thick the stuff before the light is.
 const char* shadow_source = R"(
+uniform bool has_shadows;
+uniform sampler2D shadow_map;
+uniform mat4 to_light;
+uniform float light_span, light_range;   // metres
+uniform float key_size;
+uniform float turn;                      // 0..1, another for each round of samples
+float grain(vec2 at) { return fract(52.9829189 * fract(dot(floor(at), vec2(0.06711056, 0.00583715)))); }
 float lit_share(vec3 p, vec3 n, out float thickness) {
   thickness = 1.0;
   if (!has_shadows) return 1.0;
@@ -64,43 +65,82 @@ float lit_share(vec3 p, vec3 n, out float thickness) {
   float angle = 6.2831853 * (grain(gl_FragCoord.xy) + turn);
   float texel = 1.0 / float(textureSize(shadow_map, 0).x), bias = 0.0006 / light_range;
   float reach = max(key_size * 0.022 / light_span, 2.0 * texel), found = 0.0, sum = 0.0, through = 0.0;
-  for (int i = 0; i < 7; ++i) {
-    float share = (float(i) + 0.5) / 7.0, a = angle + 2.399963 * float(i);
+  for (int i = 0; i < SEARCHES; ++i) {
+    float share = (float(i) + 0.5) / float(SEARCHES), a = angle + 2.399963 * float(i);
     float depth = texture(shadow_map, at.xy + reach * sqrt(share) * vec2(cos(a), sin(a))).r;
     through += max(at.z - depth, 0.0);
     if (depth < at.z - bias) { found += 1.0; sum += depth; }
   }
-  thickness = through / 7.0 * light_range;
+  thickness = through / float(SEARCHES) * light_range;
   if (found == 0.0) return 1.0;
   float gap = (at.z - sum / found) * light_range;
   float width = clamp(gap * key_size / light_span, 1.5 * texel, 0.06), lit = 0.0;
-  for (int i = 0; i < 12; ++i) {
-    float share = (float(i) + 0.5) / 12.0, a = angle + 2.399963 * float(i);
+  for (int i = 0; i < TAPS; ++i) {
+    float share = (float(i) + 0.5) / float(TAPS), a = angle + 2.399963 * float(i);
     float depth = texture(shadow_map, at.xy + width * sqrt(share) * vec2(cos(a), sin(a))).r;
     lit += depth < at.z - bias * (1.0 + 2.0 * width / texel * 0.15) ? 0.0 : 1.0;
   }
-  return lit / 12.0;
-}
-
-// Half-size occlusion brought up along surfaces only.
-float open_share(vec3 p) {
-  if (!has_occlusion) return 1.0;
-  float distance = dot(p - camera, view_direction);
-  vec2 at = (gl_FragCoord.xy - picture_origin) * 0.5 - 0.5;
-  ivec2 first = ivec2(floor(at)), last = textureSize(occlusion_map, 0) - 1;
-  vec2 f = at - vec2(first);
-  float sum = 0.0, weights = 0.0;
-  for (int k = 0; k < 4; ++k) {
-    ivec2 o = ivec2(k & 1, k >> 1);
-    vec2 one = texelFetch(occlusion_map, clamp(first + o, ivec2(0), last), 0).xy;
-    float w = (o.x == 1 ? f.x : 1.0 - f.x) * (o.y == 1 ? f.y : 1.0 - f.y);
-    w *= 1.0 / (0.0005 + abs(one.y - distance));
-    sum += w * one.x;
-    weights += w;
-  }
-  return weights > 0.0 ? sum / weights : 1.0;
+  return lit / float(TAPS);
 }
 )";
+
+// The screen's light brought up to the picture's size along surfaces only.
+const char* screen_source = R"(
+vec4 screen_light(vec3 p) {
+  float distance = dot(p - camera, view_direction);
+  vec2 at = gl_FragCoord.xy * screen_scale - 0.5;
+  ivec2 first = ivec2(floor(at)), last = textureSize(screen_map, 0) - 1;
+  vec2 f = at - vec2(first);
+  vec4 sum = vec4(0.0);
+  float weights = 0.0;
+  for (int k = 0; k < 4; ++k) {
+    ivec2 o = ivec2(k & 1, k >> 1);
+    vec4 one = texelFetch(screen_map, clamp(first + o, ivec2(0), last), 0);
+    float w = (o.x == 1 ? f.x : 1.0 - f.x) * (o.y == 1 ? f.y : 1.0 - f.y);
+    w *= 1.0 / (0.0005 + abs(one.y - distance));
+    sum += w * one;
+    weights += w;
+  }
+  return weights > 0.0 ? sum / weights : vec4(1.0);
+}
+)";
+
+// Ambient occlusion: McGuire, Mara & Luebke 2012, Scalable ambient obscurance, equation 1.
+const char* screen_light_source = R"(uniform sampler2D geometry;
+uniform vec2 size;        // pixels
+uniform vec2 scale;       // eye coordinates at distance 1, from the picture's middle to its edge
+uniform float radius;     // metres
+uniform bool has_occlusion;
+uniform mat4 from_eye;
+out vec4 result;
+vec3 eye_position(vec2 at, float distance) {
+  return vec3((2.0 * at / size - 1.0) * scale * distance, -distance);
+}
+float open_share(vec3 p, vec3 n, float distance_here) {
+  float reach = radius / distance_here / scale.y * 0.5 * size.y;
+  float turn = 6.2831853 * grain(gl_FragCoord.xy);
+  float sum = 0.0;
+  const int count = 16;
+  for (int i = 0; i < count; ++i) {
+    float share = (float(i) + 0.5) / float(count);
+    float angle = turn + 6.2831853 * 7.0 * share;
+    vec2 at = gl_FragCoord.xy + max(reach * share, 1.0 + float(i) * 0.2) * vec2(cos(angle), sin(angle));
+    float distance = texelFetch(geometry, ivec2(clamp(at, vec2(0.0), size - 1.0)), 0).w;
+    if (distance <= 0.0) continue;
+    vec3 v = eye_position(at, distance) - p;
+    float vv = dot(v, v), vn = dot(v, n) - 0.0004;
+    float f = max(radius * radius - vv, 0.0) / (radius * radius);
+    sum += f * f * f * max(vn / (vv + 1e-7), 0.0);
+  }
+  return clamp(1.0 - 2.6 * radius * sum / float(count), 0.0, 1.0);
+}
+void main() {
+  vec4 here = texelFetch(geometry, ivec2(gl_FragCoord.xy), 0);
+  if (here.w <= 0.0) { result = vec4(1.0, 0.0, 1.0, 1.0); return; }
+  vec3 p = eye_position(gl_FragCoord.xy, here.w), n = normalize(here.xyz);
+  float thickness, lit = lit_share((from_eye * vec4(p, 1.0)).xyz, mat3(from_eye) * n, thickness);
+  result = vec4(has_occlusion ? open_share(p, n, here.w) : 1.0, here.w, lit, thickness);
+})";
 
 // The lobes: Burley 2012 (GGX), Karis 2014 (the split sum's second factor by polynomials).
 const char* light_source = R"(
@@ -119,14 +159,19 @@ vec3 mirrored_share(vec3 f0, float rough, float nv) {
   vec2 ab = vec2(-1.04, 1.04) * a + r.zw;
   return f0 * ab.x + ab.y;
 }
-// Light from the key and from the room off a surface of one roughness.
-vec3 gloss(vec3 n, vec3 v, vec3 f0, float rough, float lit, float open) {
-  float nv = max(dot(n, v), 1e-3);
+vec3 key_gloss(vec3 n, vec3 v, vec3 f0, float rough, float lit) {
   vec3 l = key_direction, h = normalize(l + v);
+  return key_irradiance * lit * fresnel(f0, dot(v, h)) * lobe(n, v, l, rough);
+}
+vec3 room_gloss(vec3 n, vec3 v, vec3 f0, float rough, float open) {
+  float nv = max(dot(n, v), 1e-3);
   vec3 r = reflect(-v, n);
   float room = clamp(pow(nv + open, exp2(-16.0 * rough - 1.0)) - 1.0 + open, 0.0, 1.0);   // Lagarde 2014
-  return key_irradiance * lit * fresnel(f0, dot(v, h)) * lobe(n, v, l, rough) +
-         reflected(r, rough) * mirrored_share(f0, rough, nv) * room;
+  return reflected(r, rough) * mirrored_share(f0, rough, nv) * room;
+}
+// Light from the key and from the room off a surface of one roughness.
+vec3 gloss(vec3 n, vec3 v, vec3 f0, float rough, float lit, float open) {
+  return key_gloss(n, v, f0, rough, lit) + room_gloss(n, v, f0, rough, open);
 }
 // Occlusion as coloured stuff sees it: Jimenez et al. 2016, Practical realtime strategies for accurate
 // indirect occlusion, equation 10.
@@ -180,12 +225,16 @@ vec3 drawn_eye(vec3 white, vec3 n, vec3 v, out float iris_share) {
 
 const char* main_source = R"(
 void main() {
+#if HOLES
   if (dot(cut.xyz, place) > cut.w) discard;
+#endif
   vec3 v = normalize(camera - place), n = normalize(facing);
   bool is_back = !gl_FrontFacing;
   if (is_back) n = -n;
   vec4 painted = has_colour_map ? texture(colour_map, uv) : vec4(1.0);
+#if HOLES
   if (cutoff >= 0.0 && painted.a < cutoff) discard;
+#endif
   vec3 colour = to_linear(base * painted.rgb);
   float alpha = opacity * (is_blended ? painted.a : 1.0);
   float rough = roughness, metal = metalness;
@@ -202,7 +251,11 @@ void main() {
                gloss(n, v, vec3(0.03), 0.35, 0.5, 1.0);
   pixel = vec4(finished(light), clamp(alpha * density * 1.6, 0.0, 1.0));
 #else
-  float thickness, open = open_share(place), lit = lit_share(place, n, thickness);
+  vec4 screen = screen_light(place);
+  float open = screen.x, lit = screen.z, thickness = screen.w;
+#if HAIR
+  lit = lit_share(place, n, thickness);   // what lies behind a card of hair says nothing about its own shadow
+#endif
   vec3 m = mapped_normal(n), l = key_direction, light;
   if (dot(m, v) < 0.02) m = normalize(m + (0.02 - dot(m, v)) * v);
   float nl = dot(m, l);
@@ -217,8 +270,9 @@ void main() {
   float behind = clamp(-dot(n, l), 0.0, 1.0);
   light += to_linear(vec3(0.95, 0.36, 0.22)) * key_irradiance * behind * exp(-thickness / 0.0042) * 0.8 * TRANSLUCENCY;
   light += colour * irradiance(mix(m, n, 0.5)) * tinted(open, colour);
-  light += gloss(m, v, vec3(0.028), rough, lit, open) * 0.80 * specular;
-  light += gloss(m, v, vec3(0.028), rough * 0.58, lit, open) * 0.20 * specular;
+  // Two lobes for the key; the room, wide as it is, is mirrored once at their mean.
+  light += (key_gloss(m, v, vec3(0.028), rough, lit) * 0.80 + key_gloss(m, v, vec3(0.028), rough * 0.58, lit) * 0.20 +
+            room_gloss(m, v, vec3(0.028), rough * 0.92, open)) * specular;
 #if WET
   light += gloss(normalize(mix(n, m, 0.6)), v, vec3(0.035), 0.16, lit, open) * 0.9;
 #endif
@@ -248,6 +302,10 @@ void main() {
   pixel = vec4(finished(light + to_linear(glow)), alpha);
 #endif
 })";
+
+std::string shadow_definitions(int searches, int taps) {
+  return "#define SEARCHES " + std::to_string(searches) + "\n#define TAPS " + std::to_string(taps) + "\n";
+}
 
 const char* definitions(Shading shading) {
   switch (shading) {
@@ -300,9 +358,14 @@ void main() {
 })";
 }
 
-std::string surface_fragment_shader(Shading shading) {
-  return std::string("#version 330 core\n") + definitions(shading) + declarations + shadow_source +
-         light_source + (shading == Shading::eye ? eye_source : "") + main_source;
+std::string surface_fragment_shader(Shading shading, bool has_holes) {
+  return std::string("#version 330 core\n") + definitions(shading) + (has_holes ? "#define HOLES 1\n" : "") +
+         shadow_definitions(7, 12) + shadow_source + declarations + screen_source + light_source +
+         (shading == Shading::eye ? eye_source : "") + main_source;
+}
+
+std::string screen_light_fragment_shader() {
+  return "#version 330 core\n" + shadow_definitions(5, 8) + shadow_source + screen_light_source;
 }
 
 }  // namespace fascia::view
