@@ -19,7 +19,7 @@ struct PoseOptions {
   int contact_rounds = 4;           ///< how often at most lips and lids look again for what they face
   double contact_tolerance = 1e-4;  ///< metres a gap may still change when they do
   bool from_last_pose = false;      ///< start from the last static pose instead of the bones' motion alone
-  double jaw_stage = 0.26;  ///< the jaw opens in stages of at most this share of its way, each begun from
+  double jaw_stage = 0.17;  ///< the jaw opens in stages of at most this share of its way, each begun from
                             ///< the one before: carried at once, the mouth's corners may settle folded
 };
 
