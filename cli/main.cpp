@@ -16,6 +16,7 @@
 #include "cli/face.h"
 #include "cli/fit.h"
 #include "cli/snapshot.h"
+#include "cli/version.h"
 #include "cli/view.h"
 #include "formats/partial.h"
 #include "geometry/error.h"
@@ -95,7 +96,7 @@ int main(int argc, char** argv) {
   fascia::cli::Common common;
   using namespace fascia::cli;
   const Command tool("fascia", "Fascia: anatomical face rigs for any head, simulated in real time",
-                     "fascia " FASCIA_VERSION_TEXT);
+                     version_text());
   std::unique_ptr<tbb::global_control> limit;
   try {
     declare(tool, common);

@@ -2,6 +2,7 @@
 #   runtime      the shared library and the Bullet module
 #   development  the C header, the static library, CMake package and pkg-config file
 #   tool         the fascia command, its manual page and shell completions
+#   snapshot     the library that compares a face's deformation with a recorded one
 #   builder      the offline builder as static libraries with their C++ headers
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
@@ -82,9 +83,38 @@ configure_file(${CMAKE_CURRENT_LIST_DIR}/fascia.pc.in ${PROJECT_BINARY_DIR}/inst
 install(FILES ${PROJECT_BINARY_DIR}/install/fasciaConfig.cmake ${PROJECT_BINARY_DIR}/install/fasciaConfigVersion.cmake
   DESTINATION ${package_folder} COMPONENT development)
 install(FILES ${PROJECT_BINARY_DIR}/install/fascia.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
-foreach(component runtime development tool builder)
-  install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/fascia-${component}
-    COMPONENT ${component} RENAME copyright)
+# The licence and what changed, under the packages' names.
+string(TIMESTAMP FASCIA_DATE "%a, %d %b %Y %H:%M:%S +0000" UTC)  # SOURCE_DATE_EPOCH's where that is set
+configure_file(${CMAKE_CURRENT_LIST_DIR}/debian_changelog.in ${PROJECT_BINARY_DIR}/install/changelog.Debian @ONLY)
+find_program(FASCIA_GZIP gzip)
+if(FASCIA_GZIP)
+  execute_process(COMMAND ${FASCIA_GZIP} -9nf ${PROJECT_BINARY_DIR}/install/changelog.Debian)
+  execute_process(COMMAND ${FASCIA_GZIP} -9nc ${PROJECT_SOURCE_DIR}/CHANGELOG.md
+                  OUTPUT_FILE ${PROJECT_BINARY_DIR}/install/changelog.gz)
+  set(changelogs ${PROJECT_BINARY_DIR}/install/changelog.gz ${PROJECT_BINARY_DIR}/install/changelog.Debian.gz)
+endif()
+set(FASCIA_PACKAGE_runtime libfascia${PROJECT_VERSION_MAJOR})
+set(FASCIA_PACKAGE_development libfascia-dev)
+set(FASCIA_PACKAGE_tool fascia)
+set(FASCIA_PACKAGE_snapshot libfascia-snapshot${PROJECT_VERSION_MAJOR})
+set(FASCIA_PACKAGE_builder libfascia-builder-dev)
+# Not meant for Debian's archive, so no bug of its tracker asks for them.
+foreach(component runtime development tool snapshot builder)
+  set(overrides ${PROJECT_BINARY_DIR}/install/overrides/${FASCIA_PACKAGE_${component}})
+  file(WRITE ${overrides} "# Not meant for Debian's archive: no bug asks for the package.\n"
+    "${FASCIA_PACKAGE_${component}}: initial-upload-closes-no-bugs *\n")
+  if(component MATCHES "runtime|snapshot")
+    file(APPEND ${overrides} "# CPack writes scripts that run ldconfig beside the trigger: the same, twice.\n"
+      "${FASCIA_PACKAGE_${component}}: maintscript-calls-ldconfig *\n")
+  endif()
+  if(component STREQUAL "runtime")
+    file(APPEND ${overrides} "# A module that the library beside it opens by this name; nothing links it.\n"
+      "${FASCIA_PACKAGE_${component}}: sharedobject-in-library-directory-missing-soname *\n")
+  endif()
+  install(FILES ${overrides} DESTINATION ${CMAKE_INSTALL_DATADIR}/lintian/overrides COMPONENT ${component})
+  set(documents ${CMAKE_INSTALL_DATADIR}/doc/${FASCIA_PACKAGE_${component}})
+  install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${documents} COMPONENT ${component} RENAME copyright)
+  install(FILES ${changelogs} DESTINATION ${documents} COMPONENT ${component})
 endforeach()
 
 if(FASCIA_BUILD_BUILDER)
@@ -105,7 +135,8 @@ if(FASCIA_BUILD_BUILDER)
 
   # Snapshots for other programs' tests: the C library and the CMake function.
   set_target_properties(fascia_snapshot_api PROPERTIES INSTALL_RPATH "$ORIGIN")
-  install(TARGETS fascia_snapshot_api EXPORT fascia_builder_targets LIBRARY COMPONENT builder)
+  install(TARGETS fascia_snapshot_api EXPORT fascia_builder_targets
+    LIBRARY COMPONENT snapshot NAMELINK_COMPONENT builder)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/snapshot/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT builder)
   install(FILES ${PROJECT_SOURCE_DIR}/cmake/FasciaSnapshot.cmake DESTINATION ${package_folder} COMPONENT development)
 
@@ -117,8 +148,15 @@ if(FASCIA_BUILD_BUILDER)
     list(APPEND manual_files ${manual}.${kind})
     add_custom_command(OUTPUT ${manual}.${kind} COMMAND fascia manual ${kind} > ${manual}.${kind} DEPENDS fascia VERBATIM)
   endforeach()
-  add_custom_target(fascia_manual ALL DEPENDS ${manual_files})
-  install(FILES ${manual}.man DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 RENAME fascia.1 COMPONENT tool)
+  set(page ${manual}.man)
+  set(page_name fascia.1)
+  if(FASCIA_GZIP)
+    add_custom_command(OUTPUT ${page}.gz COMMAND ${FASCIA_GZIP} -9nkf ${page} DEPENDS ${page} VERBATIM)
+    set(page ${page}.gz)
+    set(page_name fascia.1.gz)
+  endif()
+  add_custom_target(fascia_manual ALL DEPENDS ${manual_files} ${page})
+  install(FILES ${page} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 RENAME ${page_name} COMPONENT tool)
   install(FILES ${manual}.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME fascia COMPONENT tool)
   install(FILES ${manual}.zsh DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions RENAME _fascia COMPONENT tool)
   install(FILES ${manual}.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d RENAME fascia.fish

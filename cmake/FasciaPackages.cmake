@@ -1,4 +1,5 @@
-# Debian packages by `cpack`: libfascia0 (runtime), libfascia-dev (development), fascia (tool), libfascia-builder-dev (builder).
+# Debian packages by `cpack` (scripts/packages.sh): libfascia0 (runtime), libfascia-dev (development), fascia (tool),
+# libfascia-snapshot0 (snapshot), libfascia-builder-dev (builder).
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME fascia)
 set(CPACK_PACKAGE_CONTACT "The Fascia developers <fascia@localhost.invalid>")
@@ -8,7 +9,7 @@ set(CPACK_STRIP_FILES ON)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_COMPONENTS_ALL runtime development)
 if(FASCIA_BUILD_BUILDER)
-  list(APPEND CPACK_COMPONENTS_ALL tool builder)
+  list(APPEND CPACK_COMPONENTS_ALL tool snapshot builder)
 endif()
 set(CPACK_COMPONENTS_GROUPING ONE_PER_GROUP)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
@@ -24,12 +25,26 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libfascia${PROJECT_VERSION_MAJOR} 
 set(CPACK_DEBIAN_TOOL_PACKAGE_NAME fascia)
 set(CPACK_DEBIAN_TOOL_PACKAGE_DEPENDS "libfascia${PROJECT_VERSION_MAJOR} (= ${PROJECT_VERSION})")
 set(CPACK_DEBIAN_TOOL_PACKAGE_RECOMMENDS ffmpeg)
+set(CPACK_DEBIAN_SNAPSHOT_PACKAGE_NAME libfascia-snapshot${PROJECT_VERSION_MAJOR})
+set(CPACK_DEBIAN_SNAPSHOT_PACKAGE_SECTION libs)
 set(CPACK_DEBIAN_BUILDER_PACKAGE_NAME libfascia-builder-dev)
 set(CPACK_DEBIAN_BUILDER_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_BUILDER_PACKAGE_DEPENDS
-  "libfascia-dev (= ${PROJECT_VERSION}), libeigen3-dev, nlohmann-json3-dev, libembree-dev, libtbb-dev, libtinyobjloader-dev, libdraco-dev, libmeshoptimizer-dev")
-set(CPACK_COMPONENT_RUNTIME_DESCRIPTION "Simulates anatomical face rigs in real time: the shared library and its Bullet module.")
-set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "Header, static library, CMake package and pkg-config file of libfascia.")
-set(CPACK_COMPONENT_TOOL_DESCRIPTION "Builds anatomical face rigs from head meshes; poses, plays, bakes and renders them.")
-set(CPACK_COMPONENT_BUILDER_DESCRIPTION "The offline builder of face rigs as C++ libraries.")
+  "libfascia-dev (= ${PROJECT_VERSION}), libfascia-snapshot${PROJECT_VERSION_MAJOR} (= ${PROJECT_VERSION}), libeigen3-dev, nlohmann-json3-dev, libembree-dev, libtbb-dev, libtinyobjloader-dev, libdraco-dev, libmeshoptimizer-dev")
+# Debian's triggers run ldconfig; CPack's own script for it is switched off by an empty one.
+set(extras ${PROJECT_BINARY_DIR}/install/debian)
+file(WRITE ${extras}/triggers "activate-noawait ldconfig\n")
+foreach(component RUNTIME SNAPSHOT)
+  set(CPACK_DEBIAN_${component}_PACKAGE_CONTROL_EXTRA ${extras}/triggers)
+endforeach()
+set(CPACK_COMPONENT_RUNTIME_DESCRIPTION "simulates anatomical face rigs in real time
+The shared library with a C interface and its Bullet module.")
+set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "header and static library of libfascia
+With its CMake package and pkg-config file.")
+set(CPACK_COMPONENT_TOOL_DESCRIPTION "builds anatomical face rigs from head meshes
+Poses, plays, bakes, renders and checks them too.")
+set(CPACK_COMPONENT_SNAPSHOT_DESCRIPTION "compares a face's deformation with a recorded one
+For the tests of programs that use face rigs.")
+set(CPACK_COMPONENT_BUILDER_DESCRIPTION "offline builder of face rigs as C++ libraries
+Headers and static libraries, and those of libfascia-snapshot.")
 include(CPack)

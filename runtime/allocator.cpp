@@ -7,6 +7,18 @@ namespace fascia::runtime {
 constinit fascia_allocator hosts_allocator{};
 constinit bool can_redirect_memory = false;
 
+namespace {
+thread_local bool ran_out = false;
+}
+
+bool has_run_out() noexcept {
+  return ran_out;
+}
+
+void set_run_out(bool has) noexcept {
+  ran_out = has;
+}
+
 }  // namespace fascia::runtime
 
 extern "C" fascia_result fascia_set_allocator(const fascia_allocator* allocator) {

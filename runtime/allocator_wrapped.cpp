@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <mutex>
 
 #include "runtime/allocator.h"
 
@@ -49,9 +50,53 @@ Notes notes_of(const void* block) {
   return notes;
 }
 
+/// Where memory comes from when it has run out: undoing what was begun takes some as well (nlohmann's
+/// destructor fills a list of what it is to delete), and a destructor that cannot have it would end the
+/// host's program. It is whole again when all of it has been given back.
+class Reserve {
+ public:
+  void* take(std::size_t size, std::size_t alignment) {
+    const std::lock_guard lock(mutex_);
+    const std::size_t begin = (used_ + sizeof(uint64_t) + alignment - 1) / alignment * alignment;
+    if (begin > sizeof bytes_ || size > sizeof bytes_ - begin) return nullptr;
+    const uint64_t note = size;
+    std::memcpy(bytes_ + begin - sizeof note, &note, sizeof note);
+    used_ = begin + size;
+    ++live_;
+    return bytes_ + begin;
+  }
+  bool has(const void* block) const {
+    const auto address = reinterpret_cast<uintptr_t>(block), begin = reinterpret_cast<uintptr_t>(bytes_);
+    return address - begin < sizeof bytes_;
+  }
+  void give_back() {
+    const std::lock_guard lock(mutex_);
+    if (--live_ == 0) used_ = 0;
+  }
+  static std::size_t size_of(const void* block) {
+    uint64_t size = 0;
+    std::memcpy(&size, static_cast<const char*>(block) - sizeof size, sizeof size);
+    return size;
+  }
+
+ private:
+  alignas(4096) char bytes_[1 << 20] = {};
+  std::mutex mutex_;
+  std::size_t used_ = 0, live_ = 0;
+};
+constinit Reserve reserve;
+
+/// After the first refusal, which the caller gets to know, blocks come from the reserve.
+void* refused(std::size_t size, std::size_t alignment) {
+  if (fascia::runtime::has_run_out()) return reserve.take(size, alignment);
+  fascia::runtime::set_run_out(true);
+  return nullptr;
+}
+
 void* aligned(std::size_t alignment, std::size_t size) {
-  return host.allocate != nullptr ? hosts_block(size, std::max(alignment, usual_alignment))
-                                  : __real_aligned_alloc(alignment, size);
+  void* const block = host.allocate != nullptr ? hosts_block(size, std::max(alignment, usual_alignment))
+                                               : __real_aligned_alloc(alignment, size);
+  return block != nullptr ? block : refused(size, std::max(alignment, usual_alignment));
 }
 
 }  // namespace
@@ -59,23 +104,27 @@ void* aligned(std::size_t alignment, std::size_t size) {
 extern "C" {
 
 void* __wrap_malloc(std::size_t size) {
-  return host.allocate != nullptr ? hosts_block(size, usual_alignment) : __real_malloc(size);
+  void* const block = host.allocate != nullptr ? hosts_block(size, usual_alignment) : __real_malloc(size);
+  return block != nullptr ? block : refused(size, usual_alignment);
 }
 
 void* __wrap_calloc(std::size_t count, std::size_t size) {
-  if (host.allocate == nullptr) return __real_calloc(count, size);
+  if (host.allocate == nullptr)
+    if (void* const block = __real_calloc(count, size)) return block;
   if (size != 0 && count > SIZE_MAX / size) return nullptr;
-  void* const block = hosts_block(count * size, usual_alignment);
+  void* const block = __wrap_malloc(count * size);
   if (block != nullptr) std::memset(block, 0, count * size);
   return block;
 }
 
 void* __wrap_realloc(void* block, std::size_t size) {
   if (block == nullptr) return __wrap_malloc(size);
-  if (host.allocate == nullptr) return __real_realloc(block, size);
+  const bool is_reserves = reserve.has(block);
+  if (host.allocate == nullptr && !is_reserves) return __real_realloc(block, size);
   void* const grown = __wrap_malloc(size);
   if (grown == nullptr) return nullptr;
-  std::memcpy(grown, block, std::min<std::size_t>(size, notes_of(block).size));
+  const std::size_t held = is_reserves ? Reserve::size_of(block) : notes_of(block).size;
+  std::memcpy(grown, block, std::min<std::size_t>(size, held));
   __wrap_free(block);
   return grown;
 }
@@ -85,14 +134,16 @@ void* __wrap_aligned_alloc(std::size_t alignment, std::size_t size) {
 }
 
 int __wrap_posix_memalign(void** block, std::size_t alignment, std::size_t size) {
-  if (host.allocate == nullptr) return __real_posix_memalign(block, alignment, size);
+  if (host.allocate == nullptr && __real_posix_memalign(block, alignment, size) == 0) return 0;
   *block = aligned(alignment, size);
   return *block != nullptr ? 0 : ENOMEM;
 }
 
 void __wrap_free(void* block) {
   if (block == nullptr) return;
-  if (host.allocate == nullptr)
+  if (reserve.has(block))
+    reserve.give_back();
+  else if (host.allocate == nullptr)
     __real_free(block);
   else
     host.release(static_cast<char*>(block) - notes_of(block).alignment, host.user);

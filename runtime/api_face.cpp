@@ -186,7 +186,7 @@ fascia_result fascia_face_restore(fascia_face* handle, const void* bytes, size_t
         !face.has_layers_of(body, header.size))
       throw Failure(FASCIA_ERROR_MISMATCH,
                     "the state is that of a face of another rig, solver, level or set of layers");
-    auto read = fascia::sim::StateBytes::from({body, header.size});
+    auto read = fascia::sim::StateBytes::from({body, size - sizeof header});
     if (face.exchange_state(read) && read.used() == header.size) return FASCIA_OK;
     face.reset();
     throw Failure(FASCIA_ERROR_FORMAT, "the state's numbers make no sense; the face was put back to rest");

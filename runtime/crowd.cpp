@@ -4,6 +4,8 @@
 #include <exception>
 #include <mutex>
 
+#include "runtime/arithmetic_mode.h"
+
 namespace fascia::runtime {
 namespace {
 
@@ -26,6 +28,7 @@ struct Work {
 };
 
 void run_range(uint32_t first, uint32_t end, void* context) {
+  const ArithmeticMode mode;  // of a thread of the host's
   static_cast<Work*>(context)->run(first, end);
 }
 

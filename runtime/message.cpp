@@ -1,5 +1,7 @@
 #include "runtime/message.h"
 
+#include "rig/read/read.h"
+
 namespace fascia::runtime {
 namespace {
 
@@ -20,6 +22,20 @@ fascia_result report(fascia_result result, const char* message) noexcept {
   last_message[length] = 0;
   if (log_function != nullptr) log_function(log_user, result, message);
   return result;
+}
+
+fascia_result report_fault(const std::exception& fault) noexcept {
+  if (has_run_out()) return report(FASCIA_ERROR_MEMORY, "out of memory");
+  fascia_result result = FASCIA_ERROR_INTERNAL;
+  if (const auto* failure = dynamic_cast<const Failure*>(&fault))
+    result = failure->result();
+  else if (dynamic_cast<const rig::VersionError*>(&fault) != nullptr)
+    result = FASCIA_ERROR_VERSION;
+  else if (dynamic_cast<const rig::MismatchError*>(&fault) != nullptr)
+    result = FASCIA_ERROR_MISMATCH;
+  else if (dynamic_cast<const Error*>(&fault) != nullptr)
+    result = FASCIA_ERROR_FORMAT;
+  return report(result, fault.what());
 }
 
 }  // namespace fascia::runtime

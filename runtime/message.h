@@ -7,7 +7,8 @@
 
 #include "fascia/fascia.h"
 #include "geometry/error.h"
-#include "rig/read/read.h"
+#include "runtime/allocator.h"
+#include "runtime/arithmetic_mode.h"
 
 namespace fascia::runtime {
 
@@ -24,28 +25,26 @@ class Failure : public std::runtime_error {
 /// Keeps `message` for this thread, tells the log, and returns `result`. Never throws.
 fascia_result report(fascia_result result, const char* message) noexcept;
 
+/// The same of what was thrown, by its kind; of memory when that had run out before.
+fascia_result report_fault(const std::exception& fault) noexcept;
+
 /// Throws FASCIA_ERROR_ARGUMENT with `message` unless `condition` holds.
 inline void require(bool condition, const char* message) {
   if (!condition) throw Failure(FASCIA_ERROR_ARGUMENT, message);
 }
 
-/// Runs `body` and turns whatever it throws into a result: the wall between C++ and the C interface.
+/// Runs `body` in the usual mode of arithmetic and turns whatever it throws into a result: the wall between
+/// C++ and the C interface.
 template <class Body>
 fascia_result guarded(const Body& body) noexcept {
+  const ArithmeticMode mode;
+  set_run_out(false);
   try {
     return body();
-  } catch (const Failure& failure) {
-    return report(failure.result(), failure.what());
-  } catch (const rig::VersionError& error) {
-    return report(FASCIA_ERROR_VERSION, error.what());
-  } catch (const rig::MismatchError& error) {
-    return report(FASCIA_ERROR_MISMATCH, error.what());
-  } catch (const Error& error) {
-    return report(FASCIA_ERROR_FORMAT, error.what());
   } catch (const std::bad_alloc&) {
     return report(FASCIA_ERROR_MEMORY, "out of memory");
-  } catch (const std::exception& error) {
-    return report(FASCIA_ERROR_INTERNAL, error.what());
+  } catch (const std::exception& fault) {
+    return report_fault(fault);
   } catch (...) {
     return report(FASCIA_ERROR_INTERNAL, "an unknown fault");
   }

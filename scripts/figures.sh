@@ -17,8 +17,6 @@ draw() {  # file, render's options
   "$fascia" render "$rig" --quiet -o "$1" "${@:2}"
 }
 smile=(--set arkit:mouthSmileLeft=0.9 --set arkit:mouthSmileRight=0.9 --set arkit:cheekSquintLeft=0.5 --set arkit:cheekSquintRight=0.5)
-surprise=(--set arkit:browInnerUp=1 --set arkit:browOuterUpLeft=1 --set arkit:browOuterUpRight=1 --set arkit:eyeWideLeft=0.8
-  --set arkit:eyeWideRight=0.8 --set arkit:jawOpen=0.4)
 
 # README: the head, its muscles with those of a left smile pulling, skin as glass, the head again.
 draw "$work/1.png" --size 480x600
@@ -29,10 +27,7 @@ ffmpeg -y -loglevel error -i "$work/1.png" -i "$work/2.png" -i "$work/3.png" -i 
   -filter_complex hstack=inputs=4 -frames:v 1 "$folder/hero.png"
 
 draw "$folder/smile.png" --size 600x720 --view front,three-quarter --beside-rest "${smile[@]}"
-draw "$folder/surprise.png" --size 600x720 --view front,three-quarter --beside-rest "${surprise[@]}"
 draw "$folder/strain.png" --size 720 --layers strain,eyes "${smile[@]}"
-draw "$folder/lights.png" --size 720 --view three-quarter --light dramatic --layers skin,eyes
 draw "$folder/smas.png" --size 900 --layers smas,skull --view three-quarter
-[ ! -e "$(dirname "$rig")/contact_sheet.png" ] || ffmpeg -y -loglevel error -i "$(dirname "$rig")/contact_sheet.png" -vf scale=1400:-1:flags=lanczos "$folder/overview.png"
 tools/figures/draw_muscles.sh "$fascia" "$folder" >/dev/null
-ls -l "$folder/hero.png" "$folder/smile.png" "$folder/surprise.png" "$folder/strain.png" "$folder/smas.png"
+ls -l "$folder/hero.png" "$folder/smile.png" "$folder/strain.png" "$folder/smas.png"

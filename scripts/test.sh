@@ -33,6 +33,8 @@ if [ "$full" = 1 ]; then
   cmake --preset fuzz >/dev/null
   cmake --build build/fuzz --target fuzz
   tests/fuzz/run.sh build/fuzz/bin 300
+  python3 tests/fuzz/mutate.py build/bin/fascia build/tests/samples/tiny.glb build/tests/samples/smile.csv tests/fuzz/corpus/mesh/* \
+    tests/fuzz/corpus/curves/* --seconds 300 --keep build/findings
   FASCIA_THOROUGH=1 ctest --test-dir build --output-on-failure -R 'test_faults'
   cmake --preset ci -DFASCIA_FULL_TESTS=ON >/dev/null
   ctest --test-dir build --output-on-failure -R 'batch.slurm|snapshots.head'
@@ -41,5 +43,6 @@ if [ "$full" = 1 ]; then
   ASAN_OPTIONS=detect_leaks=0 xvfb-run -a -s '-screen 0 1600x1000x24' \
     build/asan/bin/fascia view --monkey "$(date +%j)" --seconds 300
   tests/validator/validate.sh build/bin/fascia
+  scripts/packages.sh
   scripts/hosts.sh
 fi

@@ -16,7 +16,6 @@ namespace {
 
 constexpr int reflection_size = 64, reflection_levels = 6;  // pixels; smaller versions, each rougher
 constexpr double occlusion_radius = 0.030;                  // m: across a mouth's corner or an eye's
-constexpr int screen_divisor = 2;  // the picture's pixels to one of shadows and occlusion
 enum Unit { colour_unit, normal_unit, surface_unit, reflection_unit, shadow_unit, screen_unit };
 
 void set_matrix(const Program& program, const char* name, const Mat4& matrix) {
@@ -68,6 +67,11 @@ bool is_glass(const DrawSurface& surface) {
 /// Shadows and occlusion fall from what is solid; a hair card's holes let light through.
 bool is_solid(const DrawSurface& surface) {
   return surface.opacity >= 1.0 && surface.shading != Shading::xray;
+}
+
+/// The picture's pixels to one of shadows and occlusion, each way: films make do with half their size.
+int screen_divisor(const Look& look) {
+  return look.samples > 4 ? 1 : 2;
 }
 
 /// From the scene to the light's clip space, and the box's width and depth there in metres.
@@ -300,7 +304,7 @@ void SceneRenderer::State::set_frame(const Program& p, const Camera& camera, con
     flat[k] = static_cast<float>(harmonics[k / 3][static_cast<Eigen::Index>(k % 3)]);
   glUniform3fv(p.place("harmonics"), 9, flat);
   set_shadows(p, frame, look, turn);
-  p.set("screen_scale", 1.0 / screen_divisor);
+  p.set("screen_scale", 1.0 / screen_divisor(look));
 }
 
 void SceneRenderer::State::set_surface(const Program& p, const DrawSurface& surface) {
@@ -413,8 +417,8 @@ void SceneRenderer::draw(const DrawList& list, const Camera& camera, const Targe
   const LightFrame frame = light_frame(s.room.key_direction, list);
   if (look.has_shadows) s.draw_shadows(list, frame, width * height > 700 * 700 ? 2048 : 1024);
   const double aspect = static_cast<double>(width) / height;
-  const int w = (width + screen_divisor - 1) / screen_divisor,
-            h = (height + screen_divisor - 1) / screen_divisor;
+  const int divisor = screen_divisor(look), w = (width + divisor - 1) / divisor,
+            h = (height + divisor - 1) / divisor;
   s.draw_geometry(list, camera, aspect, w, h);
   s.draw_screen_light(camera, frame, look, aspect, w, h);
 

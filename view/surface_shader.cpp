@@ -88,16 +88,17 @@ float lit_share(vec3 p, vec3 n, out float thickness) {
 const char* screen_source = R"(
 vec4 screen_light(vec3 p) {
   float distance = dot(p - camera, view_direction);
-  vec2 at = gl_FragCoord.xy * screen_scale - 0.5;
-  ivec2 first = ivec2(floor(at)), last = textureSize(screen_map, 0) - 1;
-  vec2 f = at - vec2(first);
+  vec2 at = gl_FragCoord.xy * screen_scale;
+  ivec2 nearest = ivec2(floor(at)), last = textureSize(screen_map, 0) - 1;
   vec4 sum = vec4(0.0);
   float weights = 0.0;
-  for (int k = 0; k < 4; ++k) {
-    ivec2 o = ivec2(k & 1, k >> 1);
-    vec4 one = texelFetch(screen_map, clamp(first + o, ivec2(0), last), 0);
-    float w = (o.x == 1 ? f.x : 1.0 - f.x) * (o.y == 1 ? f.y : 1.0 - f.y);
-    w *= 1.0 / (0.0005 + abs(one.y - distance));
+  // The pixel at the place itself may show another surface, where one ends before the other: its neighbours count
+  // a little always, and more the better their distance fits.
+  for (int k = 0; k < 5; ++k) {
+    ivec2 o = k == 0 ? ivec2(0) : k == 1 ? ivec2(1, 0) : k == 2 ? ivec2(-1, 0) : k == 3 ? ivec2(0, 1) : ivec2(0, -1);
+    vec4 one = texelFetch(screen_map, clamp(nearest + o, ivec2(0), last), 0);
+    vec2 off = max(1.0 - abs(at - (vec2(nearest + o) + 0.5)), 0.0);
+    float w = (off.x * off.y + 0.05) / (0.0002 + abs(one.y - distance));
     sum += w * one;
     weights += w;
   }

@@ -7,6 +7,7 @@
 //   bench_expressions [HEAD|FAMILY]... [--level NAME] [--table FILE.json] [--only SHAPE,...] [--csv FILE]
 //                     [--sheet PREFIX] [--threads N]
 //   bench_expressions --remeshed PERSON... [--level NAME]
+//   bench_expressions --response [HEAD|FAMILY]... [--level NAME] [--table FILE.json] [--threads N]
 //
 // Rigs are built by the tool as a user would, landmarks found, and kept in the temporary folder until the
 // tool or the head changes; --table plays another table on them. Doing nothing scores 0 and some 3 mm, a
@@ -23,6 +24,7 @@
 #include <thread>
 
 #include "bench/expressions/copies.h"
+#include "bench/expressions/response.h"
 #include "bench/expressions/score.h"
 #include "bench/expressions/sculpted_head.h"
 #include "bench/expressions/sheet.h"
@@ -36,7 +38,7 @@ struct Request {
   std::set<std::string> only;
   std::string level = "low", table, csv, sheet;
   int threads = 2;
-  bool remeshed = false;
+  bool remeshed = false, response = false;
 };
 
 /// Scores of one head by shape; or why there are none.
@@ -181,6 +183,10 @@ void run(const Request& request) {
     return;
   }
   const anatomy::ExpressionSet table = table_of(request.table);
+  if (request.response) {
+    run_response(heads, table, request.level, request.threads);
+    return;
+  }
   std::vector<HeadScores> scores(heads.size());
   std::atomic<size_t> next = 0;
   const auto work = [&] {
@@ -218,6 +224,8 @@ int main(int argc, char** argv) {
       request.threads = std::atoi(value().c_str());
     else if (word == "--remeshed")
       request.remeshed = true;
+    else if (word == "--response")
+      request.response = true;
     else if (word == "--only") {
       std::string list = value(), name;
       for (const char c : list + ",")
@@ -231,7 +239,7 @@ int main(int argc, char** argv) {
       std::fprintf(
           stderr,
           "usage: bench_expressions [HEAD|FAMILY]... [--level NAME] [--table FILE.json] [--only SHAPE,...] "
-          "[--csv FILE] [--sheet PREFIX] [--threads N] [--remeshed]\n");
+          "[--csv FILE] [--sheet PREFIX] [--threads N] [--remeshed] [--response]\n");
       return 2;
     } else {
       request.heads.push_back(word);

@@ -1,5 +1,7 @@
 #include "gltf/read/model.h"
 
+#include <new>
+
 #include "geometry/error.h"
 #include "gltf/read/container.h"
 #include "gltf/read/text.h"
@@ -35,6 +37,8 @@ tinygltf::Model load_model(std::span<const uint8_t> glb, const std::string& name
   try {
     read = loader.LoadBinaryFromMemory(&model, &error, &warning, glb.data(),
                                        static_cast<unsigned int>(glb.size()));
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception& exception) {
     error = exception.what();
   }

@@ -115,6 +115,16 @@ TEST_F(Tool, WrongUsageIsTwo) {
   EXPECT_NE(run("bild").err.find("did you mean 'build'"), std::string::npos);
 }
 
+TEST_F(Tool, VersionTellsHowItWasBuilt) {
+  const auto told = run("--version");
+  EXPECT_EQ(told.code, 0);
+  EXPECT_EQ(told.out.find("fascia "), 0U);
+  for (const char* fact :
+       {"\ncommit: ", "\ncompiler: ", "\nbuild: ", "\nvector unit: ", "Eigen 3.", "oneTBB 20"})
+    EXPECT_NE(told.out.find(fact), std::string::npos) << fact;
+  EXPECT_EQ(told.out.find("/home"), std::string::npos) << "a place on the builder's machine";
+}
+
 TEST_F(Tool, EveryCommandExplainsItself) {
   for (const char* command :
        {"build", "info", "export", "pose", "play", "bake", "render", "check", "demo", "fit", "manual"}) {

@@ -75,6 +75,25 @@ TEST_F(Killed, AtAnyMomentNothingIsHalfWritten) {
   }
 }
 
+/// ffmpeg outlives the tool for a moment and ends what it was writing.
+TEST_F(Killed, AFilmIsWholeOrNotThere) {
+  if (std::system("command -v ffmpeg >/dev/null 2>&1") != 0) GTEST_SKIP() << "ffmpeg is not installed";
+  const std::set<std::string> usual = names();
+  const std::vector<std::string> film = {"render", at("rig.glb"), "--view", "turntable",
+                                         "--size", "320",         "-o",     at("film.mp4")};
+  for (const int signal : {SIGINT, SIGKILL})
+    for (const int milliseconds : {200, 500, 900}) {
+      const pid_t child = start(film);
+      std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+      kill(child, signal);
+      wait(child);
+      std::this_thread::sleep_for(std::chrono::milliseconds(300));
+      std::set<std::string> there = names();
+      there.erase("film.mp4");  // it was faster
+      EXPECT_EQ(there, usual) << signal << " after " << milliseconds << " ms";
+    }
+}
+
 TEST_F(Killed, TwoOnOneOutputLeaveOneWhole) {
   const std::vector<std::string> smile = {"pose", at("rig.glb"), "--set", "zygomaticus_major_left=1",
                                           "-o",   at("out.glb")};

@@ -28,7 +28,8 @@ if nm -D --defined-only "$library" | awk '{print $3}' | grep -v '^fascia_\|^FASC
 
 if [ -x "$place/fascia/bin/fascia" ]; then
   "$place/fascia/bin/fascia" --version
-  MANPAGER=cat man -l "$place/fascia/share/man/man1/fascia.1" >/dev/null 2>&1 || test -s "$place/fascia/share/man/man1/fascia.1"
+  page=$(find "$place/fascia/share/man/man1" -name 'fascia.1*')
+  case "$page" in *.gz) gzip -dc "$page" ;; *) cat "$page" ;; esac | grep -q '[.]SH NAME'
   bash -c "set -e; . '$place/fascia/share/bash-completion/completions/fascia'; COMP_WORDS=(fascia bu); COMP_CWORD=1; _fascia; \
            test \"\${COMPREPLY[0]}\" = build"
 fi

@@ -1,0 +1,56 @@
+#pragma once
+
+#if defined(__SSE2__)
+#include <xmmintrin.h>
+#else
+#include <cfenv>
+#endif
+
+namespace fascia::runtime {
+
+/// While it lives, this thread's arithmetic is as IEEE 754 has it by default: rounded to nearest, subnormal
+/// numbers kept, no traps; afterwards it is the host's again, with the exceptions it had raised and no other.
+/// Hosts set other modes (flush to zero is common in audio and game engines), and the same frame has to come
+/// out under all of them.
+class ArithmeticMode {
+ public:
+#if defined(__SSE2__)
+  ArithmeticMode() : host_(_mm_getcsr()) {
+    _mm_setcsr(usual);
+#if defined(__GNUC__)
+    // The C library asks the x87 unit how it rounds when it reads and writes decimals.
+    asm volatile("fnstcw %0" : "=m"(host_x87_));
+    if (host_x87_ != usual_x87) asm volatile("fldcw %0" : : "m"(usual_x87));
+#endif
+  }
+  ~ArithmeticMode() {
+    _mm_setcsr(host_);
+#if defined(__GNUC__)
+    if (host_x87_ != usual_x87) asm volatile("fldcw %0" : : "m"(host_x87_));
+#endif
+  }
+
+ private:
+  static constexpr unsigned usual = 0x1F80;            ///< traps masked, to nearest, subnormals kept
+  static constexpr unsigned short usual_x87 = 0x037F;  ///< traps masked, to nearest, full precision
+  unsigned host_;
+  unsigned short host_x87_ = usual_x87;
+#else
+  ArithmeticMode() {
+    std::fegetenv(&host_);
+    std::fesetenv(FE_DFL_ENV);
+  }
+  ~ArithmeticMode() {
+    std::fesetenv(&host_);
+  }
+
+ private:
+  std::fenv_t host_;
+#endif
+
+ public:
+  ArithmeticMode(const ArithmeticMode&) = delete;
+  ArithmeticMode& operator=(const ArithmeticMode&) = delete;
+};
+
+}  // namespace fascia::runtime
