@@ -21,14 +21,23 @@ folder.mkdir(parents=True, exist_ok=True)
 # --- A rig, and what is in it
 asset = fascia.load(rig)
 names = [channel["name"] for channel in asset.channels]
-skin = max((i for i, mesh in enumerate(asset.meshes) if mesh["part"] == "skin"),
-           key=lambda i: asset.meshes[i]["vertex_count"])
 print(f"{len(names)} channels, vocabularies {', '.join(asset.sets)}, levels {', '.join(asset.levels)}")
 
-# --- A pose. `positions` is a view: it shows each pose without being asked again.
+# --- A pose. A head's skin may be cut into several meshes: here they are one array.
 face = fascia.Face(asset, level=0, space="metres")
-positions = face.positions(skin)
-rest = positions.copy()
+skins = [i for i, mesh in enumerate(asset.meshes) if mesh["part"] == "skin"]
+
+
+def where():
+    return np.concatenate([face.positions(i) for i in skins])  # each a view, without a copy
+
+
+def by_mesh(vectors):
+    ends = np.cumsum([asset.meshes[i]["vertex_count"] for i in skins])[:-1]
+    return dict(zip(skins, np.split(vectors, ends)))
+
+
+rest = where()
 
 
 def pose(**values):
@@ -37,7 +46,7 @@ def pose(**values):
     for name, value in values.items():
         face.set("arkit:" + name, value)
     face.pose()
-    return positions - rest
+    return where() - rest
 
 
 def draw(axes, values, title, limit):
@@ -68,7 +77,7 @@ for moment in times:
     face.step(1 / 120)
     spent += time.perf_counter() - before
     drive.append(value)
-    heights.append((positions[corner, 1] - rest[corner, 1]) * 1000)
+    heights.append((where()[corner, 1] - rest[corner, 1]) * 1000)
 figure, axes = plt.subplots(figsize=(7, 3), layout="constrained")
 axes.plot(times, heights, label="corner of the mouth, mm up")
 axes.plot(times, np.array(drive) * max(heights), "--", color="grey", label="what drives it")
@@ -83,7 +92,7 @@ face.pose()
 slopes = np.zeros_like(rest)
 slopes[corner, 1] = 1
 before = time.perf_counter()
-by_channel = face.gradient({skin: slopes})
+by_channel = face.gradient(by_mesh(slopes))
 print(f"the derivative by all {len(names)} channels takes {(time.perf_counter() - before) * 1000:.0f} ms")
 order = np.argsort(-np.abs(by_channel))[:12][::-1]
 figure, axes = plt.subplots(figsize=(7, 4), layout="constrained")
@@ -101,9 +110,9 @@ high = np.array([channel["maximum"] for channel in asset.channels])
 step = None
 for _ in range(25):
     face.pose()
-    difference = positions - target
+    difference = where() - target
     losses.append(float(np.sqrt((difference**2).sum(axis=1).mean())) * 1000)
-    slope = face.gradient({skin: 2 * difference}) * muscles
+    slope = face.gradient(by_mesh(2 * difference)) * muscles
     if step is None:
         step = 0.25 / np.abs(slope).max()
     elif losses[-1] > losses[-2]:
