@@ -19,7 +19,15 @@ struct PoseOptions {
   int contact_rounds = 4;           ///< how often at most lips and lids look again for what they face
   double contact_tolerance = 1e-4;  ///< metres a gap may still change when they do
   bool from_last_pose = false;      ///< start from the last static pose instead of the bones' motion alone
+  double jaw_stage = 0.17;  ///< the jaw opens in stages of at most this share of its way, each begun from
+                            ///< the one before: carried at once, the mouth's corners may settle folded
 };
+
+/// How many stages the jaw opens in on the way to `jaw`: 1 from the last pose.
+int jaw_stages(const JawPose& jaw, const PoseOptions& options);
+
+/// How the tissue of a stage before the last is solved: near enough to begin the next one from.
+PoseOptions stage_options(const PoseOptions& options);
 
 /// How time passes for a face.
 struct StepOptions {
@@ -97,6 +105,9 @@ class Face final : public Solver {
   const Frame& frame() const { return frame_; }
 
  private:
+  /// The same without stages.
+  MinimiseResult pose_at_once(const Controls& controls, const PoseOptions& options,
+                              std::span<Vec3f> positions);
   MinimiseResult find_pose(const PoseOptions& options);
   MinimiseResult substep(const Controls& now, const StepOptions& options);
   bool sound(const StepOptions& options) const;

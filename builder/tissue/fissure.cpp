@@ -32,8 +32,34 @@ Fissure::Fissure(const TissueInputs& inputs, const FaceRegion& region, bool left
   left_ = (b - centre).dot(lateral);
   right_elevation_ = elevation(a);
   left_elevation_ = elevation(b);
+  reach_canthi(region, left);
   find_gaps(region, left);
   find_closed_lids(region, left);
+}
+
+void Fissure::reach_canthi(const FaceRegion& region, bool left) {
+  const auto& distance =
+      region.opening_distance[static_cast<size_t>(left ? Opening::eye_left : Opening::eye_right)];
+  constexpr double least = 0.04, most = 0.2;  // of the fissure's width: less is as good as the landmark
+  const double width = left_ - right_;
+  double right = 0.0, far_left = 1.0, right_elevation = right_elevation_, left_elevation = left_elevation_;
+  for (size_t v = 0; v < distance.size(); ++v) {
+    if (distance[v] > 0.0 || !region.outer[v]) continue;
+    const Vec3& p = region.mesh.vertices[v];
+    const double at = place(p);
+    if (at < -most || at > 1.0 + most || std::abs(elevation(p)) > widest) continue;
+    if (at < std::min(right, -least)) {
+      right = at;
+      right_elevation = elevation(p);
+    } else if (at > std::max(far_left, 1.0 + least)) {
+      far_left = at;
+      left_elevation = elevation(p);
+    }
+  }
+  left_ = right_ + far_left * width;
+  right_ += right * width;
+  left_elevation_ = left_elevation;
+  right_elevation_ = right_elevation;
 }
 
 double Fissure::elevation(const Vec3& p) const {

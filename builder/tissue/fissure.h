@@ -37,6 +37,8 @@ class Fissure {
 
  private:
   double middle(double place) const;
+  /// Canthi as far out as the skin's edge goes, where the landmarks lie inside it.
+  void reach_canthi(const FaceRegion& region, bool left);
   void find_gaps(const FaceRegion& region, bool left);
   void find_closed_lids(const FaceRegion& region, bool left);
 

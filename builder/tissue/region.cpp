@@ -7,6 +7,7 @@
 
 #include "builder/spatial/surface_query.h"
 #include "builder/tissue/distance.h"
+#include "builder/tissue/empty_eyes.h"
 #include "geometry/connectivity.h"
 #include "geometry/error.h"
 #include "geometry/smoothstep.h"
@@ -28,52 +29,6 @@ double margin_at(const TissueInputs& inputs, const Vec3& p) {
   const double below = std::clamp((ear.y() - m.jaw_angle * third - p.y()) / third, 0.0, 1.0);
   const double back = ear.z() + third * (m.before_ear - m.back_below_jaw * below);
   return std::min({top - p.y(), p.y() - bottom, p.z() - back});
-}
-
-/// The four places of an eye's lids that landmarks name, going round; nothing when one is missing.
-std::optional<std::array<Vec3, 4>> lid_places(const TissueInputs& inputs, const std::string& side) {
-  std::array<Vec3, 4> places;
-  size_t k = 0;
-  for (const char* name : {"exocanthion", "palpebrale_superius", "endocanthion", "palpebrale_inferius"}) {
-    const auto found = inputs.landmarks.find(name + side);
-    if (found == inputs.landmarks.end()) return {};
-    places[k++] = found->second;
-  }
-  return places;
-}
-
-/// Closes the fissures of eyes that are empty sockets, so that what lies in them is not seen from outside.
-void hang_curtains(const TissueInputs& inputs, TriangleMesh& blocking) {
-  constexpr double margin = 1.12, behind = 0.03, empty = 0.22;  // of the fissure's width but for the first
-  const spatial::SurfaceQuery query(blocking);
-  for (const std::string side : {"_left", "_right"}) {
-    const bool has_eyeball = std::any_of(inputs.parts.begin(), inputs.parts.end(),
-                                         [&](const PartMesh& part) { return part.part == "eye" + side; });
-    const auto places = lid_places(inputs, side);
-    if (has_eyeball || !places) continue;
-    const auto& [outer, upper, inner, lower] = *places;
-    const Vec3 lateral = outer - inner;
-    const double width = lateral.norm();
-    Vec3 front = lateral.cross(upper - lower);
-    if (!(front.norm() > 1e-3 * width * width)) continue;
-    front = front.normalized() * (front.z() < 0.0 ? -1.0 : 1.0);
-    const Vec3 middle = 0.25 * (outer + upper + inner + lower);
-    // An eye that is one surface with its lids stands in the fissure; a socket's wall lies far behind it.
-    const auto wall = query.first_hit(middle + width * front, -front, 4.0 * width);
-    if (wall && wall->distance < (1.0 + empty) * width) continue;
-    const int first = blocking.vertex_count();
-    constexpr int corners = 24;
-    blocking.vertices.push_back(middle - behind * width * front);
-    for (int k = 0; k < corners; ++k) {
-      // Quarters of ellipses from place to place.
-      const double turn = 4.0 * k / corners, share = 0.5 * EIGEN_PI * (turn - std::floor(turn));
-      const auto from = static_cast<size_t>(turn);
-      const Vec3 rim = std::cos(share) * ((*places)[from] - middle) +
-                       std::sin(share) * ((*places)[(from + 1) % 4] - middle);
-      blocking.vertices.push_back(middle + margin * rim - behind * width * front);
-      blocking.triangles.push_back({first, first + 1 + k, first + 1 + (k + 1) % corners});
-    }
-  }
 }
 
 /// Whether a skin vertex is seen from outside: some ray in the half space before the face escapes.
@@ -186,16 +141,19 @@ Opening opening_of_loop(const TissueInputs& inputs, const TriangleMesh& mesh, co
 
 /// The outer vertices beyond which the skin goes on, or ends at the neck or behind the ears. Where it ends
 /// within the face, as a mask does at the chin, nothing holds it but the bone beneath.
-std::vector<bool> rim_of(const TissueInputs& inputs, const TriangleMesh& skin, const FaceRegion& region) {
+std::vector<bool> rim_of(const TissueInputs& inputs, const TriangleMesh& skin, const FaceRegion& region,
+                         const std::vector<bool>& eye) {
   const Vec3 glabella = landmark(inputs, "glabella"), gnathion = landmark(inputs, "gnathion");
   // The throat begins some way below the chin: a fifth of the face's height.
   const double neck = gnathion.y() - 0.2 * (glabella.y() - gnathion.y());
   const double ears = std::min(landmark(inputs, "tragion_left").z(), landmark(inputs, "tragion_right").z());
   std::vector<int> triangles(region.outer.size(), 0);
-  for (const fascia::Triangle& t : skin.triangles)
+  for (const fascia::Triangle& t : skin.triangles) {
+    if (std::any_of(t.begin(), t.end(), [&](int v) { return eye[static_cast<size_t>(v)]; })) continue;
     for (const int corner : t)
       if (const int v = region.region_vertex[static_cast<size_t>(corner)]; v >= 0)
         ++triangles[static_cast<size_t>(v)];
+  }
   for (const fascia::Triangle& t : region.mesh.triangles)
     for (const int v : t)
       --triangles[static_cast<size_t>(v)];
@@ -282,10 +240,11 @@ FaceRegion find_region(const TissueInputs& inputs, const TissueOptions& options)
     margin[v] = margin_at(inputs, skin.vertices[v]);
   std::vector<bool> outer = seen_from_outside(inputs, margin);
   calm(skin, outer);
+  const std::vector<bool> eye = eyes_in_skin(inputs);
 
   std::vector<bool> within(skin.vertices.size());
   for (size_t v = 0; v < within.size(); ++v)
-    within[v] = margin[v] > 0.0;
+    within[v] = margin[v] > 0.0 && !eye[v];
   // The outer face: what hangs together with the tip of the nose.
   const Vec3 tip = landmark(inputs, "pronasale");
   int start = -1;
@@ -359,7 +318,17 @@ FaceRegion find_region(const TissueInputs& inputs, const TissueOptions& options)
         edges_of[static_cast<size_t>(region.opening[beyond])].push_back({static_cast<int>(v)});
         break;
       }
-  region.rim = rim_of(inputs, skin, region);
+  for (const fascia::Triangle& t : skin.triangles) {
+    if (std::none_of(t.begin(), t.end(), [&](int v) { return eye[static_cast<size_t>(v)]; })) continue;
+    for (const int corner : t)
+      if (const int v = region.region_vertex[static_cast<size_t>(corner)];
+          v >= 0 && region.outer[static_cast<size_t>(v)]) {
+        edges.push_back({v});
+        edges_of[static_cast<size_t>(opening_at(inputs, region.mesh.vertices[static_cast<size_t>(v)]))]
+            .push_back({v});
+      }
+  }
+  region.rim = rim_of(inputs, skin, region, eye);
   for (const auto& loop : boundary_loops(region.mesh, connectivity(region.mesh)))
     if (const Opening hole = opening_of_loop(inputs, region.mesh, loop); hole != Opening::none)
       for (const int v : loop) {

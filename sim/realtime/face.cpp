@@ -42,6 +42,27 @@ void Face::fill_nodes(const float* x, Positions& nodes) const {
 
 MinimiseResult Face::static_pose(const Controls& controls, const PoseOptions& options,
                                  std::span<Vec3f> positions) {
+  const int stages = jaw_stages(controls.jaw, options);
+  int before = 0;
+  for (int stage = 1; stage < stages; ++stage) {
+    Controls part = controls;
+    const float share = static_cast<float>(stage) / static_cast<float>(stages);
+    part.jaw.open *= share;
+    part.jaw.forward *= share;
+    part.jaw.lateral *= share;
+    PoseOptions rough = stage_options(options);
+    rough.from_last_pose = stage > 1;
+    before += pose_at_once(part, rough, {}).iterations;
+  }
+  PoseOptions last = options;
+  last.from_last_pose = options.from_last_pose || stages > 1;
+  MinimiseResult result = pose_at_once(controls, last, positions);
+  result.iterations += before;
+  return result;
+}
+
+MinimiseResult Face::pose_at_once(const Controls& controls, const PoseOptions& options,
+                                  std::span<Vec3f> positions) {
   std::unique_ptr<Workspace> work = model_->borrow();
   const JawPose jaw = clamped(controls.jaw);
   Solve solve{*work,

@@ -53,6 +53,9 @@ class Face final : public Solver {
   std::span<const float> activations() const { return time_.activations(); }
 
  private:
+  /// The same without stages.
+  MinimiseResult pose_at_once(const Controls& controls, const PoseOptions& options,
+                              std::span<Vec3f> positions);
   struct Solve;
   struct Space;
 

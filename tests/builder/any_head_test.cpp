@@ -124,6 +124,16 @@ TEST(AnyHead, WithTrianglesOfNoArea) {
   }
 }
 
+TEST(AnyHead, OpensItsMouthAlikeOnBothSides) {
+  Variant head("even", no_change);
+  for (const double open : {0.4, 0.6, 0.7, 0.8, 1.0}) {
+    head.face().pose({{"jaw_open", open}});
+    const Vec3 left = head.face().moved("cheilion_left"), right = head.face().moved("cheilion_right");
+    EXPECT_LT((left - Vec3(-right.x(), right.y(), right.z())).norm(), 1.5) << open;
+    EXPECT_LT(left.x(), 0.0) << open;  // the corners come together, as in measured faces
+  }
+}
+
 TEST(AnyHead, AsAMaskWithHolesForMouthAndEyes) {
   Variant head("mask", [](TriangleMesh& skin) {
     const double back = landmark("tragion_left").z() + 0.02, bottom = landmark("menton").y() - 0.006;
