@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <optional>
 
 #include "builder/tissue/fissure.h"
 #include "builder/tissue/laplacian.h"
@@ -41,66 +40,41 @@ std::vector<double> target_lengths(const TissueInputs& inputs, const FaceRegion&
   return lengths;
 }
 
-/// Where the lips meet at a corner of the mouth, on the region's mesh; nothing where the mouth does not open.
-std::optional<SurfacePoint> mouth_corner(const TissueInputs& inputs, const FaceRegion& region, bool left) {
-  const Vec3 corner = landmark(inputs, left ? "cheilion_left" : "cheilion_right");
-  const auto& distance = region.opening_distance[static_cast<size_t>(Opening::mouth)];
-  SurfacePoint place;
-  double least = 0.006;  // metres from the landmark
-  for (size_t t = 0; t < region.mesh.triangles.size(); ++t)
-    for (int k = 0; k < 3; ++k) {
-      const auto v = static_cast<size_t>(region.mesh.triangles[t][static_cast<size_t>(k)]);
-      if (!region.outer[v] || distance[v] > 0.0) continue;
-      const double gap = (region.mesh.vertices[v] - corner).norm();
-      if (gap >= least) continue;
-      least = gap;
-      place.triangle = static_cast<int>(t);
-      place.barycentric.setZero();
-      place.barycentric[k] = 1.0;
-    }
-  if (place.triangle < 0) return {};
-  return place;
-}
-
-/// Moves the vertex nearest to each place of the lids' edges and to the corners of the mouth onto it, where
-/// that turns no triangle: an edge between two rows of columns would be cut off, lids that meet would meet
-/// beside it, and a mouth would open farther on one side than on the other.
-void settle_on_edges(const TissueInputs& inputs, const FaceRegion& region, RemeshResult& remeshed) {
+/// Moves the vertex nearest to each place of the lids' edges onto it, where that turns no triangle: an edge
+/// between two rows of columns would be cut off, and lids that meet would meet beside it.
+void settle_on_lid_edges(const TissueInputs& inputs, const FaceRegion& region, RemeshResult& remeshed) {
   TriangleMesh& mesh = remeshed.mesh;
   const auto around = triangles_around(mesh);
   std::vector<double> moved(mesh.vertices.size(), 1e9);
-  const std::vector<Vec3> before = mesh.vertices;
+  std::vector<Vec3> before = mesh.vertices;
   const std::vector<double> areas = vertex_areas(mesh);
-  const auto settle = [&](const SurfacePoint& place) {
-    const Vec3 there = position(region.mesh, place);
-    size_t nearest = 0;
-    for (size_t v = 1; v < before.size(); ++v)
-      if ((before[v] - there).squaredNorm() < (before[nearest] - there).squaredNorm()) nearest = v;
-    const double way = (before[nearest] - there).norm();
-    if (way > 0.7 * std::sqrt(areas[nearest]) || way > moved[nearest]) return;
-    const Vec3 here = mesh.vertices[nearest];
-    bool is_sound = true;
-    std::vector<std::pair<Vec3, double>> old;
-    for (const int t : around[nearest])
-      old.emplace_back(triangle_normal(mesh, t), triangle_area(mesh, t));
-    mesh.vertices[nearest] = there;
-    for (size_t k = 0; k < old.size(); ++k) {
-      const int t = around[nearest][k];
-      is_sound = is_sound && triangle_normal(mesh, t).dot(old[k].first) > 0.3 &&
-                 triangle_area(mesh, t) > 0.3 * old[k].second;
-    }
-    if (is_sound) {
-      moved[nearest] = way;
-      remeshed.source[nearest] = place;
-    } else {
-      mesh.vertices[nearest] = here;
-    }
-  };
   for (const bool left : {true, false}) {
     const Fissure fissure(inputs, region, left);
-    for (const SurfacePoint& place : fissure.edges())
-      settle(place);
-    if (const auto corner = mouth_corner(inputs, region, left)) settle(*corner);
+    for (const SurfacePoint& place : fissure.edges()) {
+      const Vec3 there = position(region.mesh, place);
+      size_t nearest = 0;
+      for (size_t v = 1; v < before.size(); ++v)
+        if ((before[v] - there).squaredNorm() < (before[nearest] - there).squaredNorm()) nearest = v;
+      const double way = (before[nearest] - there).norm();
+      if (way > 0.7 * std::sqrt(areas[nearest]) || way > moved[nearest]) continue;
+      const Vec3 here = mesh.vertices[nearest];
+      bool is_sound = true;
+      std::vector<std::pair<Vec3, double>> old;
+      for (const int t : around[nearest])
+        old.emplace_back(triangle_normal(mesh, t), triangle_area(mesh, t));
+      mesh.vertices[nearest] = there;
+      for (size_t k = 0; k < old.size(); ++k) {
+        const int t = around[nearest][k];
+        is_sound = is_sound && triangle_normal(mesh, t).dot(old[k].first) > 0.3 &&
+                   triangle_area(mesh, t) > 0.3 * old[k].second;
+      }
+      if (is_sound) {
+        moved[nearest] = way;
+        remeshed.source[nearest] = place;
+      } else {
+        mesh.vertices[nearest] = here;
+      }
+    }
   }
 }
 
@@ -166,7 +140,7 @@ void place_layers(Columns& c) {
 Columns make_columns(const TissueInputs& inputs, const FaceRegion& region, const Beneath& beneath,
                      const LevelOptions& level, const TissueOptions& options) {
   RemeshResult remeshed = remesh(region.mesh, target_lengths(inputs, region, level, options));
-  settle_on_edges(inputs, region, remeshed);
+  settle_on_lid_edges(inputs, region, remeshed);
   drop_slivers(remeshed);
   Columns c;
   c.mesh = std::move(remeshed.mesh);

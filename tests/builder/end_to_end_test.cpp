@@ -131,7 +131,7 @@ TEST_F(EmbeddedHead, TheFastSolverPosesAndMovesAsTheReference) {
     worst = std::max(worst, gap);
   }
   // Two iterations a substep against steps solved to the end: lips that meet go their way a little later.
-  EXPECT_LT(sum / frames, 0.04);
+  EXPECT_LT(sum / frames, 0.03);
   EXPECT_LT(worst, 0.1);
 }
 

@@ -128,11 +128,12 @@ TEST(Research, TheGradientIsThatOfFiniteDifferences) {
   const float* lists[1] = {slopes.data()};
   float gradient[5] = {};
   ASSERT_EQ(fascia_face_gradient(face.face, lists, gradient), FASCIA_OK) << fascia_last_message();
-  // Differences are good to some hundredths of a centimetre: a pose ends within its tolerance.
+  // A pose ends within its tolerance, some thousandths of a centimetre of the loss, so differences are taken
+  // wide.
   for (int channel = 0; channel < 5; ++channel) {
-    const double difference = (loss(channel, 0.05F) - loss(channel, -0.05F)) / 0.1;
+    const double difference = (loss(channel, 0.1F) - loss(channel, -0.1F)) / 0.2;
     EXPECT_GT(std::abs(difference), 0.1) << channel;
-    EXPECT_NEAR(static_cast<double>(gradient[channel]), difference, 0.07 * std::abs(difference) + 0.012)
+    EXPECT_NEAR(static_cast<double>(gradient[channel]), difference, 0.05 * std::abs(difference) + 0.012)
         << channel;
   }
   slopes[5] = NAN;
