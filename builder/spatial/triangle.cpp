@@ -57,7 +57,7 @@ Vec3 closest_barycentric(const Vec3& point, const Vec3& a, const Vec3& b, const 
     return Vec3(0, 1 - w, w);
   }
   const double v = vb / (va + vb + vc), w = vc / (va + vb + vc);
-  return Vec3(1 - v - w, v, w);
+  return Vec3(std::max(0.0, 1 - v - w), v, w);  // rounding may take it below zero on the edge
 }
 
 double solid_angle(const Vec3& point, const Vec3& a, const Vec3& b, const Vec3& c) {

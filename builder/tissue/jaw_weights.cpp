@@ -43,7 +43,8 @@ std::vector<double> jaw_weights(const TriangleMesh& mesh, const std::vector<bool
   Eigen::VectorXd right = Eigen::VectorXd::Zero(n);
   for (int v = 0; v < n; ++v) {
     const Vec3& p = mesh.vertices[static_cast<size_t>(v)];
-    const double share = area[static_cast<size_t>(v)];
+    const double share =
+        std::max(area[static_cast<size_t>(v)], 1e-14);  // slivers alone may surround a vertex
     const double to_cranium = cranium.closest(p).distance, to_mandible = mandible.closest(p).distance;
     const double near = std::min(to_cranium, to_mandible), far = std::max(to_cranium, to_mandible);
     const double sure = m.certain_ratio.rise(far / std::max(near, 1e-4)) * m.bone_distance.fall(near);

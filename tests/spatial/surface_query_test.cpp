@@ -117,6 +117,20 @@ TEST(Triangle, DegenerateTrianglesAreTheirLongestEdge) {
   EXPECT_EQ(closest_barycentric(Vec3(2, 1, 0), a, a, a), Vec3(1, 0, 0));
 }
 
+TEST(Triangle, WeightsOfTheClosestPlaceAreNeverNegative) {
+  // Points on an edge, where rounding goes either way.
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> any(-1.0, 1.0);
+  for (int i = 0; i < 20000; ++i) {
+    const auto point = [&] { return Vec3(any(random), any(random), any(random)); };
+    const Vec3 a = point(), b = point(), c = point();
+    const double share = 0.5 * (any(random) + 1.0);
+    const Vec3 weights = closest_barycentric(share * b + (1.0 - share) * c, a, b, c);
+    ASSERT_GE(weights.minCoeff(), 0.0) << i;
+    ASSERT_NEAR(weights.sum(), 1.0, 1e-12) << i;
+  }
+}
+
 TEST(Triangle, OctantHasAnEighthOfTheSphere) {
   EXPECT_NEAR(solid_angle(Vec3::Zero(), Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()), std::numbers::pi / 2,
               1e-14);
