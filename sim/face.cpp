@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/jaw_stages.h"
+
 namespace fascia::sim {
 
 Face::Face(const FaceModel& model, size_t channels, const PoseOptions& pose, const StepOptions& step)
@@ -46,39 +48,12 @@ MinimiseResult Face::find_pose(const PoseOptions& options) {
   return result;
 }
 
-int jaw_stages(const JawPose& jaw, const PoseOptions& options) {
-  if (options.from_last_pose || !(options.jaw_stage > 0.0) || !(jaw.open > 0.0)) return 1;
-  return static_cast<int>(std::ceil(std::min(static_cast<double>(jaw.open), 1.0) / options.jaw_stage));
-}
-
-PoseOptions stage_options(const PoseOptions& options) {
-  PoseOptions rough = options;
-  rough.contact_rounds = std::min(options.contact_rounds, 1);
-  rough.solver.iterations = std::min(options.solver.iterations, 40);
-  rough.solver.tolerance = std::max(options.solver.tolerance, 1e-4);
-  rough.newton.iterations = 0;
-  return rough;
-}
-
 MinimiseResult Face::static_pose(const Controls& controls, const PoseOptions& options,
                                  std::span<Vec3f> positions) {
-  const int stages = jaw_stages(controls.jaw, options);
-  int before = 0;
-  for (int stage = 1; stage < stages; ++stage) {
-    Controls part = controls;
-    const float share = static_cast<float>(stage) / static_cast<float>(stages);
-    part.jaw.open *= share;
-    part.jaw.forward *= share;
-    part.jaw.lateral *= share;
-    PoseOptions rough = stage_options(options);
-    rough.from_last_pose = stage > 1;
-    before += pose_at_once(part, rough, {}).iterations;
-  }
-  PoseOptions last = options;
-  last.from_last_pose = options.from_last_pose || stages > 1;
-  MinimiseResult result = pose_at_once(controls, last, positions);
-  result.iterations += before;
-  return result;
+  return pose_in_stages(controls, options, positions,
+                        [this](const Controls& part, const PoseOptions& how, std::span<Vec3f> to) {
+                          return pose_at_once(part, how, to);
+                        });
 }
 
 MinimiseResult Face::pose_at_once(const Controls& controls, const PoseOptions& options,

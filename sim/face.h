@@ -23,12 +23,6 @@ struct PoseOptions {
                             ///< the one before: carried at once, the mouth's corners may settle folded
 };
 
-/// How many stages the jaw opens in on the way to `jaw`: 1 from the last pose.
-int jaw_stages(const JawPose& jaw, const PoseOptions& options);
-
-/// How the tissue of a stage before the last is solved: near enough to begin the next one from.
-PoseOptions stage_options(const PoseOptions& options);
-
 /// How time passes for a face.
 struct StepOptions {
   ActivationDynamics dynamics;

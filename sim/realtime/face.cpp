@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/jaw_stages.h"
 #include "sim/realtime/solve.h"
 
 namespace fascia::sim::realtime {
@@ -42,23 +43,10 @@ void Face::fill_nodes(const float* x, Positions& nodes) const {
 
 MinimiseResult Face::static_pose(const Controls& controls, const PoseOptions& options,
                                  std::span<Vec3f> positions) {
-  const int stages = jaw_stages(controls.jaw, options);
-  int before = 0;
-  for (int stage = 1; stage < stages; ++stage) {
-    Controls part = controls;
-    const float share = static_cast<float>(stage) / static_cast<float>(stages);
-    part.jaw.open *= share;
-    part.jaw.forward *= share;
-    part.jaw.lateral *= share;
-    PoseOptions rough = stage_options(options);
-    rough.from_last_pose = stage > 1;
-    before += pose_at_once(part, rough, {}).iterations;
-  }
-  PoseOptions last = options;
-  last.from_last_pose = options.from_last_pose || stages > 1;
-  MinimiseResult result = pose_at_once(controls, last, positions);
-  result.iterations += before;
-  return result;
+  return pose_in_stages(controls, options, positions,
+                        [this](const Controls& part, const PoseOptions& how, std::span<Vec3f> to) {
+                          return pose_at_once(part, how, to);
+                        });
 }
 
 MinimiseResult Face::pose_at_once(const Controls& controls, const PoseOptions& options,
