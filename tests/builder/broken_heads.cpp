@@ -107,6 +107,15 @@ void turn_over(Triangle& t) {
   std::swap(t[1], t[2]);
 }
 
+/// Every triangle once more, turned over, on the same vertices.
+void add_backs(TriangleMesh& mesh) {
+  const std::vector<Triangle> front = mesh.triangles;
+  for (Triangle t : front) {
+    turn_over(t);
+    mesh.triangles.push_back(t);
+  }
+}
+
 /// The skin's pieces in place of the skin, each a mesh and a node of its own.
 void replace_skin(Made& made, const std::vector<TriangleMesh>& parts) {
   const Piece skin = skin_of(made);
@@ -206,21 +215,12 @@ void add_ways_to_layer(std::map<std::string, Break>& kinds) {
     made.says = lies_on_others;
   };
   kinds["backs_on_the_same_vertices"] = [](Made& made, Random&) {
-    TriangleMesh& mesh = skin_of(made).mesh;
-    const std::vector<Triangle> front = mesh.triangles;
-    for (Triangle t : front) {
-      turn_over(t);
-      mesh.triangles.push_back(t);
-    }
+    add_backs(skin_of(made).mesh);
     made.says = lies_on_others;
   };
   kinds["soup_with_backs"] = [](Made& made, Random&) {
     TriangleMesh& mesh = skin_of(made).mesh;
-    const std::vector<Triangle> front = mesh.triangles;
-    for (Triangle t : front) {
-      turn_over(t);
-      mesh.triangles.push_back(t);
-    }
+    add_backs(mesh);
     int next = 0;
     mesh = joined(taken_apart(mesh, [&](const Triangle&) { return next++; }));
     made.is_cut = true;
