@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "builder/landmarks/placement.h"
+#include "geometry/alignment.h"
 
 namespace fascia::landmarks {
 
@@ -108,7 +109,7 @@ std::vector<Guess> guess_by_nose(const GenericFace& face, const Neighbours& samp
   for (double size : {0.17, 0.20, 0.24, 0.28, 0.33, 0.39, 0.46}) {
     const double scale = extent / size;
     for (const Protrusion& tip : protrusions(samples, nose_radius * scale, 6)) {
-      const Mat3 onto = Eigen::Quaterniond::FromTwoVectors(nose.direction, tip.direction).toRotationMatrix();
+      const Mat3 onto = least_rotation(nose.direction, tip.direction).toRotationMatrix();
       std::vector<Guess> here;
       const int turns = 24;
       for (int turn = 0; turn < turns; ++turn)
