@@ -36,7 +36,7 @@ CheckPose pose_of(const Fields& fields) {
   return pose;
 }
 
-Checks load(const DataFiles& files) {
+Checks checks_of(const DataFiles& files) {
   const Json document = files.json("checks.json");
   const Fields root(document, "checks.json"), adult = root.object("adult");
   Checks checks;
@@ -73,11 +73,11 @@ const CheckBound& Checks::bound(const std::string& row) const {
 }
 
 Checks load_checks() {
-  return load(DataFiles());
+  return checks_of(DataFiles());
 }
 
 Checks load_checks(const std::filesystem::path& directory) {
-  return load(DataFiles(directory));
+  return checks_of(DataFiles(directory));
 }
 
 }  // namespace fascia::anatomy

@@ -11,10 +11,10 @@ namespace fascia::batch {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 constexpr const char* file_name = "job.json";
 
-Record record_of(const Json& json) {
+Record record_of(const OrderedJson& json) {
   Record record;
   json.at("id").get_to(record.id);
   json.at("head").get_to(record.head);
@@ -40,7 +40,7 @@ bool read_record(const fs::path& folder, Record& record) {
   if (!fs::exists(folder / file_name, status)) return false;
   try {
     const std::vector<uint8_t> bytes = formats::read_bytes(folder / file_name);
-    record = record_of(Json::parse(bytes));
+    record = record_of(OrderedJson::parse(bytes));
     return true;
   } catch (const std::exception&) {  // whatever is wrong with it, the head is built again
     return false;
@@ -48,21 +48,22 @@ bool read_record(const fs::path& folder, Record& record) {
 }
 
 void write_record(const fs::path& folder, const Record& record) {
-  const Json json = {{"id", record.id},
-                     {"head", record.head},
-                     {"key", record.key},
-                     {"done", record.is_done},
-                     {"cause", record.cause},
-                     {"message", record.message},
-                     {"attempts", record.attempts},
-                     {"seconds", record.seconds},
-                     {"cpu_seconds", record.cpu_seconds},
-                     {"megabytes", record.megabytes},
-                     {"rig_bytes", record.rig_bytes},
-                     {"failed_checks", record.failed_checks},
-                     {"checks", record.checks},
-                     {"warnings", record.warnings}};
-  formats::write_text(folder / file_name, json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+  const OrderedJson json = {{"id", record.id},
+                            {"head", record.head},
+                            {"key", record.key},
+                            {"done", record.is_done},
+                            {"cause", record.cause},
+                            {"message", record.message},
+                            {"attempts", record.attempts},
+                            {"seconds", record.seconds},
+                            {"cpu_seconds", record.cpu_seconds},
+                            {"megabytes", record.megabytes},
+                            {"rig_bytes", record.rig_bytes},
+                            {"failed_checks", record.failed_checks},
+                            {"checks", record.checks},
+                            {"warnings", record.warnings}};
+  formats::write_text(folder / file_name,
+                      json.dump(1, ' ', false, OrderedJson::error_handler_t::replace) + "\n");
 }
 
 std::vector<Record> all_records(const fs::path& output) {

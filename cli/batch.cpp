@@ -28,7 +28,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr int exit_some_failed = 1, exit_interrupted = 130;
 
-struct Request {
+struct BatchRequest {
   std::string source, operand;
   fs::path output;
   size_t jobs = 0;
@@ -61,11 +61,11 @@ size_t processors() {
   return std::max(1U, std::thread::hardware_concurrency());
 }
 
-void check_output_given(const Request& request) {
+void check_output_given(const BatchRequest& request) {
   if (request.output.empty()) throw UsageError("'fascia batch' needs -o DIR");
 }
 
-batch::Task task_of(const Request& request) {
+batch::Task task_of(const BatchRequest& request) {
   if (request.task_index < 0) return batch::task_of_environment(request.task_count);
   if (request.task_count == 0) throw UsageError("--task-index needs --task-count");
   const auto index = static_cast<size_t>(request.task_index);
@@ -84,7 +84,7 @@ std::string line_of(const batch::Record& record, batch::Fate fate) {
   return text;
 }
 
-void run_heads(const Common& common, const Request& request) {
+void run_heads(const Common& common, const BatchRequest& request) {
   check_output_given(request);
   const std::vector<batch::Head> all = batch::read_heads(request.source);
   const batch::Task task = task_of(request);
@@ -145,7 +145,7 @@ void run_heads(const Common& common, const Request& request) {
   if (failed > 0) throw Exit{exit_some_failed};
 }
 
-void submit(const Common& common, const Request& request) {
+void submit(const Common& common, const BatchRequest& request) {
   check_output_given(request);
   if (request.operand.empty())
     throw UsageError("'fascia batch submit' needs a manifest or a folder of heads");
@@ -191,7 +191,7 @@ void submit(const Common& common, const Request& request) {
   common.report(json);
 }
 
-void report(const Common& common, const Request& request) {
+void report(const Common& common, const BatchRequest& request) {
   const fs::path folder = request.operand.empty() ? request.output : fs::path(request.operand);
   if (folder.empty()) throw UsageError("'fascia batch report' needs the batch's folder");
   const std::vector<batch::Record> records = batch::all_records(folder);
@@ -207,7 +207,7 @@ void report(const Common& common, const Request& request) {
   common.report(json);
 }
 
-void run(const Common& common, const Request& request) {
+void run(const Common& common, const BatchRequest& request) {
   if (request.source == "submit") return submit(common, request);
   if (request.source == "report") return report(common, request);
   if (!request.operand.empty())
@@ -218,7 +218,7 @@ void run(const Common& common, const Request& request) {
 }  // namespace
 
 void add_batch(const Command& tool, Common& common) {
-  auto request = std::make_shared<Request>();
+  auto request = std::make_shared<BatchRequest>();
   const Command command =
       tool.command("batch",
                    "Build many heads side by side, each in a process of its own with limits; what is done is "

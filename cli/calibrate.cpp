@@ -21,7 +21,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Request {
+struct CalibrateRequest {
   std::filesystem::path rig, scans, output;
   std::string level = "low";
   fit::CalibrationOptions options;
@@ -83,8 +83,9 @@ bool is_mesh_file(const std::filesystem::path& path) {
 }
 
 /// One expression a file, by its name.
-void add_scans(const Common& common, const Request& request, fit::Subject& subject, const Tables& tables,
-               std::vector<fit::CalibrationCase>& cases, std::vector<std::string>& unknown) {
+void add_scans(const Common& common, const CalibrateRequest& request, fit::Subject& subject,
+               const Tables& tables, std::vector<fit::CalibrationCase>& cases,
+               std::vector<std::string>& unknown) {
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(request.scans))
     if (entry.is_regular_file() && is_mesh_file(entry.path())) files.push_back(entry.path());
@@ -116,7 +117,7 @@ void add_scans(const Common& common, const Request& request, fit::Subject& subje
 }
 
 /// One expression a morph target.
-void add_shapes(const Common& common, const Request& request, const fit::Subject& subject,
+void add_shapes(const Common& common, const CalibrateRequest& request, const fit::Subject& subject,
                 const Tables& tables, std::vector<fit::CalibrationCase>& cases,
                 std::vector<std::string>& unknown) {
   FitTargetOptions options;
@@ -177,7 +178,7 @@ void say_table(const Common& common, const fit::Calibration& calibration) {
   common.say(line);
 }
 
-void run(const Common& common, const Request& request) {
+void run(const Common& common, const CalibrateRequest& request) {
   check_output(request.output, {request.rig, request.scans});
   if (extension_of(request.output) != ".glb")
     throw Error("'" + request.output.string() + "': a rig is written as .glb");
@@ -220,7 +221,7 @@ void run(const Common& common, const Request& request) {
 }  // namespace
 
 void add_calibrate(const Command& tool, Common& common) {
-  auto request = std::make_shared<Request>();
+  auto request = std::make_shared<CalibrateRequest>();
   const Command command = tool.command(
       "calibrate", "Fit a rig's muscles to one person's own expressions: a gain a muscle, left like right");
   add_rig_argument(command, request->rig);

@@ -20,7 +20,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Request {
+struct CheckRequest {
   std::filesystem::path rig, sheet;
   std::string level;
 };
@@ -59,7 +59,7 @@ std::string table_of(const std::vector<check::Row>& rows) {
   return text;
 }
 
-void run(const Common& common, const Request& request) {
+void run(const Common& common, const CheckRequest& request) {
   if (!request.sheet.empty()) {
     check_output(request.sheet, {request.rig});
     if (extension_of(request.sheet) != ".png")
@@ -132,7 +132,7 @@ std::vector<std::string> quick_check(const std::vector<uint8_t>& rig, const std:
 }
 
 void add_check(const Command& tool, Common& common) {
-  auto request = std::make_shared<Request>();
+  auto request = std::make_shared<CheckRequest>();
   const Command command = tool.command(
       "check", "Play a fixed list of poses and measure whether the rig holds; ends with 4 when a row fails");
   add_rig_argument(command, request->rig);

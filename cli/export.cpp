@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Request {
+struct ExportRequest {
   std::filesystem::path rig, output;
   std::string part;
 };
@@ -49,7 +49,7 @@ formats::NamedSurface surface_of(const std::string& name, const rig::Surface& su
   return out;
 }
 
-void add_face_parts(formats::Drawing& drawing, const Request& request, const Vec3& offset,
+void add_face_parts(formats::Drawing& drawing, const ExportRequest& request, const Vec3& offset,
                     const std::function<bool(const std::string&)>& wanted) {
   const Face face(request.rig, {FASCIA_SPACE_INPUT, "own", ""});
   for (size_t m = 0; m < face.meshes().size(); ++m) {
@@ -97,7 +97,7 @@ void write_landmarks(const std::filesystem::path& output, const rig::Rig& rig, c
   formats::write_text(output, json.dump(1) + "\n");
 }
 
-void run(const Common& common, const Request& request) {
+void run(const Common& common, const ExportRequest& request) {
   check_output(request.output, {request.rig});
   const rig::RigFile file = rig::read(formats::read_bytes(request.rig), request.rig.string());
   const rig::Rig& rig = file.rig;
@@ -134,7 +134,7 @@ void run(const Common& common, const Request& request) {
 }  // namespace
 
 void add_export(const Command& tool, Common& common) {
-  auto request = std::make_shared<Request>();
+  auto request = std::make_shared<ExportRequest>();
   const Command command = tool.command("export", "Write one part of a rig as a mesh of its own");
   add_rig_argument(command, request->rig);
   command.option("--part", &request->part, "What to write")

@@ -20,7 +20,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Request {
+struct FaceRequest {
   std::filesystem::path skull, output, landmarks, landmarks_out, sheet, rig, anatomy;
   std::string depths, units = "auto";
   reconstruction::Person person;
@@ -54,7 +54,7 @@ TriangleMesh skull_of(const formats::Scene& scene) {
 }
 
 /// The given landmarks in the coordinates of the scene's meshes.
-std::map<std::string, Vec3> bone_landmarks(const Request& request, const formats::Scene& scene,
+std::map<std::string, Vec3> bone_landmarks(const FaceRequest& request, const formats::Scene& scene,
                                            double metres) {
   if (request.landmarks.empty()) return {};
   const formats::LandmarkFile file =
@@ -66,7 +66,7 @@ std::map<std::string, Vec3> bone_landmarks(const Request& request, const formats
   return points;
 }
 
-std::string depth_table(const Request& request, anatomy::GenericAnatomy& anatomy,
+std::string depth_table(const FaceRequest& request, anatomy::GenericAnatomy& anatomy,
                         std::vector<std::string>& warnings) {
   if (request.depths.empty()) return reconstruction::nearest_table(anatomy, request.person, warnings);
   if (anatomy.depth_table(request.depths) || extension_of(request.depths) != ".json") return request.depths;
@@ -87,7 +87,7 @@ Json landmarks_json(const reconstruction::Result& result) {
   return list;
 }
 
-void check_outputs(const Request& request) {
+void check_outputs(const FaceRequest& request) {
   const std::vector<std::filesystem::path> inputs = {request.skull, request.landmarks};
   for (const auto& path : {request.output, request.landmarks_out, request.sheet, request.rig})
     if (!path.empty()) check_output(path, inputs);
@@ -97,7 +97,7 @@ void check_outputs(const Request& request) {
     throw Error("'" + request.landmarks_out.string() + "': landmarks are written as .json");
 }
 
-void run(const Common& common, const Request& request) {
+void run(const Common& common, const FaceRequest& request) {
   check_outputs(request);
   anatomy::GenericAnatomy anatomy = anatomy_for(request.anatomy);
   std::vector<std::string> warnings;
@@ -152,7 +152,7 @@ void run(const Common& common, const Request& request) {
 }  // namespace
 
 void add_face(const Command& tool, Common& common) {
-  auto request = std::make_shared<Request>();
+  auto request = std::make_shared<FaceRequest>();
   const Command command = tool.command(
       "face",
       "Put skin over a skull: the generic head by soft-tissue depths, as forensic approximation does");

@@ -22,7 +22,7 @@ namespace fascia::cli {
 
 namespace {
 
-struct Request {
+struct FitRequest {
   std::filesystem::path rig, target, neutral, output, report;
   std::string level, shape;
   FitTargetOptions reading;
@@ -30,7 +30,7 @@ struct Request {
 };
 
 /// Only the shape asked for, as one mesh.
-void choose_shape(const Request& request, FitTargets& targets) {
+void choose_shape(const FitRequest& request, FitTargets& targets) {
   if (request.shape.empty()) return;
   const auto at = std::find(targets.names.begin(), targets.names.end(), request.shape);
   if (targets.kind != FitTargets::Kind::shapes || at == targets.names.end())
@@ -70,7 +70,7 @@ bool is_landmark_file(const std::filesystem::path& path) {
 
 /// The target where it is a scan: one mesh of another topology than the rig's, or one that is said to be a
 /// scan.
-std::optional<formats::Scene> scan_of(const Request& request, const fit::Subject& subject) {
+std::optional<formats::Scene> scan_of(const FitRequest& request, const fit::Subject& subject) {
   const std::filesystem::path& path = request.target;
   const std::string& as = request.reading.as;
   const std::string extension = extension_of(path);
@@ -82,7 +82,7 @@ std::optional<formats::Scene> scan_of(const Request& request, const fit::Subject
   return scene;
 }
 
-void fit_one_scan(const Common& common, const Request& request, const formats::Scene& scene,
+void fit_one_scan(const Common& common, const FitRequest& request, const formats::Scene& scene,
                   fit::Subject& subject, FitTargets& targets, std::vector<fit::FitResult>& results,
                   std::vector<double>& motion, nlohmann::ordered_json& figures) {
   targets.names = {request.target.filename().string()};
@@ -101,7 +101,7 @@ void fit_one_scan(const Common& common, const Request& request, const formats::S
   figures = {{"matched_share", fitted.matched_share}};
 }
 
-void fit_targets(const Common& common, const Request& request, fit::Subject& subject, FitTargets& targets,
+void fit_targets(const Common& common, const FitRequest& request, fit::Subject& subject, FitTargets& targets,
                  std::vector<fit::FitResult>& results, std::vector<double>& motion) {
   targets = is_landmark_file(request.target)
                 ? landmark_targets(common, request.target, request.neutral, subject, request.reading)
@@ -121,7 +121,7 @@ void fit_targets(const Common& common, const Request& request, fit::Subject& sub
   }
 }
 
-void run(const Common& common, const Request& request) {
+void run(const Common& common, const FitRequest& request) {
   const auto started = std::chrono::steady_clock::now();
   check_output(request.output, {request.rig, request.target});
   if (!request.report.empty()) make_output_folder(request.report);
@@ -161,7 +161,7 @@ void run(const Common& common, const Request& request) {
 }  // namespace
 
 void add_fit(const Command& tool, Common& common) {
-  auto request = std::make_shared<Request>();
+  auto request = std::make_shared<FitRequest>();
   const Command command = tool.command("fit", "Find the activations behind a posed mesh, shapes or a take");
   add_rig_argument(command, request->rig);
   command

@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Request {
+struct InfoRequest {
   std::filesystem::path rig;
   bool channels = false, validate = false, names = false;
 };
@@ -59,7 +59,7 @@ Json channel_list(const rig::Rig& rig) {
   return list;
 }
 
-void say(const Common& common, const Json& json, const rig::Rig& rig, const Request& request) {
+void say(const Common& common, const Json& json, const rig::Rig& rig, const InfoRequest& request) {
   if (request.channels) {
     for (const rig::Channel& channel : rig.actuation.channels) {
       char line[160];
@@ -113,7 +113,7 @@ void list_names(const Common& common) {
   common.report(table);
 }
 
-void run(const Common& common, const Request& request) {
+void run(const Common& common, const InfoRequest& request) {
   if (request.names) return list_names(common);
   if (request.rig.empty()) throw UsageError("RIG is required; 'fascia info --help' explains");
   // Reading checks every index, accessor and fingerprint; what is unsound does not come through.
@@ -133,7 +133,7 @@ void run(const Common& common, const Request& request) {
 }  // namespace
 
 void add_info(const Command& tool, Common& common) {
-  auto request = std::make_shared<Request>();
+  auto request = std::make_shared<InfoRequest>();
   const Command command = tool.command("info", "Say what is in a rig, and whether it is sound");
   command.positional("RIG", &request->rig, "Rig (.glb)").default_text("none, which only --names allows");
   command.flag("--names", request->names, "List the names of other programs that rigs know; needs no rig");

@@ -11,13 +11,13 @@ namespace fascia::cli {
 
 namespace {
 
-struct Request {
+struct PoseRequest {
   std::filesystem::path rig, output, file;
   std::vector<std::string> set;
   std::string solver = "own", level;
 };
 
-void run(const Common& common, const Request& request) {
+void run(const Common& common, const PoseRequest& request) {
   check_output(request.output, {request.rig, request.file});
   const std::string extension = extension_of(request.output);
   if (extension != ".glb" && extension != ".obj" && extension != ".ply")
@@ -42,7 +42,7 @@ void run(const Common& common, const Request& request) {
 }  // namespace
 
 void add_pose(const Command& tool, Common& common) {
-  auto request = std::make_shared<Request>();
+  auto request = std::make_shared<PoseRequest>();
   const Command command = tool.command("pose", "Pose a rig statically and write the posed mesh");
   add_rig_argument(command, request->rig);
   add_set_options(command, request->set, request->file);

@@ -20,7 +20,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-struct Request {
+struct SnapshotRequest {
   std::string action;
   fs::path file, output, against, poses, report, junit;
   std::vector<fs::path> curves;
@@ -69,7 +69,7 @@ std::function<void(size_t, size_t)> shown(const Common& common, std::unique_ptr<
 }
 
 /// What an earlier snapshot of the same name had is recorded again, unless something else is asked for.
-void take_over(const snapshot::Snapshot& old, const Request& wanted, snapshot::Request& request) {
+void take_over(const snapshot::Snapshot& old, const SnapshotRequest& wanted, snapshot::Request& request) {
   if (request.poses.empty()) request.poses = old.poses;
   if (request.level.empty()) request.level = old.level;
   request.kept_regions = old.regions;
@@ -81,7 +81,7 @@ void take_over(const snapshot::Snapshot& old, const Request& wanted, snapshot::R
     request.takes.push_back(take_file(wanted.output, file));
 }
 
-void record(const Common& common, const Request& wanted) {
+void record(const Common& common, const SnapshotRequest& wanted) {
   check_output(wanted.output, {wanted.file, wanted.poses});
   snapshot::Request request;
   request.level = wanted.level;
@@ -161,7 +161,7 @@ void finish(const Common& common, const snapshot::Snapshot& then, const snapshot
   if (comparison.failed > 0) throw Exit{exit_check};
 }
 
-void check_snapshot(const Common& common, const Request& wanted) {
+void check_snapshot(const Common& common, const SnapshotRequest& wanted) {
   for (const fs::path& output : {wanted.report, wanted.junit})
     if (!output.empty()) check_output(output, {wanted.file, wanted.against});
   const snapshot::Snapshot then = read_snapshot(wanted.against);
@@ -188,14 +188,14 @@ void check_snapshot(const Common& common, const Request& wanted) {
   finish(common, then, comparison, wanted.tolerance_mm, json);
 }
 
-void diff(const Common& common, const Request& wanted) {
+void diff(const Common& common, const SnapshotRequest& wanted) {
   const snapshot::Snapshot then = read_snapshot(wanted.against), now = read_snapshot(wanted.file);
   finish(common, then, snapshot::compare(then, now, wanted.tolerance_mm), wanted.tolerance_mm,
          {{"against", wanted.against.string()}});
 }
 
 /// Options that go with the action and no others.
-void check_usage(const Request& wanted) {
+void check_usage(const SnapshotRequest& wanted) {
   const bool records = wanted.action == "record";
   if (records && wanted.output.empty()) throw UsageError("'fascia snapshot record' needs -o FILE");
   if (!records && wanted.against.empty())
@@ -213,7 +213,7 @@ void check_usage(const Request& wanted) {
       throw UsageError("'fascia snapshot " + wanted.action + "' takes no " + std::string(name));
 }
 
-void run(const Common& common, const Request& wanted) {
+void run(const Common& common, const SnapshotRequest& wanted) {
   check_usage(wanted);
   if (wanted.action == "record") return record(common, wanted);
   if (wanted.action == "check") return check_snapshot(common, wanted);
@@ -223,7 +223,7 @@ void run(const Common& common, const Request& wanted) {
 }  // namespace
 
 void add_snapshot(const Command& tool, Common& common) {
-  auto request = std::make_shared<Request>();
+  auto request = std::make_shared<SnapshotRequest>();
   const Command command = tool.command("snapshot",
                                        "Keep where a rig's skin goes as numbers (record), and check that it "
                                        "still goes there (check) or compare two such "

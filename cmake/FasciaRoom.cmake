@@ -74,12 +74,20 @@ function(fascia_use_common_headers target)
   endif()
 endfunction()
 
+# Sources of a room compiled several at a time parse their headers once: a first build takes about half the time, one
+# changed file brings its batch along. Names in anonymous namespaces must differ within a room.
+option(FASCIA_BATCHES "Compile the sources of a room in batches" OFF)
+function(fascia_compile_in_batches target)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${FASCIA_BATCHES} UNITY_BUILD_BATCH_SIZE 8)
+endfunction()
+
 function(fascia_room name)
   cmake_parse_arguments(ROOM "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   if(ROOM_SOURCES)
     add_library(fascia_${name} STATIC ${ROOM_SOURCES})
     target_link_libraries(fascia_${name} PUBLIC fascia::options ${ROOM_PUBLIC} PRIVATE ${ROOM_PRIVATE})
     fascia_use_common_headers(fascia_${name})
+    fascia_compile_in_batches(fascia_${name})
   else()
     add_library(fascia_${name} INTERFACE)
     target_link_libraries(fascia_${name} INTERFACE fascia::options ${ROOM_PUBLIC} ${ROOM_PRIVATE})

@@ -11,10 +11,6 @@ namespace fascia::muscles {
 
 namespace {
 
-double cross(const Vec2& a, const Vec2& b) {
-  return a[0] * b[1] - a[1] * b[0];
-}
-
 /// Geodesic polar coordinates of `points` about `middle`, laid out in the plane of its triangle.
 std::vector<Vec2> polar_layout(Carrier& carrier, const SurfacePoint& middle,
                                const std::vector<SurfacePoint>& points) {
@@ -162,6 +158,13 @@ bool has_inside(Carrier& carrier, const SurfacePoint& middle, const std::vector<
 }
 
 }  // namespace
+
+Vec3 Hull::middle() const {
+  Vec3 sum = Vec3::Zero();
+  for (const Vec3& p : positions)
+    sum += p;
+  return sum / std::max(1, size());
+}
 
 std::vector<int> planar_hull(const std::vector<Vec2>& points) {
   std::vector<int> order(points.size());

@@ -41,7 +41,14 @@ struct Hull {
   double turning = 0.0;         ///< sum of the outer angles, radians: 2π less the curvature enclosed
   double kept = 1.0;            ///< share of the region's extent that the hull is of; below 1 when shrunk
   int size() const { return static_cast<int>(corners.size()); }
+  /// The mean of the corners.
+  Vec3 middle() const;
 };
+
+/// z of the cross product of two vectors of the plane.
+inline double cross(const Vec2& a, const Vec2& b) {
+  return a[0] * b[1] - a[1] * b[0];
+}
 
 /// The geodesic convex hull of `points` on the carrier (thesis section 7.2.2): the planar hull in
 /// geodesic polar coordinates about their middle, then corners that are reflex between the geodesics to

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "builder/muscles/hull.h"
 #include "builder/muscles/parts.h"
 #include "geometry/alignment.h"
 #include "geometry/error.h"
@@ -36,10 +37,6 @@ std::vector<Vec2> flattened(const std::vector<Vec3>& points) {
   for (const Vec3& p : points)
     flat.emplace_back((p - middle).dot(axes.col(2)), (p - middle).dot(axes.col(1)));
   return flat;
-}
-
-double cross(const Vec2& a, const Vec2& b) {
-  return a[0] * b[1] - a[1] * b[0];
 }
 
 bool cross_each_other(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {

@@ -21,13 +21,6 @@ struct Ends {
   std::vector<Vec3> origin, insertion;
 };
 
-Vec3 middle(const Hull& hull) {
-  Vec3 sum = Vec3::Zero();
-  for (const Vec3& p : hull.positions)
-    sum += p / hull.size();
-  return sum;
-}
-
 /// Between two hulls: from arc to arc, both run from the right tangent to the left one.
 Ends ends_between(const Hull& origin, const Hull& insertion, const FacingArcs& arcs,
                   const anatomy::Muscle& muscle, const Options& options) {
@@ -49,7 +42,7 @@ Ends ends_between(const Hull& origin, const Hull& insertion, const FacingArcs& a
   };
   Ends ends = at_share(options.region_share);
   // Where the regions overlap their facing sides lie behind each other: then the fibres run across both.
-  const Vec3 onward = middle(insertion) - middle(origin);
+  const Vec3 onward = insertion.middle() - origin.middle();
   for (int i = 0; i < count; ++i)
     if ((ends.insertion[i] - ends.origin[i]).dot(onward) <= 0.0) return at_share(1.0);
   return ends;
@@ -74,7 +67,7 @@ Ends ends_radial(const Hull& origin, const Hull& insertion, const anatomy::Muscl
   };
   const bool origin_larger = arc_length(origin, outline(origin)) > arc_length(insertion, outline(insertion));
   const Hull &outer = origin_larger ? origin : insertion, &inner = origin_larger ? insertion : origin;
-  const Vec3 centre = middle(inner);
+  const Vec3 centre = inner.middle();
   const Arc ring = outline(outer);
   const int count = fibre_count(arc_length(outer, ring), muscle, options);
   Ends ends;

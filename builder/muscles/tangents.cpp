@@ -8,17 +8,6 @@ namespace fascia::muscles {
 
 namespace {
 
-double cross(const Vec2& a, const Vec2& b) {
-  return a[0] * b[1] - a[1] * b[0];
-}
-
-Vec3 middle(const Hull& hull) {
-  Vec3 sum = Vec3::Zero();
-  for (const Vec3& p : hull.positions)
-    sum += p;
-  return sum / std::max(1, hull.size());
-}
-
 std::vector<Vec2> flatten(const Hull& hull, const Vec3& origin, const Vec3& x, const Vec3& y) {
   std::vector<Vec2> flat;
   for (const Vec3& p : hull.positions)
@@ -81,7 +70,7 @@ Arc walk(const Hull& hull, int from, int to, int step) {
 
 std::optional<Tangent> mutual_tangent(Carrier& carrier, const Hull& first, const Hull& second,
                                       HullSide first_side, HullSide second_side) {
-  const Vec3 a = middle(first), b = middle(second);
+  const Vec3 a = first.middle(), b = second.middle();
   Vec3 normal = carrier.normal(carrier.closest(a)) + carrier.normal(carrier.closest(b));
   Vec3 x = b - a;
   x -= normal * (normal.dot(x) / std::max(normal.squaredNorm(), 1e-12));

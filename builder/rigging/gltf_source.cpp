@@ -10,8 +10,6 @@ namespace fascia::rigging {
 
 namespace {
 
-using gltf::Json;
-
 template <class Point, int n>
 size_t add(gltf::Appendix& data, const std::vector<Point>& points, bool bounds) {
   std::vector<float> values;
@@ -22,8 +20,8 @@ size_t add(gltf::Appendix& data, const std::vector<Point>& points, bool bounds) 
   return data.add_floats(values, n, bounds, gltf::vertex_target);
 }
 
-Json primitive_of(gltf::Appendix& data, const formats::SceneMesh& mesh, int material) {
-  Json attributes;
+gltf::Json primitive_of(gltf::Appendix& data, const formats::SceneMesh& mesh, int material) {
+  gltf::Json attributes;
   attributes["POSITION"] = add<Vec3, 3>(data, mesh.positions, true);
   std::vector<Vec3> normals = vertex_normals({mesh.positions, mesh.triangles});
   for (Vec3& n : normals)
@@ -41,12 +39,13 @@ Json primitive_of(gltf::Appendix& data, const formats::SceneMesh& mesh, int mate
 }
 
 /// Appends a picture's file as an image and a texture; returns the texture's place, -1 without a picture.
-int add_texture(Json& json, gltf::Appendix& data,
+int add_texture(gltf::Json& json, gltf::Appendix& data,
                 const std::shared_ptr<const std::vector<uint8_t>>& picture) {
   if (!picture) return -1;
-  const Json image = {{"bufferView", data.add_view(*picture)}, {"mimeType", gltf::picture_type(*picture)}};
+  const gltf::Json image = {{"bufferView", data.add_view(*picture)},
+                            {"mimeType", gltf::picture_type(*picture)}};
   int at = 0;
-  for (const Json& known : json.value("images", Json::array())) {
+  for (const gltf::Json& known : json.value("images", gltf::Json::array())) {
     if (known == image) return at;  // its bytes are stored once
     ++at;
   }
@@ -55,12 +54,12 @@ int add_texture(Json& json, gltf::Appendix& data,
   return at;
 }
 
-void add_materials(Json& json, gltf::Appendix& data, const formats::MaterialLibrary& library) {
+void add_materials(gltf::Json& json, gltf::Appendix& data, const formats::MaterialLibrary& library) {
   // glTF's factors are linear, OBJ's as seen (sRGB).
   const auto linear = [](double value) { return std::pow(value, 2.2); };
   for (const formats::SceneMaterial& from : library.materials) {
-    Json metal = {{"metallicFactor", 0.0}, {"roughnessFactor", from.roughness}};
-    Json material = {{"name", from.name}};
+    gltf::Json metal = {{"metallicFactor", 0.0}, {"roughnessFactor", from.roughness}};
+    gltf::Json material = {{"name", from.name}};
     if (const int map = add_texture(json, data, from.colour_map); map >= 0)
       metal["baseColorTexture"] = {{"index", map}};
     else
@@ -89,10 +88,10 @@ const char* kind_name(formats::FileKind kind) {
 /// vertex came from where the vertices of an OBJ do not come in the order of its faces (its lips or lids have
 /// been parted).
 std::string notes_of(const formats::Scene& scene) {
-  Json notes;
+  gltf::Json notes;
   if (!scene.offset.isZero(0)) notes["offset"] = {scene.offset[0], scene.offset[1], scene.offset[2]};
   if (scene.kind == formats::FileKind::obj && scene.is_extended) {
-    notes["sourceVertices"] = Json::array();
+    notes["sourceVertices"] = gltf::Json::array();
     for (const formats::SceneMesh& mesh : scene.meshes)
       notes["sourceVertices"].push_back(mesh.source_vertices);
   }
@@ -112,13 +111,13 @@ rig::GltfSource gltf_source(const formats::Scene& scene, const Mat4& input_to_me
     return source;
   }
   source.record.bytes = scene.bytes;
-  Json json = {{"asset", {{"version", "2.0"}, {"generator", "fascia"}}}, {"scene", 0}};
-  json["scenes"] = Json::array({{{"nodes", {0}}}});
-  Json root = {{"name", scene.path.stem().string()}};
+  gltf::Json json = {{"asset", {{"version", "2.0"}, {"generator", "fascia"}}}, {"scene", 0}};
+  json["scenes"] = gltf::Json::array({{{"nodes", {0}}}});
+  gltf::Json root = {{"name", scene.path.stem().string()}};
   std::vector<double> matrix(input_to_metres.data(), input_to_metres.data() + 16);
   if (input_to_metres != Mat4::Identity()) root["matrix"] = matrix;
   json["nodes"].push_back(root);
-  json["materials"] = Json::array(
+  json["materials"] = gltf::Json::array(
       {{{"name", "head"}, {"pbrMetallicRoughness", {{"metallicFactor", 0.0}, {"roughnessFactor", 0.6}}}}});
   gltf::Appendix data(json, source.bin);
   const formats::MaterialLibrary library = formats::read_materials(scene);
@@ -126,19 +125,20 @@ rig::GltfSource gltf_source(const formats::Scene& scene, const Mat4& input_to_me
   add_materials(json, data, library);
   for (size_t m = 0; m < scene.meshes.size(); ++m) {
     const formats::SceneMesh& mesh = scene.meshes[m];
-    const Json primitive = primitive_of(data, mesh, m < library.of_mesh.size() ? library.of_mesh[m] : -1);
-    json["meshes"].push_back({{"name", mesh.name}, {"primitives", Json::array({primitive})}});
+    const gltf::Json primitive =
+        primitive_of(data, mesh, m < library.of_mesh.size() ? library.of_mesh[m] : -1);
+    json["meshes"].push_back({{"name", mesh.name}, {"primitives", gltf::Json::array({primitive})}});
     json["nodes"].push_back({{"name", mesh.name}, {"mesh", json["meshes"].size() - 1}});
     json["nodes"][0]["children"].push_back(json["nodes"].size() - 1);
   }
-  json["buffers"] = Json::array({{{"byteLength", source.bin.size()}}});
+  json["buffers"] = gltf::Json::array({{{"byteLength", source.bin.size()}}});
   source.json = gltf::text_of(json);
   return source;
 }
 
 Vec3 input_offset(const rig::SourceRecord& record) {
-  const Json notes = Json::parse(record.json.empty() ? "{}" : record.json, nullptr, false);
-  const Json offset = notes.is_object() ? notes.value("offset", Json()) : Json();
+  const gltf::Json notes = gltf::Json::parse(record.json.empty() ? "{}" : record.json, nullptr, false);
+  const gltf::Json offset = notes.is_object() ? notes.value("offset", gltf::Json()) : gltf::Json();
   if (!offset.is_array() || offset.size() != 3) return Vec3::Zero();
   Vec3 place = Vec3::Zero();
   for (size_t k = 0; k < 3; ++k)

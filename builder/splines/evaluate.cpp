@@ -31,12 +31,6 @@ double kernel_sum(const SplineCoefficients& s, int output, const Vec3& q) {
   return out;
 }
 
-Vec3 to_local(const SplineCoefficients& s, const Vec3& point) {
-  Vec3 q = (point - s.centre) * s.scale;
-  if (s.dimension == 2) q.z() = 0;
-  return q;
-}
-
 constexpr size_t block = 256;
 
 // values = monomials times coefficients at `size` points, a column of the block for each monomial.
@@ -67,7 +61,7 @@ void evaluate_in_vectors(const SplineCoefficients& s, int exponent, const Vec3* 
   for (size_t begin = 0; begin < count; begin += block) {
     const size_t size = std::min(block, count - begin);
     for (size_t i = 0; i < size; ++i) {
-      const Vec3 q = to_local(s, points[begin + i]);
+      const Vec3 q = s.to_local(points[begin + i]);
       x[i] = q.x();
       y[i] = q.y();
       z[i] = q.z();
@@ -111,7 +105,7 @@ void evaluate_points(const SplineCoefficients& s, const Vec3* points, size_t cou
     return;
   }
   for (size_t i = 0; i < count; ++i) {
-    const Vec3 q = to_local(s, points[i]);
+    const Vec3 q = s.to_local(points[i]);
     for (int k = 0; k < s.outputs; ++k)
       values[i + k * value_stride] = kernel_sum(s, k, q) + polynomial_value(s, k, q);
   }

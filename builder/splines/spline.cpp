@@ -28,12 +28,6 @@ double monomial_derivative(const std::array<int, 3>& exponents, const std::array
   return out;
 }
 
-Vec3 to_local(const SplineCoefficients& s, const Vec3& point) {
-  Vec3 q = (point - s.centre) * s.scale;
-  if (s.dimension == 2) q.z() = 0;
-  return q;
-}
-
 }  // namespace
 
 std::vector<std::array<int, 3>> monomials(int dimension, int degree) {
@@ -82,18 +76,18 @@ double Spline::scalar(const Vec3& point) const {
 
 double Spline::value_and_gradient(const Vec3& point, Vec3& gradient) const {
   const SplineCoefficients& s = *data_;
-  return evaluate_gradient(s, 0, to_local(s, point), gradient);
+  return evaluate_gradient(s, 0, s.to_local(point), gradient);
 }
 
 double Spline::fast_value_and_gradient(const Vec3& point, Vec3& gradient) const {
   const SplineCoefficients& s = *data_;
-  return evaluate_gradient_in_vectors(s, 0, to_local(s, point), gradient);
+  return evaluate_gradient_in_vectors(s, 0, s.to_local(point), gradient);
 }
 
 Eigen::MatrixXd Spline::jacobian(const Vec3& point) const {
   const SplineCoefficients& s = *data_;
   Eigen::MatrixXd out(outputs(), 3);
-  const Vec3 q = to_local(s, point);
+  const Vec3 q = s.to_local(point);
   for (int k = 0; k < outputs(); ++k) {
     Vec3 gradient;
     evaluate_gradient(s, k, q, gradient);
@@ -104,7 +98,7 @@ Eigen::MatrixXd Spline::jacobian(const Vec3& point) const {
 
 Mat3 Spline::hessian(const Vec3& point, int output) const {
   const SplineCoefficients& s = *data_;
-  const Vec3 q = to_local(s, point);
+  const Vec3 q = s.to_local(point);
   const size_t begin = static_cast<size_t>(output) * s.stride;
   Mat3 out = Mat3::Zero();
   for (int i = 0; i < s.centres; ++i) {

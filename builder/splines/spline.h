@@ -28,6 +28,13 @@ struct SplineCoefficients {
   Eigen::MatrixXd polynomial;                 ///< monomials by outputs
   std::vector<std::array<int, 3>> monomials;  ///< exponents of each monomial
   double energy = 0;                          ///< c^T K c summed over outputs, in user units
+
+  /// `point` in the centred, scaled coordinates of the centres; z is 0 in the plane.
+  Vec3 to_local(const Vec3& point) const {
+    Vec3 q = (point - centre) * scale;
+    if (dimension == 2) q.z() = 0;
+    return q;
+  }
 };
 
 /// A fitted function from the plane (dimension 2, z ignored) or space (dimension 3) to `outputs()` numbers.
