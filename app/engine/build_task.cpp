@@ -63,6 +63,10 @@ LoadedRig load_rig(const std::filesystem::path& file, const std::filesystem::pat
   const rig::RigFile read = rig::read(bytes, file.string());
   loaded.rig = std::make_shared<const rig::Rig>(read.rig);
   loaded.asset = std::make_shared<const FaceAsset>(bytes, file.string());
+  view::Appearance::Options textures;
+  textures.largest_texture = 1024;  // the window shows a face some 500 pixels high
+  loaded.appearance =
+      std::make_shared<const view::Appearance>(view::Appearance::read(bytes, file.string(), textures));
   loaded.head_to_metres = read.rig.input_to_metres.cast<double>();
   if (!cache.empty()) loaded.head = head_of(read, bytes, cache);
   return loaded;

@@ -13,6 +13,7 @@
 #include "app/engine/face_session.h"
 #include "builder/rigging/build_rig.h"
 #include "rig/model/rig.h"
+#include "view/face/appearance.h"
 
 namespace fascia::app {
 
@@ -21,9 +22,10 @@ struct LoadedRig {
   std::filesystem::path file;
   std::shared_ptr<const FaceAsset> asset;
   std::shared_ptr<const rig::Rig> rig;
-  std::optional<rigging::BuildReport> report;  ///< when it has just been built
-  Mat4 head_to_metres = Mat4::Identity();      ///< from the axes and units of the head it was built from
-  std::filesystem::path head;                  ///< what to build from: see load_rig()
+  std::shared_ptr<const view::Appearance> appearance;  ///< the file's materials and textures
+  std::optional<rigging::BuildReport> report;          ///< when it has just been built
+  Mat4 head_to_metres = Mat4::Identity();  ///< from the axes and units of the head it was built from
+  std::filesystem::path head;              ///< what to build from: see load_rig()
 };
 
 /// Reads a rig file. What it was built from is taken out of it and laid down beside `cache` when it has to be

@@ -95,8 +95,13 @@ void FaceAsset::read_parts(uint32_t count) {
     check(fascia_asset_get_mesh(asset_.get(), m, &mesh), "mesh");
     auto positions = described<fascia_vectors>();
     check(fascia_face_positions(made, m, &positions), "mesh");
-    FacePart part{
-        mesh.name, mesh.part, mesh.vertex_count, triangles_of(mesh.triangles, mesh.triangle_count), {}};
+    FacePart part{mesh.name,
+                  mesh.part,
+                  mesh.mesh,
+                  mesh.primitive,
+                  mesh.vertex_count,
+                  triangles_of(mesh.triangles, mesh.triangle_count),
+                  {}};
     copy(positions, part.rest);
     parts.push_back(std::move(part));
   }

@@ -15,7 +15,8 @@ namespace fascia::app {
 
 /// One primitive that the rig moves.
 struct FacePart {
-  std::string name, part;  ///< of the mesh in the file; skin, eye_left, ...
+  std::string name, part;            ///< of the mesh in the file; skin, eye_left, ...
+  uint32_t mesh = 0, primitive = 0;  ///< where it is in the file
   uint32_t vertex_count = 0;
   std::vector<Triangle> triangles;
   std::vector<float> rest;  ///< vertex_count * 3, metres

@@ -89,6 +89,7 @@ Settings read_settings(const std::filesystem::path& file) {
     std::string layers = names_of(settings.layers);
     take(json, "layers", layers);
     settings.layers = layers_of(layers);
+    take(json, "textures", settings.layers.has_textures);
     take(json, "skin_opacity", settings.layers.skin_opacity);
     take(json, "recent", settings.recent);
     take(json, "favourites", settings.favourites);
@@ -113,6 +114,7 @@ void write_settings(const std::filesystem::path& file, const Settings& settings)
                      {"panel", settings.panel},
                      {"symmetric", settings.is_symmetric},
                      {"layers", names_of(settings.layers)},
+                     {"textures", settings.layers.has_textures},
                      {"skin_opacity", settings.layers.skin_opacity},
                      {"recent", settings.recent},
                      {"favourites", settings.favourites},

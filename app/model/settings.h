@@ -13,6 +13,7 @@ namespace fascia::app {
 /// What of the anatomy is drawn.
 struct Layers {
   bool skin = true, muscles = false, smas = false, skull = false, landmarks = false, strain = false;
+  bool has_textures = true;   ///< the head's own materials, where it has any and the skin is whole
   double skin_opacity = 1.0;  ///< below 1 what lies beneath shows through
 
   bool operator==(const Layers&) const = default;

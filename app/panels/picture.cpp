@@ -12,13 +12,14 @@ namespace {
 std::string key_of(const Workspace& work, const Area& area, const view::Camera& camera) {
   const Layers& l = work.settings.layers;
   char text[400];
-  std::snprintf(
-      text, sizeof text, "%g %g %.6f %.6f %.6f %.6f %.6f %.6f %d%d%d%d%d %.3f %d%d%d %.2f %d %llu %s ",
-      static_cast<double>(area.width), static_cast<double>(area.height), camera.target[0], camera.target[1],
-      camera.target[2], camera.distance, camera.yaw, camera.pitch, l.skin, l.muscles, l.smas, l.skull,
-      l.strain, l.skin_opacity, static_cast<int>(work.comparison.reference), work.comparison.has_heat,
-      work.comparison.is_side_by_side, work.comparison.scale_mm, work.settings.is_light,
-      static_cast<unsigned long long>(work.picture_stamp()), work.selected_muscle.c_str());
+  std::snprintf(text, sizeof text,
+                "%g %g %.6f %.6f %.6f %.6f %.6f %.6f %d%d%d%d%d %.3f %d%d%d %.2f %d %llu %s ",
+                static_cast<double>(area.width), static_cast<double>(area.height), camera.target[0],
+                camera.target[1], camera.target[2], camera.distance, camera.yaw, camera.pitch, l.skin,
+                l.muscles, l.smas, l.skull, l.strain, l.has_textures ? l.skin_opacity : -l.skin_opacity,
+                static_cast<int>(work.comparison.reference), work.comparison.has_heat,
+                work.comparison.is_side_by_side, work.comparison.scale_mm, work.settings.is_light,
+                static_cast<unsigned long long>(work.picture_stamp()), work.selected_muscle.c_str());
   std::string key = text;
   for (const std::string& name : work.hidden_muscles)
     key += name + ",";
@@ -27,11 +28,12 @@ std::string key_of(const Workspace& work, const Area& area, const view::Camera& 
 
 void renew_scenes(const Workspace& work, Screen& screen) {
   const FaceAsset* asset = work.rig->asset.get();
-  if (screen.scene_of != asset) screen.scene = std::make_unique<SceneStore>(*asset, *work.rig->rig);
+  if (screen.scene_of != asset)
+    screen.scene = std::make_unique<SceneStore>(*asset, *work.rig->rig, work.rig->appearance.get());
   screen.scene_of = asset;
   const FaceAsset* other = work.reference ? &work.reference->asset() : nullptr;
   if (screen.reference_of != other)
-    screen.reference_scene = other ? std::make_unique<SceneStore>(*other, *work.rig->rig) : nullptr;
+    screen.reference_scene = other ? std::make_unique<SceneStore>(*other, *work.rig->rig, nullptr) : nullptr;
   screen.reference_of = other;
 }
 

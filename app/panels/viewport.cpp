@@ -171,6 +171,7 @@ void show_layer_chips(Workspace& work, const Area& area) {
   chip("Skull##layer", l.skull);
   chip("Landmarks##layer", l.landmarks);
   chip("Compression##layer", l.strain);
+  if (work.rig->appearance) chip("Textures##layer", l.has_textures);
   const bool has_depth = l.muscles || l.smas || l.skull;
   if (has_depth && !had_depth && l.skin_opacity > 0.99) l.skin_opacity = 0.35;
   if (!has_depth && had_depth) l.skin_opacity = 1.0;

@@ -102,7 +102,16 @@ Vec3 muscle_colour(double activation) {
   return slack + std::clamp(activation, 0.0, 1.0) * (tight - slack);
 }
 
-SceneStore::SceneStore(const FaceAsset& asset, const rig::Rig& rig) : asset_(asset) {
+SceneStore::SceneStore(const FaceAsset& asset, const rig::Rig& rig, const view::Appearance* appearance)
+    : asset_(asset) {
+  if (appearance && std::any_of(asset.parts.begin(), asset.parts.end(), [&](const FacePart& part) {
+        return appearance->of(part.mesh, part.primitive).has_material;
+      })) {
+    std::vector<view::FacePart> parts;
+    for (const FacePart& part : asset.parts)
+      parts.push_back({part.mesh, part.primitive, part.part, part.triangles, points_of(part.rest), {}});
+    painted_.emplace(rig, std::move(parts), *appearance);
+  }
   std::vector<Vec3> rest;
   for (size_t p = 0; p < asset.parts.size(); ++p) {
     const FacePart& part = asset.parts[p];
@@ -118,6 +127,20 @@ SceneStore::SceneStore(const FaceAsset& asset, const rig::Rig& rig) : asset_(ass
     rest.insert(rest.end(), points.begin(), points.end());
   }
   skin_seams_ = std::make_shared<const std::vector<int>>(view::seams_of(rest));
+}
+
+/// Colours of data take the place of the head's own, and skin of glass has none.
+bool SceneStore::is_painted(const SceneOptions& options) const {
+  const Layers& layers = options.layers;
+  return painted_ && layers.has_textures && layers.skin && !layers.strain && !options.distances &&
+         layers.skin_opacity >= 0.999;
+}
+
+void SceneStore::add_painted(view::DrawList& list, const FaceFrame& frame) const {
+  view::FaceState state;
+  for (const std::vector<float>& positions : frame.positions)
+    state.positions.emplace_back(positions);
+  list = painted_->list(state, view::FaceView());
 }
 
 void SceneStore::add_skin(view::DrawList& list, const FaceFrame& frame, const SceneOptions& options) const {
@@ -187,12 +210,14 @@ view::DrawList SceneStore::list(const FaceFrame& frame, const SceneOptions& opti
   view::DrawList list;
   const Mat4 still = Mat4::Identity(), jaw = frame.jaw.cast<double>();
   const Layers& layers = options.layers;
-  for (size_t part = 0; part < asset_.parts.size(); ++part) {
+  const bool is_own = is_painted(options);
+  if (is_own) add_painted(list, frame);
+  for (size_t part = 0; part < asset_.parts.size() && !is_own; ++part) {
     const std::string& kind = asset_.parts[part].part;
     if (is_skin(kind) || is_card(kind)) continue;
     if (layers.skin || is_eye(kind)) add_part(list, part, frame);
   }
-  if (layers.skin && !skin_parts_.empty()) add_skin(list, frame, options);
+  if (layers.skin && !is_own && !skin_parts_.empty()) add_skin(list, frame, options);
   if (layers.skull) {
     add_surface(list, asset_.cranium, still, view::Shading::bone, bone_colour, 1.0);
     add_surface(list, asset_.mandible, jaw, view::Shading::bone, bone_colour, 1.0);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "app/engine/face_session.h"
 #include "app/model/settings.h"
 #include "rig/model/rig.h"
+#include "view/face/face_scene.h"
 #include "view/scene.h"
 
 namespace fascia::app {
@@ -32,17 +34,21 @@ Vec3 muscle_colour(double activation);
 /// What does not change while a rig is shown: colours of the eyes, skin without transparent cards.
 class SceneStore {
  public:
-  SceneStore(const FaceAsset& asset, const rig::Rig& rig);
+  /// `appearance`, where given, must be that of the asset's file; both and the rig must outlive the store.
+  SceneStore(const FaceAsset& asset, const rig::Rig& rig, const view::Appearance* appearance);
 
   /// The face as it stands in `frame`, ready to be drawn.
   view::DrawList list(const FaceFrame& frame, const SceneOptions& options) const;
 
  private:
+  bool is_painted(const SceneOptions& options) const;
+  void add_painted(view::DrawList& list, const FaceFrame& frame) const;
   void add_skin(view::DrawList& list, const FaceFrame& frame, const SceneOptions& options) const;
   void add_part(view::DrawList& list, size_t part, const FaceFrame& frame) const;
   void add_muscles(view::DrawList& list, const FaceFrame& frame, const SceneOptions& options) const;
 
   const FaceAsset& asset_;
+  std::optional<view::FaceScene> painted_;          ///< where the file gives any part a look of its own
   std::vector<std::vector<Vec3>> eye_coordinates_;  ///< one list a part
   /// The parts that are skin as one surface: groups of a file share their borders' normals.
   std::vector<size_t> skin_parts_;
