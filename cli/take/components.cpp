@@ -204,10 +204,17 @@ void improve_weights(const MatrixXf& rows, const MatrixXf& coefficients, const F
   float gain = 0.0F;
   for (Index i = 0; i + 2 < rows.rows(); i += 3)
     gain = std::max(gain, rows.middleRows<3>(i).norm());
-  tbb::parallel_for(Index{0}, weights.cols(), [&](Index f) {
-    const MatrixXf left = coefficients.col(f) - fit.mix * weights.col(f);
-    if (gain * left.norm() <= small) return;  // no vertex is off farther
-    frames.improve(product(rows, left), small, large, weights.col(f));
+  constexpr Index block = 32;
+  tbb::parallel_for(Index{0}, (weights.cols() + block - 1) / block, [&](Index b) {
+    const Index first = b * block, count = std::min(block, weights.cols() - first);
+    const MatrixXf left = coefficients.middleCols(first, count) - fit.mix * weights.middleCols(first, count);
+    std::vector<Index> far;
+    for (Index f = 0; f < count; ++f)
+      if (gain * left.col(f).norm() > small) far.push_back(f);  // else no vertex is off farther
+    if (far.empty()) return;
+    const MatrixXf off = product(rows, left(Eigen::all, far));
+    for (size_t i = 0; i < far.size(); ++i)
+      frames.improve(off.col(static_cast<Index>(i)), small, large, weights.col(first + far[i]));
   });
 }
 

@@ -16,7 +16,7 @@ using Eigen::Index;
 
 constexpr size_t block_frames = 32;
 constexpr double growth = 1.5;           // of the tolerance, each time there are too many directions
-constexpr double share_given_up = 0.5;   // of the tolerance, that giving up directions may take of a frame
+constexpr double share_given_up = 1.0;   // of the tolerance, that all given up of a frame may be long
 constexpr size_t fewer_directions = 32;  // where less than so many go, there may be as many more
 
 /// The largest length of the 3-vectors in a column.
@@ -234,7 +234,7 @@ void MotionSpace::give_up(double budget, size_t least) {
     block = (all.topRows(block.rows()).transpose() * block).eval();
   const Index lost = std::clamp<Index>(rows_within(taken_, budget), static_cast<Index>(least), known - 1),
               kept = known - lost;
-  add_what_is_lost(mixed(all.rightCols(lost)), 0.1 * budget);
+  add_what_is_lost(mixed(all.rightCols(lost)), 0.05 * budget);
   for (Eigen::MatrixXf& block : taken_)
     block = block.topRows(kept).eval();
   const Eigen::MatrixXf turn = all.leftCols(kept);

@@ -22,8 +22,8 @@ class MotionSpace {
   struct Options {
     double tolerance = 0.0;            ///< at a sampled vertex, in the frames' unit
     size_t sampled_vertices = 2500;    ///< about, of those that move
-    size_t fine_directions = 320;      ///< beyond, the tolerance grows and those of little weight go
-    size_t most_directions = 576;      ///< beyond, the least are given up
+    size_t fine_directions = 224;      ///< beyond, the tolerance grows and those of little weight go
+    size_t most_directions = 448;      ///< beyond, the least are given up
     size_t most_bytes = 96 * 1000000;  ///< of directions, the same
   };
 

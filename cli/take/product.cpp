@@ -31,8 +31,9 @@ void product(std::span<const float* const> columns, Eigen::Index rows, const Eig
              Eigen::MatrixXf& out) {
   static const Loop loop = widest_loop();
   out.resize(rows, mix.cols());
+  std::vector<float> scratch(product_rows * columns.size());
   loop({columns.data(), static_cast<size_t>(rows), columns.size(), mix.data(),
-        static_cast<size_t>(mix.cols()), out.data()});
+        static_cast<size_t>(mix.cols()), out.data(), scratch.data()});
 }
 
 Eigen::MatrixXf product(const Eigen::MatrixXf& matrix, const Eigen::MatrixXf& mix) {

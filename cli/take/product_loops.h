@@ -4,6 +4,9 @@
 
 namespace fascia::cli {
 
+/// Rows that are worked on at once.
+inline constexpr size_t product_rows = 64;
+
 /// A product's numbers: columns of `rows` floats, `depth` of them; `mix` and `out` with columns of `depth`
 /// and `rows` floats, `count` of them.
 struct ProductParts {
@@ -12,6 +15,7 @@ struct ProductParts {
   const float* mix;
   size_t count;
   float* out;
+  float* scratch;  ///< room for product_rows x depth
 };
 
 void product_baseline(const ProductParts& parts);

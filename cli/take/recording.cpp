@@ -95,12 +95,6 @@ void write_down_within(const MotionSpace& space, const RecordingOptions& options
   for (int attempt = 0; attempt < 3; ++attempt) {
     write_down(space, options, aim, motion);
     bound_errors(space, motion);
-    fprintf(stderr,
-            "DEBUG mesh %u dirs %d tol %.4f left %.4f sampled %.4f largest %.4f frame %zu gain %.3f left "
-            "there %.4f\n",
-            motion.mesh.mesh, (int)space.coefficients().rows(), 1e3 * space.tolerance(), 1e3 * motion.left,
-            1e3 * motion.components.sampled_error, 1e3 * motion.largest_error, motion.largest_error_frame,
-            space.largest_gain(), 1e3 * space.left()[motion.largest_error_frame]);
     const bool is_full = motion.components.weights.rows() >= static_cast<Index>(options.most_targets);
     const auto left = static_cast<double>(motion.left);
     if (is_full || motion.largest_error <= options.tolerance || left > 0.5 * options.tolerance) return;

@@ -170,7 +170,7 @@ TEST(Take, ALongRichMotionIsFollowedLessCloselyInsteadOfForEver) {
   const MatrixXf basis = MatrixXf::NullaryExpr(
       900, 120, [&](Index, Index k) { return normal(random) * std::pow(0.9F, static_cast<float>(k)); });
   MotionSpace::Options options;
-  options.tolerance = 1e-6;
+  options.tolerance = 1e-3;
   options.fine_directions = 40;
   MotionSpace space(300, options);
   for (int f = 0; f < 600; ++f) {
@@ -180,16 +180,17 @@ TEST(Take, ALongRichMotionIsFollowedLessCloselyInsteadOfForEver) {
   }
   space.finish();
   EXPECT_LT(space.coefficients().rows(), 120);
-  EXPECT_GT(space.tolerance(), 1e-6);
-  EXPECT_LT(*std::max_element(space.left().begin(), space.left().end()), 20.0 * space.tolerance());
+  EXPECT_GT(space.tolerance(), 1e-3);
+  // Followed to the tolerance, and less than it, 1 + 2/3 + 4/9 + ... times, given up later.
+  EXPECT_LT(*std::max_element(space.left().begin(), space.left().end()), 4.0 * space.tolerance());
 }
 
 TEST(Take, AProductIsTheSameOnEveryVectorUnit) {
   std::mt19937 random(5);
   std::normal_distribution<float> normal;
-  const MatrixXf matrix = MatrixXf::NullaryExpr(53, 9, [&](Index, Index) { return normal(random); });
+  const MatrixXf matrix = MatrixXf::NullaryExpr(149, 9, [&](Index, Index) { return normal(random); });
   const MatrixXf mix = MatrixXf::NullaryExpr(9, 21, [&](Index, Index) { return normal(random); });
-  MatrixXf plain = MatrixXf::Zero(53, 21);
+  MatrixXf plain = MatrixXf::Zero(149, 21);
   for (Index c = 0; c < 21; ++c)
     for (Index k = 0; k < 9; ++k)
       plain.col(c) += matrix.col(k) * mix(k, c);
@@ -197,16 +198,20 @@ TEST(Take, AProductIsTheSameOnEveryVectorUnit) {
   std::vector<const float*> columns;
   for (Index k = 0; k < 9; ++k)
     columns.push_back(matrix.col(k).data());
-  MatrixXf out(53, 21);
-  const ProductParts parts = {columns.data(), 53, 9, mix.data(), 21, out.data()};
+  MatrixXf out(149, 21);
+  std::vector<float> scratch(product_rows * 9);
+  const ProductParts parts = {columns.data(), 149, 9, mix.data(), 21, out.data(), scratch.data()};
   product_baseline(parts);
   EXPECT_EQ(out, plain);
 #if defined(__x86_64__)
-  for (const auto& [unit, is_there] : {std::pair(product_avx2, __builtin_cpu_supports("avx2")),
-                                       std::pair(product_avx512, __builtin_cpu_supports("avx512f"))}) {
-    if (!is_there) continue;
+  if (__builtin_cpu_supports("avx2")) {
     out.setZero();
-    unit(parts);
+    product_avx2(parts);
+    EXPECT_EQ(out, plain);
+  }
+  if (__builtin_cpu_supports("avx512f")) {
+    out.setZero();
+    product_avx512(parts);
     EXPECT_EQ(out, plain);
   }
 #endif
