@@ -2,22 +2,11 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 #include <cmath>
 
+#include "geometry/alignment.h"
+
 namespace fascia::fit {
-namespace {
-
-/// The rotation nearest to `matrix`.
-Mat3 nearest_rotation(const Mat3& matrix) {
-  const Eigen::JacobiSVD<Mat3> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Mat3 flip = Mat3::Identity();
-  flip(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
-  return svd.matrixU() * flip * svd.matrixV().transpose();
-}
-
-}  // namespace
-
 void HeadPose::move(const Vec3& turn, const Vec3& shift, double growth) {
   translation += scale * (rotation * shift);
   const double angle = turn.norm();
@@ -25,37 +14,29 @@ void HeadPose::move(const Vec3& turn, const Vec3& shift, double growth) {
   scale *= std::exp(growth);
 }
 
-std::optional<HeadPose> similarity(std::span<const Vec3> from, std::span<const Vec3> to,
-                                   std::span<const double> weights, bool may_scale) {
-  Vec3 middle_from = Vec3::Zero(), middle_to = Vec3::Zero();
+std::optional<HeadPose> pose_between(std::span<const Vec3> from, std::span<const Vec3> to,
+                                     std::span<const double> weights, bool may_scale) {
+  Vec3 middle = Vec3::Zero();
   double sum = 0.0;
   size_t count = 0;
   for (size_t i = 0; i < from.size(); ++i) {
-    if (!(weights[i] > 0.0)) continue;
-    ++count;
+    count += weights[i] > 0.0 ? 1 : 0;
     sum += weights[i];
-    middle_from += weights[i] * from[i];
-    middle_to += weights[i] * to[i];
+    middle += weights[i] * from[i];
   }
   if (count < 3) return {};
-  middle_from /= sum;
-  middle_to /= sum;
-  Mat3 across = Mat3::Zero();
-  double spread = 0.0, spread_to = 0.0;
-  for (size_t i = 0; i < from.size(); ++i) {
-    if (!(weights[i] > 0.0)) continue;
-    const Vec3 a = from[i] - middle_from, b = to[i] - middle_to;
-    across += weights[i] * b * a.transpose();
-    spread += weights[i] * a.squaredNorm();
-    spread_to += weights[i] * b.squaredNorm();
-  }
-  const Eigen::JacobiSVD<Mat3> svd(across);
-  if (!(svd.singularValues()[1] > 1e-9 * std::sqrt(spread * spread_to)) || !(spread > 0.0)) return {};
+  middle /= sum;
+  Mat3 spread = Mat3::Zero();
+  for (size_t i = 0; i < from.size(); ++i)
+    spread += weights[i] * (from[i] - middle) * (from[i] - middle).transpose();
+  const Vec3 along = principal_axes(spread).values;
+  if (!(along[1] > 1e-9 * along[2])) return {};
+  const Mat4 best = may_scale ? similarity(from, to, weights) : rigid_motion(from, to, weights);
   HeadPose pose;
-  pose.rotation = nearest_rotation(across);
-  if (may_scale) pose.scale = (pose.rotation.transpose() * across).trace() / spread;
-  if (!(pose.scale > 0.0)) return {};
-  pose.translation = middle_to - pose.scale * (pose.rotation * middle_from);
+  pose.scale = may_scale ? std::cbrt(best.topLeftCorner<3, 3>().determinant()) : 1.0;
+  if (!(pose.scale > 0.0) || !best.allFinite()) return {};
+  pose.rotation = best.topLeftCorner<3, 3>() / pose.scale;
+  pose.translation = best.topRightCorner<3, 1>();
   return pose;
 }
 

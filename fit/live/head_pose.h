@@ -28,10 +28,10 @@ struct Camera {
 };
 
 /// The pose that brings `from` nearest to `to` in weighted squared distance, by a rotation, a shift and, with
-/// `may_scale`, a growth (Umeyama 1991, "Least-squares estimation of transformation parameters between two
-/// point patterns"). Weights are not negative. None when fewer than three points count or they lie on a line.
-std::optional<HeadPose> similarity(std::span<const Vec3> from, std::span<const Vec3> to,
-                                   std::span<const double> weights, bool may_scale);
+/// `may_scale`, a growth (see fascia::similarity). Weights are not negative. None when fewer than three
+/// points count or they lie on a line.
+std::optional<HeadPose> pose_between(std::span<const Vec3> from, std::span<const Vec3> to,
+                                     std::span<const double> weights, bool may_scale);
 
 /// The pose in which `camera` sees the places `from` at `pixels` (x and y count) by scaled orthography
 /// (DeMenthon & Davis 1995, "Model-based object pose in 25 lines of code"), repeated with the depths found.

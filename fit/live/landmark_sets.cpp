@@ -9,7 +9,8 @@ extern const std::string_view landmark_set_text;
 const std::vector<LandmarkSet>& landmark_sets() {
   static const std::vector<LandmarkSet> sets = [] {
     std::vector<LandmarkSet> found;
-    for (const auto& set : nlohmann::json::parse(landmark_set_text)["sets"]) {
+    const nlohmann::json table = nlohmann::json::parse(landmark_set_text);
+    for (const auto& set : table["sets"]) {
       LandmarkSet entry;
       entry.name = set["name"].get<std::string>();
       entry.points = set["points"].get<size_t>();

@@ -210,7 +210,7 @@ bool Tracker::find_head(std::span<const Vec3> points, std::span<const double> we
     if (!finds_scale)
       for (Vec3& target : targets_)
         target *= given;
-    std::optional<HeadPose> found = similarity(targets_, points, weights, finds_scale);
+    std::optional<HeadPose> found = pose_between(targets_, points, weights, finds_scale);
     if (!found) return !is_first;
     if (!finds_scale) found->scale = given;
     head_ = *found;
