@@ -94,7 +94,7 @@ class Live : public EmbeddedSubject {
                       {"depressor_anguli_oris_left", wave(0.5, 1.7, 4.0)},
                       {"frontalis_medial_left", wave(0.7, 2.9, 0.0)},
                       {"frontalis_medial_right", wave(0.7, 2.9, 0.2)},
-                      {"corrugator_supercilii_left", wave(0.6, 2.1, 3.5)}});
+                      {"corrugator_supercilii_transverse_left", wave(0.6, 2.1, 3.5)}});
   }
 
   struct Fit {

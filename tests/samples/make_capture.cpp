@@ -31,8 +31,8 @@ std::vector<float> values_at(const fit::Subject& subject, double seconds) {
   set("zygomaticus_major_superior_right", 0.6, 2.3, 0.8);
   set("frontalis_medial_left", 0.7, 3.9, 0.0);
   set("frontalis_medial_right", 0.7, 3.9, 0.2);
-  set("corrugator_supercilii_left", 0.6, 2.1, 3.5);
-  set("corrugator_supercilii_right", 0.6, 2.1, 3.5);
+  set("corrugator_supercilii_transverse_left", 0.6, 2.1, 3.5);
+  set("corrugator_supercilii_transverse_right", 0.6, 2.1, 3.5);
   return values;
 }
 
