@@ -107,10 +107,9 @@ void add_eye(const TissueInputs& inputs, const FaceRegion& region, const Columns
         if (channel >= 0) carry(level, channel, node, f, axis, angle, stiffness, reverse);
       };
       const double coarse = std::max(0.0, std::sqrt(c.area[v]) - medium_spacing);
-      const double lid = is_closed
-                             ? 0.0
-                             : (m.closing + closing_of_spacing * coarse) * gap +
-                                   m.canthal_turn * std::max(0.0, (left ? -1.0 : 1.0) * (2.0 * place - 1.0));
+      const double lid = is_closed ? 0.0
+                                   : (m.closing + closing_of_spacing * coarse) * gap +
+                                         m.canthal_turn * std::abs(2.0 * place - 1.0);
       const double lift =
           is_closed ? open_height * std::sin(EIGEN_PI * std::clamp(place, 0.0, 1.0)) : m.opening * lid;
       if (is_upper)
