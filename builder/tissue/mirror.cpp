@@ -223,7 +223,10 @@ RemeshResult on_region(const RemeshResult& given, const HalfRegion& region, cons
 std::optional<RemeshResult> with_images(const RemeshResult& half, const FaceRegion& region,
                                         const Symmetry& plane, std::vector<size_t>& left) {
   const double off = plane.is_exact ? 1.5e-3 : 8e-3;  // metres: farther from the skin is no image
+  constexpr double ends = 0.025;                      // metres
   const ImageFinder finder(region.mesh);
+  const auto beside = border_neighbours(half.mesh);
+  size_t missing = 0;
   const size_t n = half.mesh.vertices.size(), triangles = half.mesh.triangles.size();
   RemeshResult full = half;
   std::vector<int> image(n);
@@ -234,9 +237,14 @@ std::optional<RemeshResult> with_images(const RemeshResult& half, const FaceRegi
     image[v] = static_cast<int>(full.mesh.vertices.size());
     left.push_back(v);
     const Vec3 p = plane.image(half.mesh.vertices[v]);
-    const auto place =
-        finder.place(p, plane.turned(triangle_normal(region.mesh, half.source[v].triangle)), off);
-    if (!place) return {};
+    const Vec3 facing = plane.turned(triangle_normal(region.mesh, half.source[v].triangle));
+    auto place = finder.place(p, facing, off);
+    if (!place) {
+      // Where the region ends its last triangles may reach farther on one side.
+      place = finder.place(p, facing, ends);
+      if (!place) return {};
+      missing += beside[v].first < 0;
+    }
     full.source.push_back(*place);
     full.mesh.vertices.push_back(plane.is_exact ? p : position(region.mesh, *place));
   }
@@ -250,7 +258,7 @@ std::optional<RemeshResult> with_images(const RemeshResult& half, const FaceRegi
     turned += facing.dot(triangle_normal(full.mesh, own)) < 0.3 ||
               triangle_area(full.mesh, own) < 0.2 * triangle_area(half.mesh, static_cast<int>(t));
   }
-  if (turned > triangles / 50) return {};
+  if (missing > n / 100 || turned > triangles / 50) return {};
   return full;
 }
 
