@@ -16,7 +16,8 @@ TriangleMesh vault(double lopsided = 0.0) {
   TriangleMesh mesh;
   for (int j = 0; j <= rows; ++j)
     for (int i = 0; i <= columns; ++i) {
-      const double x = 0.16 * (i / static_cast<double>(columns) - 0.5) + 0.001 * std::sin(1.7 * i + j),
+      const double wave = i == 0 || i == columns ? 0.0 : 0.001 * std::sin(1.7 * i + j),
+                   x = 0.16 * (i / static_cast<double>(columns) - 0.5) + wave,
                    y = 0.12 * (j / static_cast<double>(rows) - 0.5);
       mesh.vertices.emplace_back(x, y, 0.05 - 6.0 * x * x - 3.0 * y * y + lopsided * x);
     }
