@@ -101,7 +101,7 @@ double unit_of(const TissueInputs& inputs) {
 
 std::optional<Symmetry> symmetry_of(const TissueInputs& inputs, const FaceRegion& region) {
   constexpr int rounds = 8;
-  constexpr double within = 10.0, alike = 3.0, exact = 0.35;  // millimetres of an adult's face
+  constexpr double within = 10.0, alike = 1.5, exact = 0.35;  // millimetres of an adult's face
   Symmetry plane;
   Vec3 across = Vec3::Zero(), middle = Vec3::Zero();
   double pairs = 0.0;

@@ -20,7 +20,8 @@ struct Symmetry {
 };
 
 /// The symmetry of a region by its landmarks, drawn onto the skin by iterative closest points between it and
-/// its image. Nothing where a tenth of the skin is farther from its image than lopsided faces have it.
+/// its image. Nothing where a tenth of the skin is farther than a millimetre and a half from its image, as on
+/// lopsided faces.
 std::optional<Symmetry> symmetry_of(const TissueInputs& inputs, const FaceRegion& region);
 
 /// What of a region lies on the left of the plane, cut along it.
