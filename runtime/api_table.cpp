@@ -79,6 +79,7 @@ const fascia_api table = {
     .face_node_forces = fascia_face_node_forces,
     .face_fibre_forces = fascia_face_fibre_forces,
     .face_gradient = fascia_face_gradient,
+    .face_member_gradient = fascia_face_member_gradient,
 };
 
 }  // namespace

@@ -114,8 +114,8 @@ void FaceModel::make_hinges() {
       if (a > b || other == opposite.end()) continue;
       const double mean = 0.5 * (static_cast<double>(rigidity[a]) + rigidity[b]);
       if (mean == 0.0) continue;
-      hinges_.push_back(
-          make_hinge({first + a, first + b, first + corner, first + other->second}, mean, rest_.data()));
+      const std::array<uint32_t, 4> nodes = {first + a, first + b, first + corner, first + other->second};
+      if (!is_folded_shut(nodes, rest_.data())) hinges_.push_back(make_hinge(nodes, mean, rest_.data()));
     }
   }
 }

@@ -49,7 +49,8 @@ class KnownFace {
   /// By ARKit name. mouthClose corrects an open jaw and is played and known with jawOpen.
   const std::map<std::string, KnownShape>& shapes() const { return shapes_; }
 
-  /// Channel values that play expressions of `table`, each held to its channel's range.
+  /// Channel values that play expressions of `table`, each by its response (eyes by the value itself), held
+  /// to their channels' ranges.
   std::vector<float> activations(const anatomy::ExpressionSet& table,
                                  const std::map<std::string, double>& values) const;
   /// 3 x #face vertices, metres: the static pose of `activations`, from rest.

@@ -95,6 +95,8 @@ typedef struct fascia_api {
   fascia_result (*face_node_forces)(fascia_face* face, float* to, size_t capacity);
   fascia_result (*face_fibre_forces)(fascia_face* face, float* to, size_t capacity);
   fascia_result (*face_gradient)(fascia_face* face, const float* const* slopes, float* by_channel);
+  fascia_result (*face_member_gradient)(const fascia_face* face, uint32_t set, const float* by_channel,
+                                        float* by_member);
 } fascia_api;
 
 /* The library's table, for a host that was made for `version` (FASCIA_VERSION_MAJOR << 16 |
