@@ -1,7 +1,7 @@
 #include "check/eye_turn.h"
+#include "geometry/alignment.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
@@ -9,25 +9,13 @@ namespace fascia::check {
 
 bool sphere_centre(const std::vector<Vec3>& vertices, Vec3& centre, double& radius) {
   if (vertices.size() < 12) return false;
+  const Sphere sphere = least_squares_sphere(vertices);
+  if (!(sphere.radius > 0.0)) return false;
+  centre = sphere.centre;
+  radius = sphere.radius;
   Vec3 middle = Vec3::Zero();
   for (const Vec3& p : vertices)
     middle += p / static_cast<double>(vertices.size());
-  // |p|^2 = 2 p.c + k, least squares about the middle.
-  Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
-  Eigen::Vector4d right = Eigen::Vector4d::Zero();
-  for (const Vec3& v : vertices) {
-    const Vec3 p = v - middle;
-    const Eigen::Vector4d row(2.0 * p.x(), 2.0 * p.y(), 2.0 * p.z(), 1.0);
-    normal += row * row.transpose();
-    right += row * p.squaredNorm();
-  }
-  const Eigen::JacobiSVD<Eigen::Matrix4d> svd(normal, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  if (!(svd.singularValues()[3] > 0.0)) return false;
-  const Eigen::Vector4d solved = svd.solve(right);
-  const double squared = solved[3] + solved.head<3>().squaredNorm();
-  if (!(squared > 0.0)) return false;
-  centre = middle + solved.head<3>();
-  radius = std::sqrt(squared);
   double off = 0.0, extent = 0.0;
   for (const Vec3& p : vertices) {
     off += std::abs((p - centre).norm() - radius) / static_cast<double>(vertices.size());
@@ -39,12 +27,7 @@ bool sphere_centre(const std::vector<Vec3>& vertices, Vec3& centre, double& radi
 EyeTurn eye_turn(const std::vector<Vec3>& rest, const std::vector<Vec3>& now, const Vec3& centre) {
   EyeTurn out;
   if (rest.size() < 3 || rest.size() != now.size()) return out;
-  Eigen::Matrix3Xd from(3, rest.size()), to(3, rest.size());
-  for (size_t v = 0; v < rest.size(); ++v) {
-    from.col(static_cast<Eigen::Index>(v)) = rest[v];
-    to.col(static_cast<Eigen::Index>(v)) = now[v];
-  }
-  const Mat4 motion = Eigen::umeyama(from, to, false);
+  const Mat4 motion = rigid_motion(rest, now);
   for (size_t v = 0; v < rest.size(); ++v)
     out.bent = std::max(out.bent, (transform_point(motion, rest[v]) - now[v]).norm());
   const Mat3 turn = motion.topLeftCorner<3, 3>();

@@ -8,10 +8,10 @@
 #include <nlohmann/json.hpp>
 
 #include "builder/rigging/gltf_source.h"
-#include "builder/skull/procrustes.h"
 #include "builder/spatial/surface_query.h"
 #include "cli/still_landmarks.h"
 #include "formats/landmark_file.h"
+#include "geometry/alignment.h"
 #include "geometry/error.h"
 
 namespace fascia::cli {
@@ -235,7 +235,7 @@ class LandmarkTargetMaker {
       to.push_back(neutral.empty() ? place.rest : rest->second);
     }
     if (from.size() < 4) return;
-    const Mat4 back = skull::rigid(from, to);
+    const Mat4 back = rigid_motion(from, to);
     for (auto& [name, p] : points)
       p = transform_point(back, p);
   }

@@ -1,10 +1,10 @@
 #include "cli/fit_match.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 #include <cmath>
 
 #include "builder/rigging/gltf_source.h"
+#include "geometry/alignment.h"
 #include "geometry/error.h"
 
 namespace fascia::cli {
@@ -114,10 +114,7 @@ fit::Target TargetMaker::without_head(fit::Target target) const {
     const Vec3 rest = subject_.rest().segment<3>(at);
     sum += (rest - from) * (rest + Vec3(target.displacements.segment<3>(at)) - to).transpose();
   }
-  const Eigen::JacobiSVD<Mat3> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Mat3 flip = Mat3::Identity();
-  flip(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
-  const Mat3 back = svd.matrixU() * flip * svd.matrixV().transpose();
+  const Mat3 back = nearest_rotation(sum);
   for (size_t v = 0; v < subject_.vertex_count(); ++v) {
     if (target.trust[v] <= 0.0) continue;
     const auto at = static_cast<Eigen::Index>(3 * v);

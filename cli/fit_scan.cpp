@@ -5,10 +5,10 @@
 
 #include "builder/prepare/prepare.h"
 #include "builder/rigging/find_landmarks.h"
-#include "builder/skull/procrustes.h"
 #include "builder/spatial/surface_query.h"
 #include "cli/fit_match.h"
 #include "cli/still_landmarks.h"
+#include "geometry/alignment.h"
 #include "geometry/error.h"
 
 namespace fascia::cli {
@@ -62,9 +62,9 @@ PlacedScan place_scan(const fit::Subject& subject, const formats::Scene& scene, 
     }
   if (from.size() < 4)
     throw Error("'" + scene.path.string() + "': too few landmarks were found to bring it onto the head");
-  Mat4 onto = skull::similarity(from, to);
+  Mat4 onto = similarity(from, to);
   const double scale = onto.topLeftCorner<3, 1>().norm();
-  if (std::abs(scale - 1.0) < same_size) onto = skull::rigid(from, to);
+  if (std::abs(scale - 1.0) < same_size) onto = rigid_motion(from, to);
   out.mesh = found.head.skin;
   for (Vec3& p : out.mesh.vertices)
     p = transform_point(onto, p);

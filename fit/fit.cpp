@@ -2,10 +2,10 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/alignment.h"
 #include "geometry/error.h"
 
 namespace fascia::fit {
@@ -170,13 +170,7 @@ void Fitter::find_eyes(const Target& target, std::vector<float>& values) const {
       most = std::max(most, moved.norm());
     }
     if (most < 1e-5) continue;
-    const Eigen::JacobiSVD<Mat3> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    Mat3 turn = svd.matrixU() * svd.matrixV().transpose();
-    if (turn.determinant() < 0.0) {
-      Mat3 flip = Mat3::Identity();
-      flip(2, 2) = -1.0;
-      turn = svd.matrixU() * flip * svd.matrixV().transpose();
-    }
+    const Mat3 turn = nearest_rotation(sum);
     const Vec3 gaze = turn.col(2);
     const std::string side = eye == 1 ? "left" : "right";
     for (const auto& [name, angle] : {std::pair{"eye_yaw_", std::atan2(gaze.x(), gaze.z())},

@@ -1,4 +1,5 @@
 #include "runtime/bound_mesh.h"
+#include "geometry/alignment.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -72,7 +73,7 @@ const std::vector<Vec3f>& BoundMesh::normals(const BonePose& pose) {
       normals_[v] = rest.rest[v];
       continue;
     }
-    const auto turn = Eigen::Quaternionf::FromTwoVectors(rest.surface[v], surface_normals_[v]);
+    const auto turn = least_rotation(rest.surface[v], surface_normals_[v]);
     normals_[v] = (turn * rest.rest[v]).normalized();
   }
   return normals_;

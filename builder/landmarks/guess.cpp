@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "builder/landmarks/placement.h"
+#include "geometry/alignment.h"
 
 namespace fascia::landmarks {
 
@@ -75,7 +76,7 @@ const std::vector<Mat3>& rotations() {
       const double z = 1.0 - (2.0 * v + 1.0) / views, around = v * EIGEN_PI * (3.0 - std::sqrt(5.0));
       const double ring = std::sqrt(1.0 - z * z);
       const Vec3 view(ring * std::cos(around), ring * std::sin(around), z);
-      const Mat3 turn = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), view).toRotationMatrix();
+      const Mat3 turn = least_rotation(Vec3::UnitZ(), view).toRotationMatrix();
       for (int t = 0; t < turns; ++t)
         list.push_back(turn *
                        Eigen::AngleAxisd(2.0 * EIGEN_PI * t / turns, Vec3::UnitZ()).toRotationMatrix());

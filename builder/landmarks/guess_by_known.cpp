@@ -1,10 +1,10 @@
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
 #include "builder/landmarks/placement.h"
 #include "builder/landmarks/spheres.h"
+#include "geometry/alignment.h"
 #include "geometry/connectivity.h"
 
 namespace fascia::landmarks {
@@ -20,7 +20,7 @@ std::vector<Guess> about_line(const GenericFace& face, const Vec3& from, const V
   std::vector<Guess> all;
   if (!(along.norm() > 0.0) || !(here.norm() > 0.0)) return all;
   const std::vector<size_t> few = some_face_points(face, 5);
-  const Mat3 onto = Eigen::Quaterniond::FromTwoVectors(along, here).toRotationMatrix();
+  const Mat3 onto = least_rotation(along, here).toRotationMatrix();
   const int turns = 36;
   for (int turn = 0; turn < turns; ++turn) {
     Guess guess;
@@ -94,17 +94,15 @@ std::vector<Guess> guess_by_eyes(const GenericFace& face, const TriangleMesh& me
 std::vector<Guess> guess_by_anchors(const GenericFace& face, const std::vector<Anchor>& anchors,
                                     const Neighbours& samples, int count) {
   if (anchors.size() < 2) return {};
-  const auto columns = static_cast<Eigen::Index>(anchors.size());
-  Eigen::Matrix3Xd from(3, columns), to(3, columns);
-  for (Eigen::Index i = 0; i < columns; ++i) {
-    from.col(i) = anchors[static_cast<size_t>(i)].generic;
-    to.col(i) = anchors[static_cast<size_t>(i)].target;
+  std::vector<Vec3> from, to;
+  for (const Anchor& anchor : anchors) {
+    from.push_back(anchor.generic);
+    to.push_back(anchor.target);
   }
-  const Eigen::Matrix3Xd centred = from.colwise() - from.rowwise().mean();
-  const Eigen::JacobiSVD<Eigen::Matrix3Xd> spread(centred);
+  const Vec3 spread = principal_axes(scatter(from)).values.cwiseMax(0.0).cwiseSqrt();
   // Points that are nearly in a line leave the turn about it to the face.
-  if (anchors.size() > 2 && spread.singularValues()[1] > 0.15 * spread.singularValues()[0]) {
-    const Mat4 map = Eigen::umeyama(from, to, true);
+  if (anchors.size() > 2 && spread[1] > 0.15 * spread[2]) {
+    const Mat4 map = similarity(from, to);
     Guess guess;
     guess.placement.scale = map.topLeftCorner<3, 1>().norm();
     guess.placement.rotation = map.topLeftCorner<3, 3>() / guess.placement.scale;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "builder/landmarks/placement.h"
+#include "geometry/alignment.h"
 
 namespace fascia::landmarks {
 
@@ -16,7 +17,7 @@ struct Protrusion {
 };
 
 Protrusion protrusion_at(const Neighbours& samples, const Vec3& tip, double radius) {
-  std::vector<size_t> near;
+  static thread_local std::vector<size_t> near;
   samples.within(tip, radius, near);
   Protrusion found{tip, Vec3::UnitZ(), 0.0};
   if (near.size() < 8) return found;
@@ -33,11 +34,32 @@ Protrusion protrusion_at(const Neighbours& samples, const Vec3& tip, double radi
   return found;
 }
 
+/// As few of `samples`, evenly taken, as leave some eighty within `radius` of one: more do not move their
+/// middle and are looked through for every place that might be a nose.
+Neighbours thinned(const Neighbours& samples, double radius) {
+  const size_t enough = 80, places = 50;
+  const Samples& all = samples.samples();
+  const size_t apart = std::max<size_t>(1, all.size() / places);
+  size_t looked = 0, met = 0;
+  std::vector<size_t> near;
+  for (size_t i = 0; i < all.size(); i += apart, ++looked) {
+    samples.within(all.points[i], radius, near);
+    met += near.size();
+  }
+  const size_t stride = met / std::max<size_t>(1, enough * looked);
+  if (stride < 2) return samples;
+  Samples few;
+  for (size_t i = 0; i < all.size(); i += stride)
+    few.add(all.points[i], all.normals[i]);
+  return Neighbours(std::move(few));
+}
+
 /// What stands out most, no two close together.
 std::vector<Protrusion> protrusions(const Neighbours& samples, double radius, size_t count) {
   std::vector<Protrusion> all;
+  const Neighbours around = thinned(samples, radius);
   for (size_t i = 0; i < samples.samples().size(); ++i) {
-    const Protrusion p = protrusion_at(samples, samples.samples().points[i], radius);
+    const Protrusion p = protrusion_at(around, samples.samples().points[i], radius);
     if (p.height > 0.0) all.push_back(p);
   }
   std::stable_sort(all.begin(), all.end(),
@@ -57,14 +79,12 @@ std::vector<Protrusion> protrusions(const Neighbours& samples, double radius, si
 double distance_from(const GenericFace& face, const std::vector<size_t>& points, const Neighbours& samples,
                      const Placement& placement) {
   const double most = 0.012;
-  std::vector<size_t> near;
-  std::vector<double> squared;
   double sum = 0.0;
   for (size_t i : points) {
-    samples.nearest(placement(face.points.points[i]), 1, near, squared);
+    const auto near = samples.nearest_within(placement(face.points.points[i]), most * placement.scale);
     const bool faces_so =
-        samples.samples().normals[near.front()].dot(placement.rotation * face.points.normals[i]) > 0.3;
-    sum += faces_so ? std::min(most, std::sqrt(squared.front()) / placement.scale) : most;
+        near && samples.samples().normals[near->first].dot(placement.rotation * face.points.normals[i]) > 0.3;
+    sum += faces_so ? std::sqrt(near->second) / placement.scale : most;
   }
   return sum / static_cast<double>(points.size());
 }
@@ -89,7 +109,7 @@ std::vector<Guess> guess_by_nose(const GenericFace& face, const Neighbours& samp
   for (double size : {0.17, 0.20, 0.24, 0.28, 0.33, 0.39, 0.46}) {
     const double scale = extent / size;
     for (const Protrusion& tip : protrusions(samples, nose_radius * scale, 6)) {
-      const Mat3 onto = Eigen::Quaterniond::FromTwoVectors(nose.direction, tip.direction).toRotationMatrix();
+      const Mat3 onto = least_rotation(nose.direction, tip.direction).toRotationMatrix();
       std::vector<Guess> here;
       const int turns = 24;
       for (int turn = 0; turn < turns; ++turn)

@@ -1,4 +1,5 @@
 #include "builder/landmarks/registration.h"
+#include "geometry/alignment.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -182,12 +183,12 @@ double residual_at(const GenericFace& face, const Registration& fit, const Vec3&
 
 Placement similarity_of(const GenericFace& face, const Registration& fit) {
   const std::vector<size_t> some = some_face_points(face, 2);
-  Eigen::Matrix3Xd from(3, static_cast<Eigen::Index>(some.size())), to = from;
-  for (size_t i = 0; i < some.size(); ++i) {
-    from.col(static_cast<Eigen::Index>(i)) = face.points.points[some[i]];
-    to.col(static_cast<Eigen::Index>(i)) = fit(face.points.points[some[i]]);
+  std::vector<Vec3> from, to;
+  for (size_t i : some) {
+    from.push_back(face.points.points[i]);
+    to.push_back(fit(face.points.points[i]));
   }
-  const Mat4 map = Eigen::umeyama(from, to, true);
+  const Mat4 map = similarity(from, to);
   Placement placement;
   placement.scale = map.topLeftCorner<3, 1>().norm();
   placement.rotation = map.topLeftCorner<3, 3>() / placement.scale;

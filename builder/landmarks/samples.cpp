@@ -112,10 +112,22 @@ void Neighbours::nearest(const Vec3& point, int count, std::vector<size_t>& indi
   squared_distances.resize(found.size());
 }
 
+std::optional<std::pair<size_t, double>> Neighbours::nearest_within(const Vec3& point, double radius) const {
+  size_t index = 0;
+  double squared = 0.0;
+  nanoflann::KNNResultSet<double> found(1);
+  found.init(&index, &squared);
+  squared = radius * radius;  // the result set takes what is nearer than its last place
+  state_->tree->findNeighbors(found, point.data(), nanoflann::SearchParams());
+  if (found.size() == 0) return std::nullopt;
+  return std::pair(index, squared);
+}
+
 void Neighbours::within(const Vec3& point, double radius, std::vector<size_t>& indices) const {
   static thread_local std::vector<std::pair<uint32_t, double>> found;
   found.clear();
-  state_->tree->radiusSearch(point.data(), radius * radius, found, nanoflann::SearchParams());
+  const bool sorted = false;
+  state_->tree->radiusSearch(point.data(), radius * radius, found, nanoflann::SearchParams(32, 0.0F, sorted));
   indices.clear();
   for (const auto& [index, squared] : found)
     indices.push_back(index);

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "builder/spatial/surface_query.h"
@@ -46,6 +48,9 @@ class Neighbours {
   /// Indices of the `count` nearest samples, nearest first; `squared_distances` alike.
   void nearest(const Vec3& point, int count, std::vector<size_t>& indices,
                std::vector<double>& squared_distances) const;
+
+  /// Index of the nearest sample, with its squared distance, where it lies within `radius` of `point`.
+  std::optional<std::pair<size_t, double>> nearest_within(const Vec3& point, double radius) const;
 
   /// Indices of the samples within `radius` of `point`, in no order of note.
   void within(const Vec3& point, double radius, std::vector<size_t>& indices) const;

@@ -1,10 +1,11 @@
 #include "builder/landmarks/spheres.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <bitset>
 #include <cmath>
 #include <cstdint>
+
+#include "geometry/alignment.h"
 
 namespace fascia::landmarks {
 
@@ -75,23 +76,8 @@ Samples thinned(const Samples& samples, size_t stride) {
 }  // namespace
 
 Ball fit_ball(const std::vector<Vec3>& points) {
-  Ball ball;
-  if (points.size() < 4) return ball;
-  Vec3 mean = Vec3::Zero();
-  for (const Vec3& p : points)
-    mean += p / static_cast<double>(points.size());
-  Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
-  Eigen::Vector4d right = Eigen::Vector4d::Zero();
-  for (const Vec3& p : points) {
-    const Vec3 q = p - mean;
-    const Eigen::Vector4d row(2 * q[0], 2 * q[1], 2 * q[2], 1.0);
-    normal += row * row.transpose();
-    right += row * q.squaredNorm();
-  }
-  const Eigen::Vector4d solution = normal.colPivHouseholderQr().solve(right);
-  ball.centre = solution.head<3>() + mean;
-  ball.radius = std::sqrt(std::max(0.0, solution[3] + solution.head<3>().squaredNorm()));
-  return ball;
+  const Sphere sphere = least_squares_sphere(points);
+  return {sphere.centre, sphere.radius};
 }
 
 std::vector<Ball> round_lumps(const Samples& samples, int count) {

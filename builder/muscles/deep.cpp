@@ -1,9 +1,9 @@
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <utility>
 
 #include "builder/muscles/order.h"
 #include "builder/muscles/parts.h"
+#include "geometry/alignment.h"
 
 namespace fascia::muscles {
 
@@ -16,7 +16,7 @@ Vec3 widest_across(const std::vector<Vec3>& polygon, const Vec3& centre, const V
     const Vec3 d = (p - centre) - axis * axis.dot(p - centre);
     spread += d * d.transpose();
   }
-  Vec3 widest = Eigen::SelfAdjointEigenSolver<Mat3>(spread).eigenvectors().col(2);
+  Vec3 widest = principal_axes(spread).axes.col(2);
   // The sign is free: fix it, so that mirrored muscles and equal inputs come out alike.
   int largest = 0;
   for (int i = 1; i < 3; ++i)

@@ -1,9 +1,9 @@
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
 #include "builder/muscles/parts.h"
+#include "geometry/alignment.h"
 #include "geometry/error.h"
 
 namespace fascia::muscles {
@@ -31,14 +31,10 @@ std::vector<Vec2> flattened(const std::vector<Vec3>& points) {
   Vec3 middle = Vec3::Zero();
   for (const Vec3& p : points)
     middle += p / double(points.size());
-  Mat3 spread = Mat3::Zero();
-  for (const Vec3& p : points)
-    spread += (p - middle) * (p - middle).transpose();
-  const Eigen::SelfAdjointEigenSolver<Mat3> axes(spread);
+  const Mat3 axes = principal_axes(scatter(points)).axes;
   std::vector<Vec2> flat;
   for (const Vec3& p : points)
-    flat.emplace_back((p - middle).dot(axes.eigenvectors().col(2)),
-                      (p - middle).dot(axes.eigenvectors().col(1)));
+    flat.emplace_back((p - middle).dot(axes.col(2)), (p - middle).dot(axes.col(1)));
   return flat;
 }
 

@@ -1,4 +1,5 @@
 #include "builder/openings/lid_lining.h"
+#include "geometry/alignment.h"
 
 #include <Eigen/Geometry>
 #include <array>
@@ -34,7 +35,7 @@ Lining lid_lining(const Rim& rim, int first, const MeetingLine& line, const prep
         std::cos(shape.angle) * front +
         std::sin(shape.angle) * (std::cos(turn) * line.axes.col(0) + std::sin(turn) * line.axes.col(1));
     const Vec3 edge = (rim.at(around) - globe.centre).normalized();
-    const Eigen::Quaterniond way = Eigen::Quaterniond::FromTwoVectors(edge, circle);
+    const Eigen::Quaterniond way = least_rotation(edge, circle);
     const Vec3 direction = Eigen::Quaterniond::Identity().slerp(shape.edge, way) * edge;
     return Vec3(globe.centre + (1.0 + shape.clearance) * globe.radius * direction);
   };

@@ -1,4 +1,5 @@
 #include "builder/openings/line.h"
+#include "geometry/alignment.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -92,12 +93,7 @@ FaceAxes face_axes(const anatomy::GenericAnatomy& anatomy, const Points& landmar
     }
   FaceAxes face;
   if (generic.size() < 4) return face;
-  Eigen::Matrix3Xd from(3, generic.size()), to(3, generic.size());
-  for (size_t i = 0; i < generic.size(); ++i) {
-    from.col(static_cast<Eigen::Index>(i)) = generic[i];
-    to.col(static_cast<Eigen::Index>(i)) = here[i];
-  }
-  const Mat4 map = Eigen::umeyama(from, to, true);
+  const Mat4 map = similarity(generic, here);
   face.scale = map.topLeftCorner<3, 1>().norm();
   if (face.scale > 0.0) face.rotation = map.topLeftCorner<3, 3>() / face.scale;
   return face;

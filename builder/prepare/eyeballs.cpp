@@ -1,9 +1,10 @@
 #include "builder/prepare/eyeballs.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <bitset>
 #include <cmath>
+
+#include "geometry/alignment.h"
 
 namespace fascia::prepare {
 
@@ -64,26 +65,12 @@ std::optional<Vec3> pole_axis(const Eyeball& ball, const std::vector<Vec3>& poin
 }  // namespace
 
 Eyeball fit_sphere(const std::vector<Vec3>& points, double* rms) {
-  // |p|^2 = 2 c.p + (r^2 - |c|^2) is linear in c and the bracket; centred for conditioning.
-  Vec3 mean = Vec3::Zero();
-  for (const Vec3& p : points)
-    mean += p / static_cast<double>(points.size());
-  Eigen::MatrixX4d rows(points.size(), 4);
-  Eigen::VectorXd squares(points.size());
-  for (size_t i = 0; i < points.size(); ++i) {
-    const Vec3 p = points[i] - mean;
-    rows.row(static_cast<Eigen::Index>(i)) << 2 * p[0], 2 * p[1], 2 * p[2], 1.0;
-    squares[static_cast<Eigen::Index>(i)] = p.squaredNorm();
-  }
-  const Eigen::Vector4d solution = rows.colPivHouseholderQr().solve(squares);
-  Eyeball sphere;
-  sphere.centre = solution.head<3>() + mean;
-  sphere.radius = std::sqrt(std::max(0.0, solution[3] + solution.head<3>().squaredNorm()));
-  double sum = 0.0;
-  for (const Vec3& p : points)
-    sum += std::pow((p - sphere.centre).norm() - sphere.radius, 2);
-  if (rms) *rms = std::sqrt(sum / static_cast<double>(points.size()));
-  return sphere;
+  const Sphere sphere = least_squares_sphere(points);
+  if (rms) *rms = distance_rms(sphere, points);
+  Eyeball ball;
+  ball.centre = sphere.centre;
+  ball.radius = sphere.radius;
+  return ball;
 }
 
 std::optional<RoundPart> round_part(const std::vector<Vec3>& points, const Vec3& lids, double width) {

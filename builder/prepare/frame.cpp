@@ -1,11 +1,11 @@
 #include "builder/prepare/frame.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 #include <array>
 #include <cmath>
 
 #include "builder/spatial/surface_query.h"
+#include "geometry/alignment.h"
 #include "geometry/error.h"
 
 namespace fascia::prepare {
@@ -42,12 +42,7 @@ struct Similarity {
 
 /// Least-squares similarity that carries `from` onto `to` (Umeyama 1991).
 Similarity procrustes(const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
-  Eigen::Matrix3Xd a(3, from.size()), b(3, to.size());
-  for (size_t i = 0; i < from.size(); ++i) {
-    a.col(static_cast<Eigen::Index>(i)) = from[i];
-    b.col(static_cast<Eigen::Index>(i)) = to[i];
-  }
-  const Mat4 map = Eigen::umeyama(a, b, true);
+  const Mat4 map = similarity(from, to);
   Similarity result;
   result.scale = map.topLeftCorner<3, 1>().norm();
   result.rotation = map.topLeftCorner<3, 3>() / result.scale;
@@ -69,14 +64,8 @@ Mat3 nearest_axes(const Mat3& rotation) {
 }
 
 bool are_collinear(const std::vector<Vec3>& points) {
-  Eigen::Matrix3Xd centred(3, points.size());
-  Vec3 mean = Vec3::Zero();
-  for (const Vec3& p : points)
-    mean += p / static_cast<double>(points.size());
-  for (size_t i = 0; i < points.size(); ++i)
-    centred.col(static_cast<Eigen::Index>(i)) = points[i] - mean;
-  const Eigen::JacobiSVD<Eigen::Matrix3Xd> svd(centred);
-  return svd.singularValues()[1] < 1e-3 * svd.singularValues()[0];
+  const Vec3 spread = principal_axes(scatter(points)).values;
+  return spread[1] < 1e-6 * spread[2];
 }
 
 double snapped_unit(double scale, std::vector<std::string>& warnings) {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "builder/skull/procrustes.h"
+#include "geometry/alignment.h"
 #include "geometry/error.h"
 
 namespace fascia::reconstruction {
@@ -131,7 +131,7 @@ Placement place(const GenericFace& skull, const Neighbours& scan, double metres,
       from.push_back(anchor.generic);
       to.push_back(anchor.target);
     }
-    return landmarks::refine_placement(skull, scan, placement_of(skull::similarity(from, to)), 30, 3, nullptr,
+    return landmarks::refine_placement(skull, scan, placement_of(similarity(from, to)), 30, 3, nullptr,
                                        anchors);
   }
   const Neighbours generic(skull.points);

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "builder/skull/from_anatomy.h"
-#include "builder/skull/procrustes.h"
+#include "geometry/alignment.h"
 #include "geometry/error.h"
 
 namespace fascia::reconstruction {
@@ -111,7 +111,7 @@ skull::BoneMap with_round_eyes(const anatomy::GenericAnatomy& anatomy, splines::
     patch.anchors = {box.centre()};
     patch.inner = 0.5 * box.size().norm() / std::sqrt(3.0) + 0.003;
     patch.outer = patch.inner + eye_blend;
-    patch.similarity = skull::similarity(vertices, warp(std::span<const Vec3>(vertices)));
+    patch.similarity = similarity(vertices, warp(std::span<const Vec3>(vertices)));
     patches.push_back(std::move(patch));
   }
   return {std::move(warp), std::move(patches)};

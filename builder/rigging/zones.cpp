@@ -1,4 +1,5 @@
 #include "builder/rigging/zones.h"
+#include "geometry/alignment.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -37,16 +38,13 @@ ZoneField::ZoneField(const std::vector<anatomy::Zone>& zones, double otherwise, 
     area.centre = Vec3::Zero();
     for (const Vec3& p : carried)
       area.centre += p / static_cast<double>(carried.size());
-    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
     double reach = 0.0;
-    for (const Vec3& p : carried) {
-      spread += (p - area.centre) * (p - area.centre).transpose();
+    for (const Vec3& p : carried)
       reach = std::max(reach, (p - area.centre).norm());
-    }
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(spread);
-    area.normal = axes.eigenvectors().col(0);
-    area.x = axes.eigenvectors().col(2);
-    area.y = axes.eigenvectors().col(1);
+    const Mat3 axes = principal_axes(scatter(carried)).axes;
+    area.normal = axes.col(0);
+    area.x = axes.col(2);
+    area.y = axes.col(1);
     // The far side of the head is as near to the plane as the near one: a slab keeps it out.
     area.depth = 0.02 + 0.5 * reach;
     for (const Vec3& p : carried)

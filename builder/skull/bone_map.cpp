@@ -2,8 +2,8 @@
 #include <cmath>
 #include <limits>
 
-#include "builder/skull/procrustes.h"
 #include "builder/skull/skull.h"
+#include "geometry/alignment.h"
 
 namespace fascia::skull {
 
@@ -24,7 +24,7 @@ Vec3 BoneMap::blend(const Vec3& generic, const Vec3& warped) const {
   for (const Patch& patch : patches_) {
     const double w = patch.strength(generic);
     if (w <= 0) continue;
-    sum += w * transform(patch.similarity, generic);
+    sum += w * transform_point(patch.similarity, generic);
     total += w;
   }
   return total > 1 ? Vec3(sum / total) : Vec3(sum + (1 - total) * warped);

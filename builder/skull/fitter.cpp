@@ -12,8 +12,8 @@
 #include "builder/skull/landmark_pairs.h"
 #include "builder/skull/patches.h"
 #include "builder/skull/placement.h"
-#include "builder/skull/procrustes.h"
 #include "builder/skull/teeth.h"
+#include "geometry/alignment.h"
 #include "geometry/error.h"
 
 namespace fascia::skull {
@@ -81,7 +81,7 @@ void Fitter::State::register_teeth() {
     for (const Vec3& point : symmetric_points(from, 6)) {
       Observation observation;
       observation.from = point;
-      observation.to = transform(found, point);
+      observation.to = transform_point(found, point);
       observation.sd = options.teeth_deviation;
       teeth.push_back(observation);
     }
@@ -120,7 +120,7 @@ void Fitter::State::gather_observations(bool first, const std::vector<Mat3>& tur
   if (!curves.empty()) {
     std::vector<Vec3> at;
     for (const CurvePoint& point : curves)
-      at.push_back(first ? transform(result.similarity, point.bone) : point.bone);
+      at.push_back(first ? transform_point(result.similarity, point.bone) : point.bone);
     if (!first) at = warp(std::span<const Vec3>(at));
     aim(curves, at, std::vector<Mat3>(turns.begin() + static_cast<long>(pairs.size()), turns.end()), skin,
         options.tissue_scale, options.skin_normal_share);

@@ -1,13 +1,12 @@
 #include "builder/skull/landmark_pairs.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
 
-#include "builder/skull/procrustes.h"
+#include "geometry/alignment.h"
 #include "geometry/error.h"
 #include "geometry/nearest_names.h"
 
@@ -77,14 +76,8 @@ void check_spread(const std::vector<LandmarkPair>& pairs) {
     throw Error("skull: only " + std::to_string(bones.size()) +
                 " landmarks with bone under them match; at least 4 are needed, such as nasion, pogonion, "
                 "zygion_left and zygion_right");
-  Vec3 centre = Vec3::Zero();
-  for (const Vec3& p : bones)
-    centre += p / static_cast<double>(bones.size());
-  Mat3 scatter = Mat3::Zero();
-  for (const Vec3& p : bones)
-    scatter += (p - centre) * (p - centre).transpose();
-  const Eigen::SelfAdjointEigenSolver<Mat3> eigen(scatter / static_cast<double>(bones.size()));
-  if (std::sqrt(std::max(0.0, eigen.eigenvalues()[0])) < 0.002)
+  const double thinnest = principal_axes(scatter(bones)).values[0] / static_cast<double>(bones.size());
+  if (std::sqrt(std::max(0.0, thinnest)) < 0.002)
     throw Error(
         "skull: the landmarks lie on a plane, so they say nothing about depth; add one off it, such as "
         "zygion_left or gonion_left");

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "builder/skull/procrustes.h"
 #include "builder/skull/teeth.h"
+#include "geometry/alignment.h"
 
 namespace fascia::skull {
 namespace {

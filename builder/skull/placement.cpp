@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "builder/skull/procrustes.h"
+#include "geometry/alignment.h"
 
 namespace fascia::skull {
 namespace {
@@ -49,8 +49,9 @@ std::vector<Vec3> VertexMap::operator()(const Bones& bones, const BoneMap& map,
     Vec3 sum = Vec3::Zero();
     double total = 0;
     for (end = begin; end < pulls_.size() && pulls_[end].vertex == pulls_[begin].vertex; ++end) {
-      sum += pulls_[end].strength *
-             transform(map.patches()[static_cast<size_t>(pulls_[end].patch)].similarity, bones.generic[v]);
+      sum +=
+          pulls_[end].strength *
+          transform_point(map.patches()[static_cast<size_t>(pulls_[end].patch)].similarity, bones.generic[v]);
       total += pulls_[end].strength;
     }
     out[v] = total > 1 ? Vec3(sum / total) : Vec3(sum + (1 - total) * warped[v]);

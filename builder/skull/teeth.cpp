@@ -5,8 +5,8 @@
 #include <limits>
 #include <numeric>
 
-#include "builder/skull/procrustes.h"
 #include "builder/spatial/surface_query.h"
+#include "geometry/alignment.h"
 
 namespace fascia::skull {
 
@@ -20,7 +20,7 @@ TeethMatch match_teeth(const TriangleMesh& generic, const TriangleMesh& actual, 
   // Bring centres and sizes together first: the bounding boxes of two rows of teeth correspond.
   std::vector<Vec3> carried;
   for (const Vec3& p : points)
-    carried.push_back(transform(start, p));
+    carried.push_back(transform_point(start, p));
   const Bounds from = bounds(carried), to = bounds(actual.vertices);
   const double scale = from.size().x() > 0 ? to.size().x() / from.size().x() : 1;
   Mat4 align = Mat4::Identity();
@@ -35,7 +35,7 @@ TeethMatch match_teeth(const TriangleMesh& generic, const TriangleMesh& actual, 
     std::vector<Vec3> nearest(points.size());
     std::vector<double> distance(points.size());
     for (size_t i = 0; i < points.size(); ++i) {
-      const auto closest = surface.closest(transform(out.similarity, points[i]));
+      const auto closest = surface.closest(transform_point(out.similarity, points[i]));
       nearest[i] = closest.position;
       distance[i] = closest.distance;
     }
@@ -46,13 +46,13 @@ TeethMatch match_teeth(const TriangleMesh& generic, const TriangleMesh& actual, 
     std::vector<Vec3> source, target;
     double sum = 0;
     for (int i : order) {
-      source.push_back(transform(out.similarity, points[i]));
+      source.push_back(transform_point(out.similarity, points[i]));
       target.push_back(nearest[i]);
       sum += distance[i] * distance[i];
     }
     out.rms = std::sqrt(sum / std::max<size_t>(1, order.size()));
     // The size is settled: nearest points would shrink it further with every round.
-    const Mat4 next = rigid(source, target) * out.similarity;
+    const Mat4 next = rigid_motion(source, target) * out.similarity;
     const double change = (next - out.similarity).norm();
     out.similarity = next;
     if (change < 1e-9) break;

@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <map>
 
+#include "geometry/alignment.h"
 #include "geometry/error.h"
 
 namespace fascia::gltf {
@@ -114,8 +115,7 @@ MeshShading::Turned MeshShading::turned(const std::vector<std::vector<Vec3f>>& d
     for (std::size_t v = 0; v < normals.size(); ++v) {
       const Vec3f &before = rest_[place_[p][v]], &after = surface[place_[p][v]];
       if (before == after || before.isZero(0) || after.isZero(0)) continue;
-      normals[v] =
-          unit_or(Eigen::Quaternionf::FromTwoVectors(before, after) * primitive.normals[v], normals[v]);
+      normals[v] = unit_or(least_rotation(before, after) * primitive.normals[v], normals[v]);
     }
     result.tangents.push_back(primitive.tangents.empty() ? std::vector<Vec3f>()
                                                          : turned_tangents(p, positions[p], normals));

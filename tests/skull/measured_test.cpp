@@ -6,8 +6,8 @@
 
 #include "builder/skull/fitter.h"
 #include "builder/skull/from_anatomy.h"
-#include "builder/skull/procrustes.h"
 #include "builder/spatial/surface_query.h"
+#include "geometry/alignment.h"
 #include "tests/paths/paths.h"
 #include "tests/skull/ct_head.h"
 #include "tests/skull/ict_heads.h"
@@ -32,7 +32,7 @@ double bent(const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
   const Mat4 body = similarity(from, to);
   double worst = 0;
   for (size_t i = 0; i < from.size(); ++i)
-    worst = std::max(worst, (transform(body, from[i]) - to[i]).norm());
+    worst = std::max(worst, (transform_point(body, from[i]) - to[i]).norm());
   return worst;
 }
 

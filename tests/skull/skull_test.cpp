@@ -6,8 +6,8 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include "builder/skull/procrustes.h"
 #include "builder/skull/teeth.h"
+#include "geometry/alignment.h"
 #include "geometry/error.h"
 #include "tests/skull/round_head.h"
 
@@ -170,8 +170,9 @@ TEST(SkullFit, TeethThatTheHeadHasAreMet) {
   // Without evidence both rows move as one body: their shape and their contact are the generic's.
   const Mat4 body = similarity(generic.teeth_upper.vertices, without.teeth_upper.vertices);
   for (int v = 0; v < generic.teeth_lower.vertex_count(); ++v)
-    EXPECT_LT((transform(body, generic.teeth_lower.vertices[v]) - without.teeth_lower.vertices[v]).norm(),
-              1e-9);
+    EXPECT_LT(
+        (transform_point(body, generic.teeth_lower.vertices[v]) - without.teeth_lower.vertices[v]).norm(),
+        1e-9);
 }
 
 TEST(SkullFit, SaysWhatIsWrong) {
@@ -230,23 +231,6 @@ TEST(Exterior, ABagOfTrianglesIsJudgedAsTheWeldedMesh) {
       EXPECT_FALSE(open) << "a closed ball has no rim";
   for (const Vec3& p : {Vec3(0.02, 0.03, 0.04), Vec3(0.08, 0.08, 0), Vec3(0, -0.099, 0)})
     EXPECT_NEAR(whole.closest(p).signed_distance, apart.closest(p).signed_distance, 5e-6);
-}
-
-TEST(Procrustes, FindsScaleRotationAndShift) {
-  const std::vector<Vec3> source{{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {0, 0, 3}, {1, 1, 1}};
-  const Mat3 turn = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
-  std::vector<Vec3> target;
-  for (const Vec3& p : source)
-    target.push_back(2.5 * turn * p + Vec3(4, 5, 6));
-  const Mat4 found = similarity(source, target);
-  for (size_t i = 0; i < source.size(); ++i)
-    EXPECT_LT((transform(found, source[i]) - target[i]).norm(), 1e-12);
-  EXPECT_NEAR(std::cbrt(found.topLeftCorner<3, 3>().determinant()), 2.5, 1e-12);
-  std::vector<Vec3> mirror = source;
-  for (Vec3& p : mirror)
-    p.x() = -p.x();
-  const Mat4 proper = similarity(source, mirror);
-  EXPECT_GT((proper.topLeftCorner<3, 3>().determinant()), 0) << "never a mirror image";
 }
 
 }  // namespace
