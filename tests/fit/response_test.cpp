@@ -85,6 +85,15 @@ TEST_F(ShapeResponse, EveryShapeShowsItsWeight) {
   EXPECT_GE(shapes, 30);
 }
 
+TEST_F(ShapeResponse, APoseDoesNotDependOnThePosesBefore) {
+  for (const char* shape : {"mouthPucker", "mouthRollUpper", "jawOpen"}) {
+    const std::vector<double> first = posed(shape, 1.0F, 0.0F);
+    posed("mouthClose", 1.0F, 1.0F);
+    posed("mouthSmileLeft", 0.6F, 0.0F);
+    EXPECT_EQ(posed(shape, 1.0F, 0.0F), first) << shape;
+  }
+}
+
 TEST_F(ShapeResponse, GazeTurnsTheEyesInProportion) {
   const int32_t pitch = asset->find_channel("eye_pitch_left");
   ASSERT_GE(pitch, 0);
