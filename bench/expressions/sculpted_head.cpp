@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "cli/embedded_head.h"
 #include "cli/fit_shapes.h"
 #include "formats/scene.h"
 #include "geometry/error.h"
@@ -59,6 +60,12 @@ std::vector<SculptedHead> sculpted_heads() {
   own("avatar", "asian_business");
   own("facecap", "facecap_plain");
   return heads;
+}
+
+SculptedHead generic_head() {
+  const fs::path head = fs::temp_directory_path() / "fascia_embedded_head.obj";
+  cli::write_embedded_head(head, fs::path(head).replace_extension(".mrk.json"));
+  return {"embedded", "generic", head, {}, {}};
 }
 
 fs::path rig_of(const SculptedHead& head, const std::string& detail) {

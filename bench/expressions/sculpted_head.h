@@ -22,6 +22,9 @@ struct SculptedHead {
 /// the data are not there.
 std::vector<SculptedHead> sculpted_heads();
 
+/// The generic head as a file of its own, named "embedded"; it has no shapes.
+SculptedHead generic_head();
+
 /// The rig of `head` at `detail`, built by the tool with landmarks found, as a user would; a rig is kept in
 /// the temporary folder and built anew when the head's file or the tool has changed. Throws fascia::Error
 /// with the tool's message when it is refused.

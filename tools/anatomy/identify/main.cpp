@@ -21,7 +21,6 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "cli/embedded_head.h"
 #include "geometry/error.h"
 #include "tools/anatomy/identify/responses.h"
 #include "tools/anatomy/identify/table_file.h"
@@ -109,11 +108,7 @@ void fit_responses(const Request& request) {
   for (const bench::SculptedHead& head : bench::sculpted_heads())
     if (wanted.contains(head.name)) heads.push_back(head);
   const std::filesystem::path folder = request.table;
-  const std::filesystem::path head = std::filesystem::temp_directory_path() / "fascia_embedded_head.obj";
-  if (wanted.contains("embedded")) {
-    cli::write_embedded_head(head, std::filesystem::path(head).replace_extension(".mrk.json"));
-    heads.push_back({"embedded", "generic", head, {}, {}});
-  }
+  if (wanted.contains("embedded")) heads.push_back(bench::generic_head());
   if (heads.empty()) throw Error("none of these heads lies in the measured data");
   identify_responses(folder, heads, request.level, request.responses);
 }
