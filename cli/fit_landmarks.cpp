@@ -10,6 +10,7 @@
 #include "builder/rigging/gltf_source.h"
 #include "builder/spatial/surface_query.h"
 #include "cli/still_landmarks.h"
+#include "fit/live/landmark_sets.h"
 #include "formats/landmark_file.h"
 #include "geometry/alignment.h"
 #include "geometry/error.h"
@@ -20,38 +21,6 @@ namespace {
 
 using nlohmann::json;
 using Points = std::map<std::string, Vec3>;
-
-/// The points of the 68-point mark-up that have a landmark of ours, from 0. C. Sagonas, G. Tzimiropoulos, S.
-/// Zafeiriou, M. Pantic. 300 faces in-the-wild challenge. 2013. Its right is the subject's.
-const std::vector<std::pair<int, const char*>> ibug_68 = {
-    {8, "menton"},
-    {17, "superciliare_laterale_right"},
-    {19, "superciliare_right"},
-    {21, "superciliare_mediale_right"},
-    {22, "superciliare_mediale_left"},
-    {24, "superciliare_left"},
-    {26, "superciliare_laterale_left"},
-    {27, "sellion"},
-    {29, "rhinion"},
-    {30, "pronasale"},
-    {31, "alare_right"},
-    {33, "subnasale"},
-    {35, "alare_left"},
-    {36, "exocanthion_right"},
-    {37, "palpebrale_superius_right"},
-    {39, "endocanthion_right"},
-    {41, "palpebrale_inferius_right"},
-    {42, "endocanthion_left"},
-    {44, "palpebrale_superius_left"},
-    {45, "exocanthion_left"},
-    {46, "palpebrale_inferius_left"},
-    {48, "cheilion_right"},
-    {50, "crista_philtri_right"},
-    {51, "labiale_superius"},
-    {52, "crista_philtri_left"},
-    {54, "cheilion_left"},
-    {57, "labiale_inferius"},
-};
 
 struct Frame {
   double time = 0.0;
@@ -111,13 +80,26 @@ class Reader {
     return p;
   }
 
+  /// The landmarks that a detector's points show; one whose points it has not all seen (null) is left out.
   Points by_number(const json& list, const std::string& where) const {
-    if (!list.is_array() || list.size() != 68)
-      fail(where + " are not the 68 points of iBUG; give others by our names under 'landmarks'");
+    const auto& sets = fit::landmark_sets();
+    const auto set = std::find_if(sets.begin(), sets.end(), [&](const fit::LandmarkSet& known) {
+      return list.is_array() && known.points == list.size();
+    });
+    if (set == sets.end())
+      fail(where +
+           " are not the 68 points of iBUG or the 478 of MediaPipe; give others by our names under "
+           "'landmarks'");
     Points points;
-    for (const auto& [index, name] : ibug_68)
-      if (!list[static_cast<size_t>(index)].is_null())  // one the detector did not see
-        points[name] = point(list[static_cast<size_t>(index)], where + " " + std::to_string(index));
+    for (const fit::LandmarkSet::Entry& entry : set->entries) {
+      if (std::any_of(entry.points.begin(), entry.points.end(),
+                      [&](uint32_t p) { return list[p].is_null(); }))
+        continue;
+      Vec3 sum = Vec3::Zero();
+      for (const uint32_t p : entry.points)
+        sum += point(list[p], where + " " + std::to_string(p));
+      points[entry.landmark] = sum / static_cast<double>(entry.points.size());
+    }
     return points;
   }
 

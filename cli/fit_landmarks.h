@@ -6,8 +6,8 @@ namespace fascia::cli {
 
 /// Opens landmarks as what is to be fitted: a landmark file (formats/landmark_file.h) of our names, or
 ///
-///     {"units": "mm", "points": [[x, y, z], ...68]}                            one face by the 68 points of
-///     iBUG
+///     {"units": "mm", "points": [[x, y, z], ...]}          one face by the 68 points of iBUG or the 478 of
+///     MediaPipe, null for one that was not seen
 ///     {"units": "mm", "frames": [{"time": 0.0, "points": [...]}, ...]}         a take
 ///     {"units": "mm", "frames": [{"time": 0.0, "landmarks": {NAME: [x, y, z]}}, ...]}
 ///

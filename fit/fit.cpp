@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fit/live/bounded_step.h"
+#include "fit/live/dearness.h"
 #include "geometry/alignment.h"
 #include "geometry/error.h"
 
@@ -14,19 +16,6 @@ namespace {
 constexpr double square_mm = 1e6;       // of a square metre
 constexpr double along_surface = 0.03;  // what a vertex that may slide costs along the surface, of across it
 
-/// How much more a channel costs than one that the expression tables use to the full: 1 to 4.
-std::vector<double> dearness_of(const rig::Actuation& actuation) {
-  std::vector<double> usage(actuation.channels.size(), 0.0);
-  for (const rig::NamedSet& set : actuation.sets)
-    for (size_t e = 0; e < set.weights.size(); ++e) {
-      double& most = usage[set.channel_indices[e]];
-      most = std::max(most, std::min(1.0, std::abs(static_cast<double>(set.weights[e]))));
-    }
-  for (double& value : usage)
-    value = 1.0 / (0.25 + 0.75 * value);
-  return usage;
-}
-
 using RowsByAxis = Eigen::Map<const Eigen::MatrixXd, 0, Eigen::Stride<Eigen::Dynamic, 3>>;
 
 /// Rows `axis`, `axis` + 3, ... of a matrix of stacked 3-vectors.
@@ -35,20 +24,10 @@ RowsByAxis axis_rows(const Eigen::MatrixXd& matrix, int axis) {
                     Eigen::Stride<Eigen::Dynamic, 3>(matrix.rows(), 3));
 }
 
-/// The point that half a quadratic, slope y + curvature y^2 / 2 + price |value + y| / 2, is least at, within
-/// limits.
-double best_move(double slope, double curvature, double price, double value, double least, double most) {
-  if (!(curvature > 0.0)) return 0.0;
-  const double free = value - slope / curvature, threshold = 0.5 * price / curvature;
-  const double shrunk = free > threshold ? free - threshold : free < -threshold ? free + threshold : 0.0;
-  return std::clamp(shrunk, least, most) - value;
-}
-
 }  // namespace
 
 Fitter::Fitter(Subject& subject, const FitOptions& options)
     : subject_(&subject),
-      options_(options),
       sensitivity_(subject.model()),
       dearness_(dearness_of(subject.file().rig.actuation)) {
   for (uint32_t c = 0; c < subject.channels().size(); ++c)
@@ -61,6 +40,14 @@ Fitter::Fitter(Subject& subject, const FitOptions& options)
     if (at < 0) throw Error(std::string("the rig has no channel '") + name + "': build it again");
     fitted_.push_back(static_cast<uint32_t>(at));
   }
+  set_options(options);
+}
+
+void Fitter::set_options(const FitOptions& options) {
+  options_ = options;
+  is_held_.assign(subject_->channels().size(), false);
+  for (const uint32_t channel : options_.held)
+    is_held_.at(channel) = true;
 }
 
 FitResult Fitter::fit(const Target& target) {
@@ -194,28 +181,17 @@ Eigen::VectorXd Fitter::step(const Eigen::VectorXd& slope, const std::vector<flo
     curvature(i, i) += damping * hessian_(i, i) +
                        options_.ridge * dearness_[fitted_[static_cast<size_t>(i)]] +
                        (last_.empty() ? 0.0 : options_.smoothness) + 1e-12;
-  std::vector<bool> is_held(static_cast<size_t>(count), false);
-  for (size_t i = 0; i < is_held.size(); ++i)
-    is_held[i] = std::find(options_.held.begin(), options_.held.end(), fitted_[i]) != options_.held.end();
-  Eigen::VectorXd move = Eigen::VectorXd::Zero(count), pull = slope;  // pull = slope + curvature move
-  for (int sweep = 0; sweep < 400; ++sweep) {
-    double largest = 0.0;
-    for (Eigen::Index i = 0; i < count; ++i) {
-      if (is_held[static_cast<size_t>(i)]) continue;
-      const uint32_t c = fitted_[static_cast<size_t>(i)];
-      const rig::Channel& channel = subject_->channels()[c];
-      const double value = values[c];
-      const double next =
-          best_move(pull[i] - curvature(i, i) * move[i], curvature(i, i), options_.sparsity * dearness_[c],
-                    value, channel.minimum, channel.maximum);
-      const double change = next - move[i];
-      if (change == 0.0) continue;
-      pull += change * curvature.col(i);
-      move[i] = next;
-      largest = std::max(largest, std::abs(change));
-    }
-    if (largest < 1e-6) break;
+  std::vector<StepBound> bounds(fitted_.size());
+  for (size_t i = 0; i < bounds.size(); ++i) {
+    const rig::Channel& channel = subject_->channels()[fitted_[i]];
+    bounds[i] = {static_cast<double>(channel.minimum), static_cast<double>(channel.maximum),
+                 options_.sparsity * dearness_[fitted_[i]], is_held_[fitted_[i]]};
   }
+  Eigen::VectorXd move(count), pull;
+  bounded_step(
+      curvature, slope, [&](Eigen::Index i) -> const StepBound& { return bounds[static_cast<size_t>(i)]; },
+      [&](Eigen::Index i) { return static_cast<double>(values[fitted_[static_cast<size_t>(i)]]); }, move,
+      pull);
   return move;
 }
 

@@ -75,7 +75,7 @@ class Fitter {
   Linearised linearised(const Target& target, const std::vector<float>& values);
 
   /// Other costs and steps from now on.
-  void set_options(const FitOptions& options) { options_ = options; }
+  void set_options(const FitOptions& options);
 
  private:
   FitResult solve(const Target& target, bool is_next);
@@ -99,6 +99,7 @@ class Fitter {
   sim::Sensitivity sensitivity_;
   std::vector<uint32_t> driven_;    ///< channels fitted that tissue listens to
   std::vector<uint32_t> fitted_;    ///< those, then the jaw's
+  std::vector<bool> is_held_;       ///< by channel
   std::vector<double> dearness_;    ///< by channel: cost beside that of a common one
   std::vector<float> last_;         ///< the last frame's activations
   std::vector<float> linear_at_;    ///< where the columns below were taken

@@ -79,6 +79,13 @@ const fascia_api table = {
     .face_node_forces = fascia_face_node_forces,
     .face_fibre_forces = fascia_face_fibre_forces,
     .face_gradient = fascia_face_gradient,
+    .default_fit_options = fascia_default_fit_options,
+    .fit_create = fascia_fit_create,
+    .fit_release = fascia_fit_release,
+    .fit_get_info = fascia_fit_get_info,
+    .fit_set_neutral = fascia_fit_set_neutral,
+    .fit_push = fascia_fit_push,
+    .fit_reset = fascia_fit_reset,
     .face_member_gradient = fascia_face_member_gradient,
 };
 

@@ -59,6 +59,7 @@ class Asset {
  public:
   explicit Asset(std::span<const uint8_t> bytes);
 
+  const rig::RigFile& file() const { return file_; }
   const rig::Rig& rig() const { return file_.rig; }
   const std::vector<rig::Primitive>& primitives() const { return file_.primitives; }
   /// The binding of primitive `primitive` at `level`, or null.

@@ -3,8 +3,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include "sim/block_solve.h"
 #include "sim/formulas/activation_force.h"
 #include "sim/formulas/elements.h"
 
@@ -79,6 +79,8 @@ Sensitivity::Sensitivity(const FaceModel& model)
       product_(model.rest().size()) {
   for (size_t i = 0; i < model.unknowns().size(); ++i)
     unknown_of_node_[model.unknowns()[i]] = static_cast<int32_t>(i);
+  for (const uint32_t node : model.unknowns())
+    unknown_places_.push_back(model.rest()[node]);
   const Lattice& lattice = model.lattice();
   uint32_t channels = 0;
   for (const auto list : {lattice.fibre_channel, lattice.carrier_channel, lattice.pressure_channel})
@@ -88,21 +90,65 @@ Sensitivity::Sensitivity(const FaceModel& model)
 }
 
 bool Sensitivity::linearise(const Controls& controls, std::span<const Vec3> x, bool keeps_factor) {
+  if (keeps_factor) {
+    find_slopes(controls, x);
+    return true;
+  }
+  begin(controls, x);
+  advance(std::numeric_limits<double>::infinity());
+  return is_sound();
+}
+
+void Sensitivity::find_slopes(const Controls& controls, std::span<const Vec3> x) {
   pose_.assign(x.begin(), x.end());
   find_jaw_forces(controls);
   model_->place(controls, frame_);
   model_->find_facing(pose_.data(), frame_);
   find_forces(controls);
-  if (keeps_factor) return true;
+}
+
+void Sensitivity::begin(const Controls& controls, std::span<const Vec3> x) {
+  find_slopes(controls, x);
   model_->find_curvature(frame_, pose_.data(), curvature_);
-  assemble();
-  if (factor_.info() != Eigen::Success) return false;
-  if (pulls_.cols() > 0) {
-    solved_pulls_ = block_solve(factor_, pulls_);
-    Eigen::MatrixXd small = pulls_.transpose() * solved_pulls_;
-    small.diagonal().array() += 1.0;
-    pull_factor_.compute(small);
+  gather_pulls();
+  factor_.forget();
+  is_held_up_ = is_assembled_ = false;
+}
+
+bool Sensitivity::advance(double work) {
+  if (!is_assembled_) {
+    assemble(1e-6);  // a touch of the rest stiffness keeps what nothing holds
+    is_assembled_ = true;
+    if (std::isfinite(work)) return false;
   }
+  if (!factor_.is_sound()) {
+    if (!factor_.advance(work)) return false;
+    if (!factor_.is_sound()) {
+      if (is_held_up_) return true;
+      is_held_up_ = true;
+      assemble(1e-3);
+      return advance(work);
+    }
+    if (std::isfinite(work)) return false;  // pulls are for another time
+  }
+  return solve_pulls(work);
+}
+
+/// Some columns of what the factor makes of the pulls; true when there are no more.
+bool Sensitivity::solve_pulls(double work) {
+  if (pulls_.cols() == 0) return true;
+  const double a_column = 2.0 * static_cast<double>(factor_.entries());
+  const Eigen::Index left = pulls_.cols() - pulls_done_,
+                     count = work < a_column * static_cast<double>(left)
+                                 ? std::max<Eigen::Index>(1, static_cast<Eigen::Index>(work / a_column))
+                                 : left;
+  solved_pulls_.middleCols(pulls_done_, count) =
+      factor_.solve(Eigen::MatrixXd(pulls_.middleCols(pulls_done_, count)));
+  pulls_done_ += count;
+  if (pulls_done_ < pulls_.cols()) return false;
+  Eigen::MatrixXd small = pulls_.transpose() * solved_pulls_;
+  small.diagonal().array() += 1.0;
+  pull_factor_.compute(small);
   return true;
 }
 
@@ -210,7 +256,8 @@ void Sensitivity::find_jaw_forces(const Controls& controls) {
   }
 }
 
-void Sensitivity::assemble() {
+/// The curvature but for fibres' pulls, with a share `held` of the rest stiffness on its diagonal.
+void Sensitivity::assemble(double held) {
   Triplets list;
   Blocks blocks{unknown_of_node_, list};
   add_stencils(curvature_.points, blocks);
@@ -228,26 +275,33 @@ void Sensitivity::assemble() {
         blocks.add(v.nodes[i], v.nodes[j], v.stiffness * v.slopes[i] * v.slopes[j].transpose());
   const auto size = static_cast<Eigen::Index>(3 * model_->unknowns().size());
   const auto& rest = model_->stiffness();
-  for (Eigen::Index i = 0; i < size; ++i)  // a touch of the rest stiffness keeps what nothing holds
-    list.emplace_back(i, i, 1e-6 * rest.coeff(i / 3, i / 3));
+  for (Eigen::Index i = 0; i < size; ++i)
+    list.emplace_back(i, i, held * rest.coeff(i / 3, i / 3));
   Eigen::SparseMatrix<double> matrix(size, size);
   matrix.setFromTriplets(list.begin(), list.end());
-  factor_.compute(matrix);
+  factor_.begin(matrix, unknown_places_);
+}
 
-  pulls_.setZero(size, static_cast<Eigen::Index>(curvature_.pulls.size()));
+void Sensitivity::gather_pulls() {
+  const auto size = static_cast<Eigen::Index>(3 * model_->unknowns().size());
+  Triplets list;
   for (size_t p = 0; p < curvature_.pulls.size(); ++p) {
     const auto& pull = curvature_.pulls[p];
     for (size_t i = pull.first; i < pull.first + pull.count; ++i) {
       const int32_t unknown = unknown_of_node_[curvature_.pull_nodes[i]];
-      if (unknown >= 0)
-        pulls_.col(static_cast<Eigen::Index>(p)).segment<3>(3 * unknown) +=
-            std::sqrt(pull.stiffness) * curvature_.pull_slopes[i];
+      const Vec3 slope = std::sqrt(pull.stiffness) * curvature_.pull_slopes[i];
+      for (int k = 0; unknown >= 0 && k < 3; ++k)
+        list.emplace_back(3 * unknown + k, static_cast<int>(p), slope[k]);
     }
   }
+  pulls_.resize(size, static_cast<Eigen::Index>(curvature_.pulls.size()));
+  pulls_.setFromTriplets(list.begin(), list.end());
+  solved_pulls_.resize(size, pulls_.cols());
+  pulls_done_ = 0;
 }
 
 Eigen::MatrixXd Sensitivity::solve(const Eigen::MatrixXd& right) const {
-  Eigen::MatrixXd solution = block_solve(factor_, right);
+  Eigen::MatrixXd solution = factor_.solve(right);
   if (pulls_.cols() > 0) solution -= solved_pulls_ * pull_factor_.solve(pulls_.transpose() * solution);
   return solution;
 }

@@ -1,12 +1,12 @@
 #pragma once
 
 #include <Eigen/Cholesky>
-#include <Eigen/SparseCholesky>
 #include <memory>
 #include <vector>
 
 #include "sim/curvature.h"
 #include "sim/face_model.h"
+#include "sim/front_factor.h"
 
 namespace fascia::sim {
 
@@ -27,6 +27,15 @@ class Sensitivity {
   /// again: `adjoint` stays exact and takes more iterations, columns are those of where the factor was made.
   bool linearise(const Controls& controls, std::span<const Vec3> x, bool keeps_factor = false);
 
+  /// The same in parts, for a frame of a live program to bear one of them: `begin` takes the pose and what
+  /// drives it, each `advance` does one thing (the matrix, or about `work` multiplications of its factor) and
+  /// is true when nothing is left to do; `is_sound` then says whether there is a factor. `factor_work` is
+  /// that of a whole factor.
+  void begin(const Controls& controls, std::span<const Vec3> x);
+  bool advance(double work);
+  bool is_sound() const { return factor_.is_sound(); }
+  double factor_work() const { return factor_.work(); }
+
   /// d position / d activation, metres: 3 x #nodes rows, one column for each of `channels`; zero where
   /// prescribed.
   Eigen::MatrixXd columns(std::span<const uint32_t> channels) const;
@@ -46,9 +55,12 @@ class Sensitivity {
     uint32_t node;
     Vec3 slope;  ///< d gradient / d activation, newton
   };
+  void find_slopes(const Controls& controls, std::span<const Vec3> x);
   void find_forces(const Controls& controls);
   void find_jaw_forces(const Controls& controls);
-  void assemble();
+  void assemble(double held);
+  void gather_pulls();
+  bool solve_pulls(double work);
   Eigen::MatrixXd solve(const Eigen::MatrixXd& right) const;  ///< over unknowns
   Eigen::VectorXd hessian_times(const Eigen::VectorXd& direction) const;
 
@@ -60,10 +72,15 @@ class Sensitivity {
   std::vector<std::vector<Force>> forces_;  ///< by channel
   Eigen::MatrixXd jaw_forces_;              ///< unknowns x 3
   Eigen::MatrixXd jaw_carried_;             ///< 3 #nodes x 3: how prescribed nodes go with the jaw
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor_;
+  FrontFactor factor_;
+  bool is_assembled_ = false;
+  bool is_held_up_ = false;   ///< the last matrix has had more of the rest stiffness than it wants
+  Positions unknown_places_;  ///< at rest
   // Fibres' pulls, which couple all nodes along them, are kept out of the factor and brought back by the
   // identity of Sherman, Morrison and Woodbury.
-  Eigen::MatrixXd pulls_, solved_pulls_;
+  Eigen::SparseMatrix<double> pulls_;
+  Eigen::MatrixXd solved_pulls_;
+  Eigen::Index pulls_done_ = 0;  ///< columns of it
   Eigen::LDLT<Eigen::MatrixXd> pull_factor_;
   mutable Positions work_, direction_, product_;
 };

@@ -21,7 +21,7 @@ const std::map<std::string, std::set<std::string>> rooms = {
     {"sim", {}},
     {"builder", {"geometry", "formats", "anatomy", "rig", "sim", "gltf"}},
     {"fit", {"geometry", "gltf", "rig", "sim", "builder/spatial"}},
-    {"runtime", {"rig/model", "rig/read", "gltf/read", "sim", "geometry"}},
+    {"runtime", {"rig/model", "rig/read", "gltf/read", "sim", "geometry", "fit/live"}},
     {"check", {"geometry", "anatomy", "rig/model", "rig/read", "builder/spatial"}},
     {"batch", {"geometry", "formats"}},
     {"snapshot", {"geometry", "formats", "rig/model", "rig/read"}},

@@ -5,6 +5,7 @@
 #define FASCIA_API_H
 
 #include "fascia/fascia.h"
+#include "fascia/fit.h"
 #include "fascia/gpu.h"
 #include "fascia/research.h"
 
@@ -95,6 +96,15 @@ typedef struct fascia_api {
   fascia_result (*face_node_forces)(fascia_face* face, float* to, size_t capacity);
   fascia_result (*face_fibre_forces)(fascia_face* face, float* to, size_t capacity);
   fascia_result (*face_gradient)(fascia_face* face, const float* const* slopes, float* by_channel);
+  fascia_fit_options (*default_fit_options)(void);
+  fascia_result (*fit_create)(fascia_asset* asset, const fascia_fit_landmarks* landmarks,
+                              const fascia_fit_options* options, fascia_fit** fit);
+  void (*fit_release)(fascia_fit* fit);
+  fascia_result (*fit_get_info)(const fascia_fit* fit, fascia_fit_info* info);
+  fascia_result (*fit_set_neutral)(fascia_fit* fit, const float* points, const float* weights);
+  fascia_result (*fit_push)(fascia_fit* fit, const float* points, const float* weights,
+                            fascia_fit_result* result);
+  fascia_result (*fit_reset)(fascia_fit* fit);
   fascia_result (*face_member_gradient)(const fascia_face* face, uint32_t set, const float* by_channel,
                                         float* by_member);
 } fascia_api;

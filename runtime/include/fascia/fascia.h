@@ -23,8 +23,9 @@
  * grow at the end only. Texts are UTF-8, end with 0, and belong to the asset or curves they came from.
  *
  * Beside this header there are fascia/gpu.h (vertex data for skinning on the graphics card),
- * fascia/research.h (nodes, forces, energies, derivatives), fascia/api.h (all functions as one table, for
- * hosts that load the library themselves) and fascia/fascia.hpp (C++20).
+ * fascia/fit.h (muscles from a stream of landmarks), fascia/research.h (nodes, forces, energies,
+ * derivatives), fascia/api.h (all functions as one table, for hosts that load the library themselves) and
+ * fascia/fascia.hpp (C++20).
  *
  * Units and axes. Metres and radians unless a space says otherwise. Left and right are the subject's.
  */

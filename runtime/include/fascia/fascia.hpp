@@ -24,6 +24,7 @@
 #include <vector>
 
 #include "fascia/fascia.h"
+#include "fascia/fit.h"
 #include "fascia/gpu.h"
 #include "fascia/research.h"
 
@@ -238,6 +239,64 @@ class Face {
   Asset asset_;
   std::unique_ptr<fascia_face, Release> handle_;
   std::size_t channel_count_ = 0;
+};
+
+// Muscles and head pose from a stream of landmarks; moves, does not copy. For one thread at a time.
+class Fit {
+ public:
+  // `set` is a detector's mark-up, "ibug68" or "mediapipe478".
+  Fit(const Asset& asset, const std::string& set,
+      const fascia_fit_options& options = fascia_default_fit_options()) {
+    auto landmarks = sized<fascia_fit_landmarks>();
+    landmarks.set = set.c_str();
+    make(asset, landmarks, options);
+  }
+  // Landmarks of the rig by name, one a point.
+  Fit(const Asset& asset, std::span<const char* const> names,
+      const fascia_fit_options& options = fascia_default_fit_options()) {
+    auto landmarks = sized<fascia_fit_landmarks>();
+    landmarks.names = names.data();
+    landmarks.count = static_cast<std::uint32_t>(names.size());
+    make(asset, landmarks, options);
+  }
+
+  fascia_fit_info info() const {
+    auto info = sized<fascia_fit_info>();
+    check(fascia_fit_get_info(handle(), &info));
+    return info;
+  }
+  // `weights` has one for each point, or is empty.
+  void set_neutral(std::span<const float> points, std::span<const float> weights = {}) {
+    check_sizes(points, weights);
+    check(fascia_fit_set_neutral(handle(), points.data(), weights.empty() ? nullptr : weights.data()));
+  }
+  // What it points at is valid until the next call.
+  fascia_fit_result push(std::span<const float> points, std::span<const float> weights = {}) {
+    check_sizes(points, weights);
+    auto result = sized<fascia_fit_result>();
+    check(fascia_fit_push(handle(), points.data(), weights.empty() ? nullptr : weights.data(), &result));
+    return result;
+  }
+  void reset() { check(fascia_fit_reset(handle())); }
+
+  fascia_fit* handle() const { return handle_.get(); }
+
+ private:
+  void make(const Asset& asset, const fascia_fit_landmarks& landmarks, const fascia_fit_options& options) {
+    fascia_fit* handle = nullptr;
+    check(fascia_fit_create(asset.handle(), &landmarks, &options, &handle));
+    handle_.reset(handle);
+  }
+  void check_sizes(std::span<const float> points, std::span<const float> weights) const {
+    const fascia_fit_info known = info();
+    if (points.size() != std::size_t{known.point_count} * known.dimensions ||
+        (!weights.empty() && weights.size() != known.point_count))
+      throw Error(FASCIA_ERROR_ARGUMENT, "the points or weights are not as many as a frame has");
+  }
+  struct Release {
+    void operator()(fascia_fit* fit) const { fascia_fit_release(fit); }
+  };
+  std::unique_ptr<fascia_fit, Release> handle_;
 };
 
 }  // namespace fascia::api

@@ -1,0 +1,153 @@
+/* From a stream of 68 landmarks to muscles: capture RIG.glb STREAM.csv|- [-o CURVES.csv] [--no-neutral]
+ *
+ * Prints milliseconds a frame and what is left between points and fitted face. */
+#define _POSIX_C_SOURCE 199309L
+#include <fascia/fit.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+enum { points = 68, numbers = 3 * points };
+
+/* The whole of a file; NULL when it cannot be read. */
+static unsigned char* read_file(const char* path, size_t* size) {
+  FILE* file = fopen(path, "rb");
+  unsigned char* bytes = NULL;
+  long length;
+  if (file == NULL) return NULL;
+  if (fseek(file, 0, SEEK_END) == 0 && (length = ftell(file)) > 0 && fseek(file, 0, SEEK_SET) == 0) {
+    bytes = malloc((size_t)length);
+    *size = bytes == NULL ? 0 : fread(bytes, 1, (size_t)length, file);
+    if (*size != (size_t)length) {
+      free(bytes);
+      bytes = NULL;
+    }
+  }
+  fclose(file);
+  return bytes;
+}
+
+static int fail(const char* what, const char* message) {
+  fprintf(stderr, "capture: %s: %s\n", what, message);
+  return 1;
+}
+
+static double now_ms(void) {
+  struct timespec time;
+  clock_gettime(CLOCK_MONOTONIC, &time);
+  return 1e3 * (double)time.tv_sec + 1e-6 * (double)time.tv_nsec;
+}
+
+/* A line of the stream: seconds, then the points, NAN where a field is empty. 0 when it is none. */
+static int parse(char* line, double* seconds, float* to) {
+  char *at = line, *end;
+  int i;
+  *seconds = strtod(at, &end);
+  if (end == at) return 0;
+  for (i = 0; i < numbers; ++i) {
+    at = end;
+    if (*at != ',') return 0;
+    to[i] = (float)strtod(++at, &end);
+    if (end == at) to[i] = NAN;
+  }
+  while (*end == '\r' || *end == '\n' || *end == ' ')
+    ++end;
+  return *end == '\0';
+}
+
+/* Plays the stream; what it is called in messages is `name`. */
+static int play(FILE* stream, const char* name, fascia_fit* fit, const fascia_channels* channels,
+                FILE* curves, int has_neutral) {
+  static char line[1 << 14];
+  static float frame[numbers];
+  fascia_fit_result result = {0};
+  double seconds, before, took, total = 0, slowest = 0, residual = 0;
+  int number = 0, frames = 0;
+  uint32_t c;
+  result.struct_size = sizeof result;
+  while (fgets(line, sizeof line, stream) != NULL) {
+    ++number;
+    if (!parse(line, &seconds, frame)) {
+      if (number == 1) continue; /* the heading */
+      fprintf(stderr, "capture: %s, line %d: not a time and 68 points of x, y, z\n", name, number);
+      return 1;
+    }
+    if (frames == 0 && has_neutral && fascia_fit_set_neutral(fit, frame, NULL) != FASCIA_OK)
+      return fail("the first frame", fascia_last_message());
+    before = now_ms();
+    if (fascia_fit_push(fit, frame, NULL, &result) != FASCIA_OK) return fail(name, fascia_last_message());
+    took = now_ms() - before;
+    if (frames > 0) total += took; /* the first frame has the face to find */
+    if (frames > 0 && took > slowest) slowest = took;
+    residual += result.residual;
+    ++frames;
+    if (curves == NULL) continue;
+    fprintf(curves, "%.6g", seconds);
+    for (c = 0; c < channels->count; ++c)
+      fprintf(curves, ",%.5g", result.values[c]);
+    fprintf(curves, "\n");
+  }
+  if (frames < 2) return fail(name, "fewer than two frames");
+  printf("%d frames: %.2f ms a frame, slowest %.2f ms, %.3f mm left\n", frames, total / (frames - 1), slowest,
+         1e3 * residual / frames);
+  return 0;
+}
+
+int main(int argc, char** argv) {
+  const char *rig = NULL, *stream_path = NULL, *curves_path = NULL;
+  fascia_asset* asset = NULL;
+  fascia_fit* fit = NULL;
+  fascia_fit_landmarks landmarks = {0};
+  fascia_channels channels = {0};
+  FILE *stream, *curves = NULL;
+  unsigned char* bytes;
+  size_t size = 0;
+  int i, has_neutral = 1, status;
+  uint32_t c;
+
+  for (i = 1; i < argc; ++i) {
+    if (strcmp(argv[i], "-o") == 0 && i + 1 < argc)
+      curves_path = argv[++i];
+    else if (strcmp(argv[i], "--no-neutral") == 0)
+      has_neutral = 0;
+    else if (rig == NULL)
+      rig = argv[i];
+    else
+      stream_path = argv[i];
+  }
+  if (rig == NULL || stream_path == NULL) {
+    fprintf(stderr, "usage: capture RIG.glb STREAM.csv|- [-o CURVES.csv] [--no-neutral]\n");
+    return 2;
+  }
+  bytes = read_file(rig, &size);
+  if (bytes == NULL) return fail(rig, "cannot be read");
+  if (fascia_asset_load(bytes, size, &asset) != FASCIA_OK) return fail(rig, fascia_last_message());
+  free(bytes);
+  channels.struct_size = sizeof channels;
+  if (fascia_asset_get_channels(asset, &channels) != FASCIA_OK) return fail(rig, fascia_last_message());
+
+  landmarks.struct_size = sizeof landmarks;
+  landmarks.set = "ibug68";
+  if (fascia_fit_create(asset, &landmarks, NULL, &fit) != FASCIA_OK) return fail(rig, fascia_last_message());
+
+  stream = strcmp(stream_path, "-") == 0 ? stdin : fopen(stream_path, "r");
+  if (stream == NULL) return fail(stream_path, "cannot be read");
+  if (curves_path != NULL && (curves = fopen(curves_path, "w")) == NULL)
+    return fail(curves_path, "cannot be written");
+  if (curves != NULL) {
+    fprintf(curves, "time");
+    for (c = 0; c < channels.count; ++c)
+      fprintf(curves, ",%s", channels.names[c]);
+    fprintf(curves, "\n");
+  }
+  status = play(stream, stream_path, fit, &channels, curves, has_neutral);
+
+  if (stream != stdin) fclose(stream);
+  if (curves != NULL && fclose(curves) != 0) status = fail(curves_path, "cannot be written");
+  fascia_fit_release(fit);
+  fascia_asset_release(asset);
+  return status;
+}

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/SparseCore>
+#include <memory>
+#include <vector>
+
+#include "sim/realtime/dissection.h"
+#include "sim/vector.h"
+
+namespace fascia::sim {
+
+/// The Cholesky factor of a symmetric positive definite matrix over nodes in space, three rows a node, in
+/// double precision: multifrontal in the order of a nested dissection (Duff & Reid 1983, "The multifrontal
+/// solution of indefinite sparse symmetric linear equations"; Liu 1992), every front a dense block.
+///
+/// It may be made in parts, some fronts at a time, so that a frame of a live program bears a share of it.
+class FrontFactor {
+ public:
+  using Matrix = Eigen::SparseMatrix<double>;  ///< lower half in whole blocks of three rows and columns
+
+  /// Takes the matrix over the nodes `places`; its order is kept while the pattern stays. Then `advance` must
+  /// be called until it is done.
+  void begin(const Matrix& matrix, const Positions& places);
+  /// Factors fronts for about `work` multiplications; true when nothing is left to do.
+  bool advance(double work);
+  /// All at once.
+  bool compute(const Matrix& matrix, const Positions& places);
+  /// From now on there is no factor.
+  void forget() { is_sound_ = false; }
+  /// True when the factor is whole: not begun, and not when the matrix is not positive definite.
+  bool is_sound() const { return is_sound_; }
+
+  /// The solution for each column of `right` (3 x #nodes rows).
+  Eigen::MatrixXd solve(const Eigen::MatrixXd& right) const;
+
+  size_t entries() const { return values_.size(); }  ///< of the factor
+  double work() const { return work_; }              ///< multiplications of a whole factor, about
+
+ private:
+  struct Front {
+    Eigen::Index width = 0, below = 0;  ///< rows of the front, three a node
+    size_t values = 0;                  ///< of its panel, (width + below) x width
+    std::vector<uint32_t> children;
+    double work = 0.0;
+  };
+  void analyse(const Matrix& matrix, const Positions& places);
+  bool factor_front(size_t index);
+  void solve_some(const Eigen::Ref<const Eigen::MatrixXd>& right, Eigen::Ref<Eigen::MatrixXd> solution) const;
+
+  std::unique_ptr<const realtime::Dissection> dissection_;
+  std::vector<int> outer_, inner_;  ///< the pattern it was made for
+  std::vector<Front> fronts_;
+  std::vector<uint32_t> position_, local_;  ///< by node, by place in the order
+  std::vector<double> values_;
+  std::vector<Eigen::MatrixXd> left_;  ///< what each front leaves to its parent
+  Matrix matrix_;                      ///< both halves
+  size_t next_ = 0;
+  double work_ = 0.0;
+  bool is_sound_ = false;
+};
+
+}  // namespace fascia::sim
