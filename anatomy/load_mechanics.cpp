@@ -156,6 +156,11 @@ void read(const Section& in, mechanics::Lips& out) {
   in.value("roll_depth", "mm", out.roll_depth);
   in.value("roll_in", "deg", out.roll_in);
   in.value("roll_out", "deg", out.roll_out);
+  in.value("protrusion_height", "mm", out.protrusion_height);
+  in.value("protrusion_upper", "deg", out.protrusion_upper);
+  in.value("protrusion_lower", "deg", out.protrusion_lower);
+  in.value("protrusion_drive", "Pa/m", out.protrusion_drive);
+  in.value("protrusion_fade", "mm", out.protrusion_fade);
 }
 
 void read(const Section& in, mechanics::Vestibule& out) {

@@ -7,7 +7,9 @@
 namespace fascia::check {
 namespace {
 
-constexpr double nearest = 0.75, farthest = 1.55;  // of the globe's radius: lids lie between these
+// Of the globe's radius: lids lie between these, and beyond the last what else is before the eye, brow and
+// fold of the upper lid, as far from small eyes set deep.
+constexpr double nearest = 0.75, farthest = 1.55, outside = 2.6;
 
 }  // namespace
 
@@ -51,7 +53,7 @@ LidLook::LidLook(const Head& head, const Skin& skin, const Eye& eye, const Seam&
       eye_(eye),
       frame_(head.landmarks.at(left ? "exocanthion_left" : "exocanthion_right"),
              head.landmarks.at(left ? "endocanthion_left" : "endocanthion_right"), eye, left),
-      lids_(patch_about(skin.rest(), eye.centre, 1.7 * eye.radius)) {
+      lids_(patch_about(skin.rest(), eye.centre, (outside + 0.1) * eye.radius)) {
   for (size_t p = 0; p < head.parts.size(); ++p)
     if (head.parts[p].name == (left ? "eye_left" : "eye_right")) eyeball_.push_back(p);
   constexpr double more = 0.1;  // radians beyond the edges at rest
@@ -72,7 +74,8 @@ LidState LidLook::look(const std::vector<Vec3>& skin, const Shape& shape) const 
     double open = 0.0, sum = 0.0;
     for (double angle = low; angle < high; angle += step) {
       const Vec3 ray = frame_.direction(t, angle);
-      if (lids.blocked(eye_.centre + start * ray, -ray, reach)) continue;
+      if (lids.blocked(eye_.centre + outside * eye_.radius * ray, -ray, (outside - nearest) * eye_.radius))
+        continue;
       open += step * eye_.radius;
       sum += angle * step * eye_.radius;
     }

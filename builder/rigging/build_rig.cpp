@@ -165,8 +165,10 @@ BuildResult build_rig(const formats::Scene& scene, const formats::LandmarkFile& 
   result.rig.smas = rig_smas(smas, skull, anatomy);
   result.rig.actuation = rig_actuation(anatomy, result.rig.muscles);
   result.rig.input_to_metres = head.input_to_metres.cast<float>();
-  const tissue::TissueInputs inputs =
+  tissue::TissueInputs inputs =
       tissue_inputs(opened.scene, head, skull, smas, points, anatomy.mechanics, result.rig);
+  inputs.has_muscles_by_hand = !options.edits.muscles.empty() || !options.edits.new_muscles.empty() ||
+                               !options.edits.muscle_files.empty();
   result.rig.tissue =
       stages.run("tissue", [&] { return build_tissue(opened.scene, head, inputs, options, report); });
   if (opened.changed()) result.opened = std::move(opened.scene);

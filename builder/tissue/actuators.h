@@ -21,8 +21,8 @@ void add_lids(const TissueInputs& inputs, const FaceRegion& region, const Column
 void add_pressures(const TissueInputs& inputs, const Columns& columns, rig::TissueLevel& level);
 
 /// Lips rolled over the teeth (`lip_roll_upper_<side>`, `lip_roll_lower_<side>` above 0) or turned out (below
-/// 0).
-void add_lip_rolls(const TissueInputs& inputs, const FaceRegion& region, const Beneath& beneath,
+/// 0), and swung forward by the peripheral part of the orbicularis oris (`orbicularis_oris_peripheral_...`).
+void add_lip_turns(const TissueInputs& inputs, const FaceRegion& region, const Beneath& beneath,
                    const Columns& columns, rig::TissueLevel& level);
 
 /// Lips drawn onto each other (`lip_seal_<side>`): strands from the edge of the one to that of the other,

@@ -5,6 +5,7 @@
 #include "builder/tissue/actuators.h"
 #include "builder/tissue/bind.h"
 #include "builder/tissue/elements.h"
+#include "builder/tissue/mirror.h"
 #include "geometry/error.h"
 #include "sim/energies.h"
 #include "sim/lattice.h"
@@ -58,7 +59,7 @@ rig::TissueLevel complete_level(const TissueInputs& inputs, const FaceRegion& re
   add_fibres(inputs, columns, level);
   add_lip_seal(inputs, columns, level);
   add_lids(inputs, region, columns, level);
-  add_lip_rolls(inputs, region, beneath, columns, level);
+  add_lip_turns(inputs, region, beneath, columns, level);
   add_pressures(inputs, columns, level);
   if (options.contact) {
     add_ligaments(inputs, columns, level);
@@ -73,11 +74,13 @@ rig::TissueLevel complete_level(const TissueInputs& inputs, const FaceRegion& re
 
 }  // namespace
 
-TissueResult build(const TissueInputs& inputs, const TissueOptions& options) {
-  if (!(inputs.mechanics.tissue.density > 0.0))
+TissueResult build(const TissueInputs& given, const TissueOptions& options) {
+  if (!(given.mechanics.tissue.density > 0.0))
     throw Error("the tissue needs the constants of the anatomy: fill TissueInputs::mechanics");
   TissueResult result;
-  const FaceRegion region = find_region(inputs, options);
+  const FaceRegion region = find_region(given, options);
+  const std::optional<Symmetry> symmetry = symmetry_of(given, region);
+  const TissueInputs inputs = symmetry && symmetry->is_exact ? with_mirrored_sides(given, *symmetry) : given;
   if (const std::string closed = closed_features(region); !closed.empty())
     result.warnings.push_back(closed +
                               " are closed in the skin, so they do not part: cut the mesh open there");
@@ -90,7 +93,7 @@ TissueResult build(const TissueInputs& inputs, const TissueOptions& options) {
     // The finest first: it takes longest.
     const size_t at = levels - 1 - k;
     const LevelOptions& wanted = options.levels[at];
-    const Columns columns = make_columns(inputs, region, beneath, wanted, options);
+    const Columns columns = make_columns(inputs, region, beneath, symmetry, wanted, options);
     rig::TissueLevel level = complete_level(inputs, region, beneath, wanted, options, columns);
     const std::vector<Follow> skin = follow_skin(inputs, region, columns);
     result.tissue.bindings[at] = bind_parts(inputs, region, columns, skin);

@@ -135,13 +135,68 @@ void place_layers(Columns& c) {
   }
 }
 
-}  // namespace
+/// A cut of the region, and of a mirrored one of each image, which come last, the vertex that it is one of.
+struct Cut {
+  RemeshResult remeshed;
+  std::vector<size_t> left;
+};
 
-Columns make_columns(const TissueInputs& inputs, const FaceRegion& region, const Beneath& beneath,
-                     const LevelOptions& level, const TissueOptions& options) {
-  RemeshResult remeshed = remesh(region.mesh, target_lengths(inputs, region, level, options));
-  settle_on_lid_edges(inputs, region, remeshed);
-  drop_slivers(remeshed);
+/// The region cut anew with the edge lengths that `level` wants.
+Cut cut_anew(const TissueInputs& inputs, const FaceRegion& region, const std::optional<Symmetry>& symmetry,
+             const LevelOptions& level, const TissueOptions& options) {
+  const std::vector<double> lengths = target_lengths(inputs, region, level, options);
+  const auto finished = [&](RemeshResult remeshed) {
+    settle_on_lid_edges(inputs, region, remeshed);
+    drop_slivers(remeshed);
+    return remeshed;
+  };
+  if (symmetry) {
+    const HalfRegion half = left_half(region.mesh, *symmetry);
+    std::vector<double> half_lengths;
+    for (const SurfacePoint& place : half.source)
+      half_lengths.push_back(blend(region, place, lengths));
+    const RemeshResult own = finished(on_region(remesh(half.mesh, half_lengths), half, *symmetry));
+    Cut cut;
+    if (auto full = with_images(own, region, *symmetry, cut.left)) {
+      cut.remeshed = symmetry->is_exact ? std::move(*full) : finished(std::move(*full));
+      if (!symmetry->is_exact) cut.left.clear();
+      return cut;
+    }
+  }
+  return {finished(remesh(region.mesh, lengths)), {}};
+}
+
+/// Makes what the columns are like the same on both sides.
+void take_from_left(const Symmetry& symmetry, const std::vector<size_t>& left, Columns& c) {
+  const auto n = static_cast<size_t>(c.count());
+  const size_t first = n - left.size();
+  const auto copy = [&](auto& values) {
+    for (size_t k = 0; k < left.size(); ++k)
+      values[first + k] = values[left[k]];
+  };
+  for (auto* list : {&c.smas_depth, &c.inner_depth, &c.lower_lip, &c.jaw_weight, &c.feature_distance})
+    copy(*list);
+  for (auto* list : {&c.outer, &c.rim, &c.bone})
+    copy(*list);
+  for (const Opening opening : {Opening::mouth, Opening::nostril})
+    copy(c.opening_distance[static_cast<size_t>(opening)]);
+  std::vector<double>& eye_left = c.opening_distance[static_cast<size_t>(Opening::eye_left)];
+  std::vector<double>& eye_right = c.opening_distance[static_cast<size_t>(Opening::eye_right)];
+  std::vector<bool> has_image(first, false);
+  for (size_t k = 0; k < left.size(); ++k) {
+    eye_left[first + k] = eye_right[left[k]];
+    eye_right[first + k] = eye_left[left[k]];
+    c.normals[first + k] = symmetry.turned(c.normals[left[k]]);
+    has_image[left[k]] = true;
+  }
+  for (size_t v = 0; v < first; ++v) {
+    const Vec3 flat = c.normals[v] - symmetry.normal.dot(c.normals[v]) * symmetry.normal;
+    if (!has_image[v] && flat.norm() > 0.1) c.normals[v] = flat.normalized();
+  }
+}
+
+/// The columns at the places of `remeshed`, without areas and layers.
+Columns columns_at(const FaceRegion& region, const Beneath& beneath, RemeshResult remeshed) {
   Columns c;
   c.mesh = std::move(remeshed.mesh);
   c.source = std::move(remeshed.source);
@@ -168,14 +223,11 @@ Columns make_columns(const TissueInputs& inputs, const FaceRegion& region, const
       const auto v = static_cast<size_t>(i);
       c.rim[v] = c.outer[v] && blend(region, c.source[v], ends) > 0.25;
     }
-  c.area = vertex_areas(c.mesh);
   const std::vector<Vec3> own_normals = vertex_normals(c.mesh);
   c.normals.resize(n);
   c.bone.resize(n);
   for (auto* list : {&c.smas_depth, &c.inner_depth, &c.lower_lip, &c.jaw_weight})
     list->resize(n);
-  c.smas.resize(n);
-  c.inner.resize(n);
   for (size_t v = 0; v < n; ++v) {
     c.normals[v] = blend(region, c.source[v], beneath.normals);
     c.normals[v] = c.normals[v].norm() > 1e-6 ? Vec3(c.normals[v].normalized()) : own_normals[v];
@@ -185,6 +237,20 @@ Columns make_columns(const TissueInputs& inputs, const FaceRegion& region, const
     c.lower_lip[v] = blend(region, c.source[v], beneath.lower_lip);
     c.jaw_weight[v] = c.rim[v] ? 0.0 : blend(region, c.source[v], beneath.jaw_weight);
   }
+  return c;
+}
+
+}  // namespace
+
+Columns make_columns(const TissueInputs& inputs, const FaceRegion& region, const Beneath& beneath,
+                     const std::optional<Symmetry>& symmetry, const LevelOptions& level,
+                     const TissueOptions& options) {
+  Cut cut = cut_anew(inputs, region, symmetry, level, options);
+  Columns c = columns_at(region, beneath, std::move(cut.remeshed));
+  if (!cut.left.empty()) take_from_left(*symmetry, cut.left, c);
+  c.area = vertex_areas(c.mesh);
+  c.smas.resize(c.mesh.vertices.size());
+  c.inner.resize(c.mesh.vertices.size());
   place_layers(c);
   return c;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "builder/tissue/beneath.h"
+#include "builder/tissue/mirror.h"
 #include "builder/tissue/remesh.h"
 
 namespace fascia::tissue {
@@ -24,8 +25,10 @@ struct Columns {
   int count() const { return mesh.vertex_count(); }
 };
 
-/// Makes the columns of `level` from the region and what lies beneath it.
+/// Makes the columns of `level` from the region and what lies beneath it. With a symmetry the right ones are
+/// the left one's mirror images as far as the skin has them, for two cuts of the same skin do not move alike.
 Columns make_columns(const TissueInputs& inputs, const FaceRegion& region, const Beneath& beneath,
-                     const LevelOptions& level, const TissueOptions& options);
+                     const std::optional<Symmetry>& symmetry, const LevelOptions& level,
+                     const TissueOptions& options);
 
 }  // namespace fascia::tissue

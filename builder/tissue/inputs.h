@@ -35,6 +35,7 @@ struct TissueInputs {
   std::vector<rig::Muscle> muscles;
   std::vector<rig::Channel> channels;
   std::vector<PartMesh> parts;
+  bool has_muscles_by_hand = false;  ///< of one side perhaps: they are no images of the other's
 };
 
 /// How fine a level is: roughly how many columns, and how edge length grows from lips and lids outward.

@@ -11,6 +11,8 @@ namespace {
 // Few columns give way to their neighbours more than many: what is added to the closing a metre of their
 // spacing over that of the medium level.
 constexpr double closing_of_spacing = 60.0, medium_spacing = 0.002;
+// Skin resists less towards the outer canthus than towards the inner one.
+constexpr double outer_share = 0.3;
 // Radians that the upper lid of a head with closed eyes is lifted: a fissure of some 9 mm before a globe of
 // 12 (Farkas 1994).
 constexpr double open_height = 0.75;
@@ -107,10 +109,10 @@ void add_eye(const TissueInputs& inputs, const FaceRegion& region, const Columns
         if (channel >= 0) carry(level, channel, node, f, axis, angle, stiffness, reverse);
       };
       const double coarse = std::max(0.0, std::sqrt(c.area[v]) - medium_spacing);
-      const double lid = is_closed
-                             ? 0.0
-                             : (m.closing + closing_of_spacing * coarse) * gap +
-                                   m.canthal_turn * std::max(0.0, (left ? -1.0 : 1.0) * (2.0 * place - 1.0));
+      const double to_inner = (left ? -1.0 : 1.0) * (2.0 * place - 1.0);  // 1 at the inner canthus, -1 outer
+      const double lid = is_closed ? 0.0
+                                   : (m.closing + closing_of_spacing * coarse) * gap +
+                                         m.canthal_turn * std::max(to_inner, -outer_share * to_inner);
       const double lift =
           is_closed ? open_height * std::sin(EIGEN_PI * std::clamp(place, 0.0, 1.0)) : m.opening * lid;
       if (is_upper)

@@ -1,56 +1,102 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 
 #include "builder/tissue/actuators.h"
 #include "builder/tissue/margin.h"
 #include "geometry/smoothstep.h"
 
 namespace fascia::tissue {
-void add_lip_rolls(const TissueInputs& inputs, const FaceRegion& region, const Beneath& beneath,
-                   const Columns& c, rig::TissueLevel& level) {
-  constexpr double side_blend = 0.005;  // metres from the midline over which left passes into right
-  const anatomy::mechanics::Lips& m = inputs.mechanics.lips;
-  const Vec3 left = landmark(inputs, "cheilion_left"), right = landmark(inputs, "cheilion_right");
-  const Vec3 centre = 0.5 * (left + right);
-  const double half = 0.5 * (left - right).norm();
-  const auto& distance = c.opening_distance[static_cast<size_t>(Opening::mouth)];
+namespace {
+
+/// The lips' edges and what of the mouth lies where.
+struct LipEdges {
+  LipEdges(const TissueInputs& inputs, const FaceRegion& region, const Beneath& beneath)
+      : centre(0.5 * (landmark(inputs, "cheilion_left") + landmark(inputs, "cheilion_right"))),
+        half(0.5 * (landmark(inputs, "cheilion_left") - landmark(inputs, "cheilion_right")).norm()) {
+    for (const MarginPlace& p : margin_places(region, Opening::mouth))
+      edges[beneath.lower_lip[static_cast<size_t>(p.vertex)] < 0.5].add(place_of(p.position),
+                                                                        p.position.tail<2>());
+  }
+  double place_of(const Vec3& p) const { return 0.5 + 0.5 * (p.x() - centre.x()) / half; }
+  /// Way from the midline, in half widths of the mouth.
+  double lateral(const Vec3& p) const { return std::abs(p.x() - centre.x()) / half; }
+  /// How much of a place belongs to a side.
+  double side(const Vec3& p, bool left) const {
+    constexpr double blend = 0.005;  // metres from the midline over which left passes into right
+    return smoothstep(-blend, blend, left ? p.x() - centre.x() : centre.x() - p.x());
+  }
+
+  Vec3 centre;
+  double half;                  ///< width of the mouth
+  std::array<Margin, 2> edges;  ///< height and depth, of the lower lip, of the upper
+};
+
+/// A turn about the leftward axis that a channel gives a place's skin and fascia. Lips are moved, never held.
+struct LipTurn {
+  Vec3 origin;
+  double angle = 0.0, reverse = 0.0;  // radians at a channel's value of 1 and -1
+  double drive = 0.0;                 // newton per metre
+};
+
+/// Gives column `v` the turn by the channels of both sides that begin with `name`, each by its share.
+void add_turn(const TissueInputs& inputs, const LipEdges& lips, const Columns& c, size_t v,
+              const std::string& name, const LipTurn& turn, rig::TissueLevel& level) {
+  constexpr double least = 0.02;  // of the drive of an area
   const auto n = static_cast<size_t>(c.count());
-  const auto place_of = [&](const Vec3& p) { return 0.5 + 0.5 * (p.x() - centre.x()) / half; };
-  // Height and depth of each lip's edge.
-  std::array<Margin, 2> edges;
-  for (const MarginPlace& p : margin_places(region, Opening::mouth))
-    edges[beneath.lower_lip[static_cast<size_t>(p.vertex)] < 0.5].add(place_of(p.position),
-                                                                      p.position.tail<2>());
+  for (const bool is_left : {true, false}) {
+    const double side = lips.side(c.mesh.vertices[v], is_left);
+    const int channel = channel_index(inputs.channels, name + (is_left ? "_left" : "_right"));
+    if (channel < 0 || side < least) continue;
+    for (const size_t node : {v, n + v}) {
+      level.carrier_channel.push_back(static_cast<uint32_t>(channel));
+      level.carrier_node.push_back(static_cast<uint32_t>(node));
+      level.carrier_origin.push_back(turn.origin.cast<float>());
+      level.carrier_axis.push_back(rig::Vec3f::UnitX());
+      level.carrier_angle.push_back(static_cast<float>(turn.angle));
+      level.carrier_reverse.push_back(static_cast<float>(turn.reverse));
+      level.carrier_stiffness.push_back(0.0F);
+      level.carrier_drive.push_back(static_cast<float>(turn.drive * side));
+    }
+  }
+}
+
+}  // namespace
+
+void add_lip_turns(const TissueInputs& inputs, const FaceRegion& region, const Beneath& beneath,
+                   const Columns& c, rig::TissueLevel& level) {
+  constexpr double least_fade = 0.02;
+  const anatomy::mechanics::Lips& m = inputs.mechanics.lips;
+  const LipEdges lips(inputs, region, beneath);
+  const auto& distance = c.opening_distance[static_cast<size_t>(Opening::mouth)];
   for (const bool upper : {true, false}) {
-    const Margin& edge = edges[upper];
+    const Margin& edge = lips.edges[upper];
     if (edge.empty()) continue;
-    for (size_t v = 0; v < n; ++v) {
+    const double up = upper ? 1.0 : -1.0;
+    const std::string lip = upper ? "upper" : "lower";
+    for (size_t v = 0; v < static_cast<size_t>(c.count()); ++v) {
       const Vec3& p = c.mesh.vertices[v];
-      if (c.rim[v] || distance[v] > m.roll_fade.end || (c.lower_lip[v] < 0.5) != upper) continue;
+      if (c.rim[v] || (c.lower_lip[v] < 0.5) != upper) continue;
+      const Eigen::Vector2d at = edge.at(lips.place_of(p));
+      const double lateral = m.roll_lateral_fade.fall(lips.lateral(p));
       // The lip's body lies above (below) and behind its edge: the vermilion turns about that, the white lip
       // stays.
-      const Eigen::Vector2d at = edge.at(place_of(p));
-      const Vec3 origin(p.x(), at.x() + (upper ? m.roll_depth : -m.roll_depth), at.y() - m.roll_depth);
-      const double fade =
-          m.roll_fade.fall(distance[v]) * m.roll_lateral_fade.fall(std::abs(p.x() - centre.x()) / half);
-      for (const bool is_left : {true, false}) {
-        const double side =
-            smoothstep(-side_blend, side_blend, is_left ? p.x() - centre.x() : centre.x() - p.x());
-        const int channel =
-            channel_index(inputs.channels, std::string("lip_roll_") + (upper ? "upper" : "lower") +
-                                               (is_left ? "_left" : "_right"));
-        if (channel < 0 || side * fade < 0.02) continue;
-        for (const size_t node : {v, n + v}) {
-          level.carrier_channel.push_back(static_cast<uint32_t>(channel));
-          level.carrier_node.push_back(static_cast<uint32_t>(node));
-          level.carrier_origin.push_back(origin.cast<float>());
-          level.carrier_axis.push_back(rig::Vec3f::UnitX());
-          level.carrier_angle.push_back(static_cast<float>(upper ? m.roll_in : -m.roll_in));
-          level.carrier_reverse.push_back(static_cast<float>(upper ? -m.roll_out : m.roll_out));
-          level.carrier_stiffness.push_back(0.0F);  // lips are moved, never held
-          level.carrier_drive.push_back(static_cast<float>(m.roll_drive * c.area[v] * fade * side));
-        }
+      if (const double fade = m.roll_fade.fall(distance[v]) * lateral; fade > least_fade) {
+        LipTurn roll{Vec3(p.x(), at.x() + up * m.roll_depth, at.y() - m.roll_depth)};
+        roll.angle = up * m.roll_in;
+        roll.reverse = -up * m.roll_out;
+        roll.drive = m.roll_drive * c.area[v] * fade;
+        add_turn(inputs, lips, c, v, "lip_roll_" + lip, roll, level);
+      }
+      // As the sphincter's outer part contracts, the whole lip swings forward from where it hangs on the
+      // bone.
+      if (const double fade = m.protrusion_fade.fall(distance[v]) * lateral;
+          c.outer[v] && fade > least_fade) {
+        LipTurn swing{Vec3(p.x(), at.x() + up * m.protrusion_height, at.y())};
+        swing.angle = upper ? -m.protrusion_upper : m.protrusion_lower;
+        swing.drive = m.protrusion_drive * c.area[v] * fade;
+        add_turn(inputs, lips, c, v, "orbicularis_oris_peripheral_" + lip, swing, level);
       }
     }
   }

@@ -139,13 +139,16 @@ Opening opening_of_loop(const TissueInputs& inputs, const TriangleMesh& mesh, co
   return opening;
 }
 
-/// The outer vertices beyond which the skin goes on, or ends at the neck or behind the ears. Where it ends
-/// within the face, as a mask does at the chin, nothing holds it but the bone beneath.
+/// The outer vertices beyond which the skin goes on, or ends at the neck, behind the ears or on the forehead,
+/// which the galea goes on from and holds. Where it ends within the face, as a mask does at the chin, nothing
+/// holds it but the bone beneath.
 std::vector<bool> rim_of(const TissueInputs& inputs, const TriangleMesh& skin, const FaceRegion& region,
                          const std::vector<bool>& eye) {
   const Vec3 glabella = landmark(inputs, "glabella"), gnathion = landmark(inputs, "gnathion");
   // The throat begins some way below the chin: a fifth of the face's height.
   const double neck = gnathion.y() - 0.2 * (glabella.y() - gnathion.y());
+  // The forehead is left where the brows end: an eighth of it above the glabella.
+  const double forehead = glabella.y() + 0.125 * (glabella.y() - gnathion.y());
   const double ears = std::min(landmark(inputs, "tragion_left").z(), landmark(inputs, "tragion_right").z());
   std::vector<int> triangles(region.outer.size(), 0);
   for (const fascia::Triangle& t : skin.triangles) {
@@ -163,7 +166,7 @@ std::vector<bool> rim_of(const TissueInputs& inputs, const TriangleMesh& skin, c
   for (const auto& loop : boundary_loops(region.mesh, connectivity(region.mesh)))
     for (const int v : loop) {
       const Vec3& p = region.mesh.vertices[static_cast<size_t>(v)];
-      if (region.outer[static_cast<size_t>(v)] && (p.y() < neck || p.z() < ears))
+      if (region.outer[static_cast<size_t>(v)] && (p.y() < neck || p.y() > forehead || p.z() < ears))
         rim[static_cast<size_t>(v)] = true;
     }
   return rim;

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "builder/tissue/region.h"
+#include "builder/tissue/remesh.h"
+
+namespace fascia::tissue {
+
+/// The plane that a face is more or less the same on both sides of.
+struct Symmetry {
+  Vec3 point = Vec3::Zero(), normal = Vec3::UnitX();  ///< normal: unit, to the left
+  bool is_exact = false;  ///< as modelled heads are: what one side has is the other's image
+  double distance(const Vec3& p) const { return normal.dot(p - point); }
+  Vec3 foot(const Vec3& p) const { return p - distance(p) * normal; }
+  Vec3 image(const Vec3& p) const { return p - 2.0 * distance(p) * normal; }
+  Vec3 turned(const Vec3& way) const { return way - 2.0 * normal.dot(way) * normal; }  ///< of a direction
+};
+
+/// The symmetry of a region by its landmarks, drawn onto the skin by iterative closest points between it and
+/// its image. Nothing where a tenth of the skin is farther than a millimetre and a half from its image, as on
+/// lopsided faces.
+std::optional<Symmetry> symmetry_of(const TissueInputs& inputs, const FaceRegion& region);
+
+/// What of a region lies on the left of the plane, cut along it.
+struct HalfRegion {
+  TriangleMesh mesh;
+  std::vector<SurfacePoint> source;  ///< #vertices, on the region's mesh
+  /// #triangles: the region's triangle that each is a part of, and its corners there, barycentric.
+  std::vector<int> parent;
+  std::vector<std::array<Vec3, 3>> corners;
+};
+
+/// Cuts `mesh` along the plane and keeps the left. Vertices within a twentieth of a millimetre of the plane
+/// are put onto it.
+HalfRegion left_half(const TriangleMesh& mesh, const Symmetry& symmetry);
+
+/// The same vertices with their sources on the region's mesh instead of on the half's, and those along the
+/// cut on the plane.
+RemeshResult on_region(const RemeshResult& half, const HalfRegion& region, const Symmetry& symmetry);
+
+/// Completes a remesh of the left half by the mirror images of its vertices, which follow them in the same
+/// order; those on the plane are their own. Where the symmetry is exact the images stay where they are, else
+/// they lie on the skin nearest to there. Nothing where the skin has no such place or triangles would turn.
+/// `left` receives of each image the vertex it is one of.
+std::optional<RemeshResult> with_images(const RemeshResult& half, const FaceRegion& region,
+                                        const Symmetry& symmetry, std::vector<size_t>& left);
+
+/// What lies on both sides with the right one's made the left one's mirror image: muscles, unless they were
+/// changed by hand, and ligaments whose names end in _left and _right. One that only one side has stays.
+TissueInputs with_mirrored_sides(TissueInputs inputs, const Symmetry& symmetry);
+
+}  // namespace fascia::tissue
