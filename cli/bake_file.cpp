@@ -92,15 +92,15 @@ void write_glb(const Common& common, const BakeRequest& request, const Face& fac
   const std::vector<uint8_t> bytes = formats::read_bytes(request.rig);
   auto source = rig::glb_source(bytes, request.rig.string());
   GltfEdit edit(request.keeps_rig ? std::move(source) : rig::original(source));
-  const size_t before = edit.bytes().size();
+  const size_t before = edit.parts().size();
   gltf::MorphOptions options;
   if (request.replaces) options.existing = gltf::MorphOptions::Existing::replace;
   std::vector<std::string> warnings;
   gltf::add_morph_targets(edit, baked.names, baked.shapes, options, &warnings);
   for (const std::string& warning : warnings)
     common.warn(warning);
-  const std::vector<uint8_t> out = edit.bytes();
-  formats::write_bytes(request.output, out.data(), out.size());
+  const GltfEdit::Parts out = edit.parts();
+  formats::write_parts(request.output, {out.before, out.binary, out.after});
   figures.files = {request.output};
   size_t all = 0;
   std::vector<size_t> moved;

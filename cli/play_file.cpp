@@ -78,10 +78,8 @@ Recording record_within(const Common& common, const PlayRequest& request, const 
                         double tolerance) {
   double aim = tolerance;
   for (int attempt = 0;; ++attempt) {
-    Face first = face.sibling();
-    Recording recording = record(common, take, first, {request.most_targets, aim});
-    Face second = face.sibling();
-    measure(common, take, second, recording);
+    Face fresh = face.sibling();
+    Recording recording = record(common, take, fresh, {request.most_targets, aim});
     double largest = 0.0;
     for (const MeshMotion& motion : recording.meshes)
       if (motion.components.weights.rows() < static_cast<Eigen::Index>(request.most_targets))
@@ -100,16 +98,15 @@ void write_animation(const Common& common, const PlayRequest& request, const Tak
   figures.milliseconds_a_frame = recording.figures.milliseconds_a_frame;
 
   common.progress("writing");
-  const std::vector<uint8_t> bytes = formats::read_bytes(request.rig);
-  GltfEdit edit(rig::glb_source(bytes, request.rig.string()));
+  GltfEdit edit(rig::glb_source(face.file(), request.rig.string()));
   std::vector<std::string> warnings;
   std::vector<NodeMotion> nodes;
   if (request.keeps_head) nodes = turned_nodes(request, take, face, edit);
-  add_take(edit, request.curves.stem().string(), take, face, recording, nodes, warnings);
+  add_take(edit, request.curves.stem().string(), take, face, std::move(recording), nodes, warnings);
   for (const std::string& warning : warnings)
     common.warn(warning);
-  const std::vector<uint8_t> out = edit.bytes();
-  formats::write_bytes(request.output, out.data(), out.size());
+  const GltfEdit::Parts parts = edit.parts();
+  formats::write_parts(request.output, {parts.before, parts.binary, parts.after});
   figures.files = {request.output};
 }
 
@@ -154,11 +151,9 @@ PlayFigures play_file(const Common& common, const PlayRequest& request) {
   figures.frames = take.frames();
   figures.duration = take.time(take.frames() - 1);
   figures.start = curves.start();
-  Progress progress(common, "play",
-                    {{"simulation", 1.0},
-                     {"principal components", wants_cache ? 0.0 : 0.2},
-                     {"measurement", 0.0},  // of motions that are too rich to keep
-                     {"writing", 0.2}});
+  Progress progress(
+      common, "play",
+      {{"simulation", 1.0}, {"principal components", wants_cache ? 0.0 : 0.2}, {"writing", 0.2}});
   progress.begin("simulation");
   if (wants_cache)
     write_caches(common, request, kind, take, face, figures);

@@ -25,8 +25,7 @@ void run(const Common& common, const Request& request) {
   const auto values = activations(request.set, request.file);
   Face face(request.rig,
             {extension == ".glb" ? FASCIA_SPACE_MESH : FASCIA_SPACE_INPUT, request.solver, request.level});
-  for (const auto& [name, value] : values)
-    face.set(name, value);
+  set_all(common, face, values);
   face.pose();
   if (extension == ".glb")
     write_posed_glb(request.rig, face, request.output);

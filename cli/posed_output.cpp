@@ -86,8 +86,8 @@ void write_posed_glb(const std::filesystem::path& rig, const Face& face,
   for (size_t m = 0; m < face.meshes().size(); ++m)
     meshes.push_back({face.meshes()[m].mesh, face.meshes()[m].primitive, face.positions(m)});
   gltf::set_pose(edit, meshes);
-  const std::vector<uint8_t> posed = edit.bytes();
-  formats::write_bytes(output, posed.data(), posed.size());
+  const GltfEdit::Parts posed = edit.parts();
+  formats::write_parts(output, {posed.before, posed.binary, posed.after});
 }
 
 void write_posed_mesh(const std::filesystem::path& rig, const Face& face,

@@ -151,6 +151,14 @@ void Face::set(const std::string& name, double value) {
   check(result, "'" + name + "'");
 }
 
+Face::Range Face::range(const std::string& name) const {
+  const int32_t channel = fascia_asset_find_channel(asset_.get(), name.c_str());
+  if (channel < 0) return {};
+  auto channels = sized<fascia_channels>();
+  check(fascia_asset_get_channels(asset_.get(), &channels), "channels");
+  return {static_cast<double>(channels.minimum[channel]), static_cast<double>(channels.maximum[channel])};
+}
+
 void Face::clear() {
   check(fascia_face_clear(face_.get()), "clear");
 }
@@ -235,6 +243,19 @@ std::vector<std::pair<std::string, double>> activations(const std::vector<std::s
     values.emplace_back(word.substr(0, at), value);
   }
   return values;
+}
+
+void set_all(const Common& common, Face& face, const std::vector<std::pair<std::string, double>>& values) {
+  for (const auto& [name, value] : values) {
+    face.set(name, value);
+    const Face::Range range = face.range(name);
+    const double rounding = 1e-6 * (range.most - range.least);
+    if (value >= range.least - rounding && value <= range.most + rounding) continue;
+    char text[96];
+    std::snprintf(text, sizeof text, "%g lies beyond its range, %g to %g, and is cut off", value, range.least,
+                  range.most);
+    common.warn("'" + name + "': " + text);
+  }
 }
 
 }  // namespace fascia::cli

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "cli/common.h"
 #include "geometry/mesh.h"
 
 namespace fascia::cli {
@@ -45,6 +46,11 @@ class Face {
 
   /// Sets a channel or a set's member; throws when there is none of that name.
   void set(const std::string& name, double value);
+  /// The values that a channel takes, or a member of a set; beyond, they are cut off.
+  struct Range {
+    double least = 0.0, most = 1.0;
+  };
+  Range range(const std::string& name) const;
   void clear();
   void pose();
   /// Lets time pass; returns false when the simulation had to be reset.
@@ -95,6 +101,9 @@ class Face {
 /// `NAME=VALUE` words and an activations file, in that order of strength: words win.
 std::vector<std::pair<std::string, double>> activations(const std::vector<std::string>& words,
                                                         const std::filesystem::path& file);
+
+/// Sets all of `values` on the face, and warns of those that lie beyond their range and are cut off.
+void set_all(const Common& common, Face& face, const std::vector<std::pair<std::string, double>>& values);
 
 /// Throws fascia::Error with the runtime's last message when `result` is a failure.
 void check(fascia_result result, const std::string& what);

@@ -68,8 +68,7 @@ class Picture {
   void pose() {
     if (request_.curves.empty()) {
       const auto values = activations(request_.set, request_.file);
-      for (const auto& [name, value] : values)
-        face_.set(name, value);
+      set_all(common_, face_, values);
       if (!values.empty()) face_.pose();
       return;
     }

@@ -25,8 +25,11 @@ namespace fs = std::filesystem;
               "; check the folder, its permissions and free space");
 }
 
-bool write_all(int file, const void* bytes, size_t size) {
-  const char* at = static_cast<const char*>(bytes);
+using Parts = std::vector<std::span<const uint8_t>>;
+
+bool write_all(int file, std::span<const uint8_t> part) {
+  const uint8_t* at = part.data();
+  size_t size = part.size();
   while (size > 0) {
     const ssize_t written = ::write(file, at, std::min(size, size_t{1} << 30));
     if (written < 0 && errno == EINTR) continue;
@@ -38,6 +41,10 @@ bool write_all(int file, const void* bytes, size_t size) {
     size -= static_cast<size_t>(written);
   }
   return true;
+}
+
+bool write_all(int file, const Parts& parts) {
+  return std::all_of(parts.begin(), parts.end(), [&](const auto& part) { return write_all(file, part); });
 }
 
 /// A new file beside its target, removed again unless it is renamed into place.
@@ -67,12 +74,12 @@ class NewFile {
     forget_partial(name_);
   }
 
-  void write(const void* bytes, size_t size) {
+  void write(const Parts& parts) {
     struct stat old = {};
     const mode_t mask = umask(0);
     umask(mask);
     const mode_t mode = stat(target_.c_str(), &old) == 0 ? old.st_mode & 07777 : 0666 & ~mask;
-    if (!write_all(file_, bytes, size) || fchmod(file_, mode) != 0) fail_to_write(target_, errno);
+    if (!write_all(file_, parts) || fchmod(file_, mode) != 0) fail_to_write(target_, errno);
     // Some file systems report a full disk only now.
     if (fsync(file_) != 0 && errno != EINVAL && errno != EROFS) fail_to_write(target_, errno);
     const int closed = close(file_);
@@ -92,10 +99,10 @@ class NewFile {
   int file_ = -1;
 };
 
-void write_into(const fs::path& device, const void* bytes, size_t size) {
+void write_into(const fs::path& device, const Parts& parts) {
   const int file = open(device.c_str(), O_WRONLY);
   if (file < 0) fail_to_write(device, errno);
-  const bool done = write_all(file, bytes, size);
+  const bool done = write_all(file, parts);
   const int error = errno;
   close(file);
   if (!done) fail_to_write(device, error);
@@ -127,14 +134,18 @@ std::vector<uint8_t> read_bytes(const fs::path& path) {
 }
 
 void write_bytes(const fs::path& path, const void* bytes, size_t size) {
+  write_parts(path, {{static_cast<const uint8_t*>(bytes), size}});
+}
+
+void write_parts(const fs::path& path, const Parts& parts) {
   std::error_code status;
   const fs::file_status there = fs::status(path, status);
   if (fs::is_directory(there)) throw Error("'" + path.string() + "' is a folder; give the name of a file");
-  if (fs::exists(there) && !fs::is_regular_file(there)) return write_into(path, bytes, size);
+  if (fs::exists(there) && !fs::is_regular_file(there)) return write_into(path, parts);
   const bool is_link = fs::is_symlink(fs::symlink_status(path, status));
   const fs::path target = is_link ? fs::weakly_canonical(path, status) : path;
   NewFile file(target);
-  file.write(bytes, size);
+  file.write(parts);
   file.rename_into_place();
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,8 @@ std::vector<uint8_t> read_bytes(const std::filesystem::path& path);
 /// kept, and devices and pipes are written as they are. The folder must be there. Throws fascia::Error when
 /// it cannot; then nothing is left behind.
 void write_bytes(const std::filesystem::path& path, const void* bytes, size_t size);
+/// The same of a file in parts, one after the other.
+void write_parts(const std::filesystem::path& path, const std::vector<std::span<const uint8_t>>& parts);
 void write_text(const std::filesystem::path& path, const std::string& text);
 
 /// A file that `owner` names as `relative`, or why it is not read and the one thing to do about it.

@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace fascia::sim {
@@ -41,7 +42,16 @@ void FrontFactor::analyse(const Matrix& matrix, const Positions& places) {
 }
 
 void FrontFactor::begin(const Matrix& matrix, const Positions& places) {
-  matrix_ = matrix.selfadjointView<Eigen::Lower>();
+  matrix_ = matrix;
+  places_ = places;
+  is_prepared_ = is_sound_ = false;
+  next_ = 0;
+}
+
+/// Completes the matrix and finds the order where its pattern is a new one.
+void FrontFactor::prepare() {
+  const Matrix lower = std::move(matrix_);
+  matrix_ = lower.selfadjointView<Eigen::Lower>();
   const int columns = static_cast<int>(matrix_.outerSize()), entries = static_cast<int>(matrix_.nonZeros());
   const auto *outer = matrix_.outerIndexPtr(), *inner = matrix_.innerIndexPtr();
   const bool is_known =
@@ -50,10 +60,9 @@ void FrontFactor::begin(const Matrix& matrix, const Positions& places) {
   if (!is_known) {
     outer_.assign(outer, outer + columns + 1);
     inner_.assign(inner, inner + entries);
-    analyse(matrix_, places);
+    analyse(matrix_, places_);
   }
-  next_ = 0;
-  is_sound_ = false;
+  is_prepared_ = true;
 }
 
 bool FrontFactor::factor_front(size_t index) {
@@ -98,6 +107,10 @@ bool FrontFactor::factor_front(size_t index) {
 }
 
 bool FrontFactor::advance(double work) {
+  if (!is_prepared_) {
+    prepare();
+    if (std::isfinite(work)) return fronts_.empty();
+  }
   for (double done = 0.0; next_ < fronts_.size() && (done == 0.0 || done < work); ++next_) {
     if (!factor_front(next_)) {
       next_ = fronts_.size();

@@ -22,7 +22,8 @@ class FrontFactor {
   /// Takes the matrix over the nodes `places`; its order is kept while the pattern stays. Then `advance` must
   /// be called until it is done.
   void begin(const Matrix& matrix, const Positions& places);
-  /// Factors fronts for about `work` multiplications; true when nothing is left to do.
+  /// Finds the order where it is not known yet, or factors fronts for about `work` multiplications; true when
+  /// nothing is left to do.
   bool advance(double work);
   /// All at once.
   bool compute(const Matrix& matrix, const Positions& places);
@@ -44,6 +45,7 @@ class FrontFactor {
     std::vector<uint32_t> children;
     double work = 0.0;
   };
+  void prepare();
   void analyse(const Matrix& matrix, const Positions& places);
   bool factor_front(size_t index);
   void solve_some(const Eigen::Ref<const Eigen::MatrixXd>& right, Eigen::Ref<Eigen::MatrixXd> solution) const;
@@ -54,9 +56,11 @@ class FrontFactor {
   std::vector<uint32_t> position_, local_;  ///< by node, by place in the order
   std::vector<double> values_;
   std::vector<Eigen::MatrixXd> left_;  ///< what each front leaves to its parent
-  Matrix matrix_;                      ///< both halves
+  Matrix matrix_;                      ///< both halves once prepared
   size_t next_ = 0;
   double work_ = 0.0;
+  Positions places_;
+  bool is_prepared_ = false;  ///< the order is that of the matrix
   bool is_sound_ = false;
 };
 

@@ -258,7 +258,8 @@ void Sensitivity::find_jaw_forces(const Controls& controls) {
 
 /// The curvature but for fibres' pulls, with a share `held` of the rest stiffness on its diagonal.
 void Sensitivity::assemble(double held) {
-  Triplets list;
+  Triplets& list = entries_;
+  list.clear();
   Blocks blocks{unknown_of_node_, list};
   add_stencils(curvature_.points, blocks);
   add_stencils(curvature_.pairs, blocks);

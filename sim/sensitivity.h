@@ -73,6 +73,7 @@ class Sensitivity {
   Eigen::MatrixXd jaw_forces_;              ///< unknowns x 3
   Eigen::MatrixXd jaw_carried_;             ///< 3 #nodes x 3: how prescribed nodes go with the jaw
   FrontFactor factor_;
+  std::vector<Eigen::Triplet<double>> entries_;  ///< of the matrix; kept for its memory
   bool is_assembled_ = false;
   bool is_held_up_ = false;   ///< the last matrix has had more of the rest stiffness than it wants
   Positions unknown_places_;  ///< at rest

@@ -1,5 +1,7 @@
 #include "app/engine/build_task.h"
 
+#include <tbb/parallel_for.h>
+
 #include <array>
 #include <new>
 #include <utility>
@@ -123,6 +125,9 @@ LoadedRig BuildTask::build(const BuildOrder& order) {
   options.detail = order.detail;
   if (!order.edits.empty()) options.edits = rigging::read_edits(order.edits);
   options.progress = [this](const std::string& stage) { enter(stage); };
+  options.for_each = [](size_t count, const std::function<void(size_t)>& part) {
+    tbb::parallel_for(size_t{0}, count, part);
+  };
   const anatomy::GenericAnatomy anatomy = anatomy::load_generic();
   rigging::BuildResult built = rigging::build_rig(scene, {}, anatomy, options);
   enter("write");

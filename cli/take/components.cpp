@@ -1,9 +1,13 @@
 #include "cli/take/components.h"
 
+#include <tbb/parallel_for.h>
+
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <numeric>
+
+#include "cli/take/product.h"
 
 namespace fascia::cli {
 
@@ -20,35 +24,44 @@ struct Fit {
   MatrixXf read;  ///< #components x #directions: weights = read * coefficients
 };
 
-/// Errors at the sampled vertices: rows vertices, columns frames.
+/// Errors at the judged vertices.
 struct Errors {
   VectorXf by_vertex, by_frame;  ///< largest
   double largest = 0.0;
 };
 
-Errors errors(const MotionSpace& space, const MatrixXf& coefficients, const Fit& fit) {
-  const MatrixXf left = coefficients - fit.mix * (fit.read * coefficients);
-  Errors result;
-  result.by_vertex = VectorXf::Zero(space.sampled_directions().rows() / 3);
-  result.by_frame = VectorXf::Zero(left.cols());
+/// Of what is `left` over, #directions x #frames, at the judged vertices, whose rows of the directions are
+/// `rows`.
+Errors errors_of(const MatrixXf& rows, const MatrixXf& left) {
   constexpr Index block = 64;
-  for (Index first = 0; first < left.cols(); first += block) {
-    const Index count = std::min(block, left.cols() - first);
-    const MatrixXf off = space.sampled_directions().leftCols(left.rows()) * left.middleCols(first, count);
+  const Index vertices = rows.rows() / 3, blocks = (left.cols() + block - 1) / block;
+  Errors result;
+  result.by_frame = VectorXf::Zero(left.cols());
+  MatrixXf by_vertex = MatrixXf::Zero(vertices, std::max<Index>(1, blocks));
+  tbb::parallel_for(Index{0}, blocks, [&](Index b) {
+    const Index first = b * block, count = std::min(block, left.cols() - first);
+    const MatrixXf off = product(rows, left.middleCols(first, count));
     for (Index f = 0; f < count; ++f)
-      for (Index v = 0; v < result.by_vertex.size(); ++v) {
+      for (Index v = 0; v < vertices; ++v) {
         const float length = off.col(f).segment<3>(3 * v).norm();
-        result.by_vertex[v] = std::max(result.by_vertex[v], length);
+        by_vertex(v, b) = std::max(by_vertex(v, b), length);
         result.by_frame[first + f] = std::max(result.by_frame[first + f], length);
       }
-  }
+  });
+  result.by_vertex = by_vertex.rowwise().maxCoeff();
   result.largest = result.by_frame.size() > 0 ? static_cast<double>(result.by_frame.maxCoeff()) : 0.0;
   return result;
 }
 
+Errors errors(const MatrixXf& rows, const MatrixXf& coefficients, const Fit& fit) {
+  return errors_of(rows, coefficients - fit.mix * (fit.read * coefficients));
+}
+
 /// Frames to judge by: those that principal components leave most of, and an even sample of the rest.
 std::vector<Index> telling_frames(const MatrixXf& coefficients, const Fit& fit) {
-  const VectorXf left = (coefficients - fit.mix * (fit.read * coefficients)).colwise().squaredNorm();
+  VectorXf left(coefficients.cols());
+  for (Index f = 0; f < left.size(); ++f)
+    left[f] = (coefficients.col(f) - fit.mix * (fit.read * coefficients.col(f))).squaredNorm();
   std::vector<Index> order(static_cast<size_t>(left.size()));
   std::iota(order.begin(), order.end(), Index{0});
   std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return left[a] > left[b]; });
@@ -67,15 +80,12 @@ MatrixXf columns(const MatrixXf& matrix, const std::vector<Index>& which) {
   return result;
 }
 
-/// Principal components under weights of vertices and frames, both squared: the metric of the sampled
-/// vertices in the coefficients is `metric`.
-Fit weighted_fit(const MatrixXf& coefficients, const MatrixXd& metric, const VectorXf& frame_weights,
-                 Index count) {
+/// Principal components: `metric` is that of the weighted sampled vertices in the coefficients, `gram` the
+/// sum over all frames of weighted products of coefficients.
+Fit weighted_fit(const MatrixXd& metric, const MatrixXd& gram, Index count) {
   const Eigen::LLT<MatrixXd> factor(metric);
   const MatrixXd upper = factor.matrixU();
-  const MatrixXf scaled = coefficients * frame_weights.asDiagonal();
-  const MatrixXd gram = upper * (scaled * scaled.transpose()).cast<double>() * upper.transpose();
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(gram);
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(upper * gram * upper.transpose());
   const MatrixXd turn = eigen.eigenvectors().rightCols(count).rowwise().reverse();
   Fit fit;
   fit.read = (turn.transpose() * upper).cast<float>();
@@ -83,41 +93,152 @@ Fit weighted_fit(const MatrixXf& coefficients, const MatrixXd& metric, const Vec
   return fit;
 }
 
-MatrixXd metric_of(const MotionSpace& space, Index directions, const VectorXf& vertex_weights) {
-  MatrixXf scaled = space.sampled_directions().leftCols(directions);
-  for (Index v = 0; v < vertex_weights.size(); ++v)
-    scaled.middleRows<3>(3 * v) *= std::sqrt(vertex_weights[v]);
-  return (scaled.transpose() * scaled).cast<double>();
+/// Products of each column with itself, weighted, summed.
+MatrixXd gram_of(const MatrixXf& columns, const VectorXf& weights) {
+  MatrixXf scaled = columns;
+  for (Index f = 0; f < scaled.cols(); ++f)
+    scaled.col(f) *= weights[f];
+  return (scaled * columns.transpose()).cast<double>();
 }
 
-/// Weighs up what is off most, round by round, and keeps the best.
-Fit with_least_largest_error(const MotionSpace& space, const MatrixXf& coefficients, const Fit& plain,
-                             Index count, double tolerance) {
+MatrixXd metric_of(const MatrixXf& rows, const VectorXf& vertex_weights) {
+  MatrixXf scaled = rows;
+  for (Index v = 0; v < vertex_weights.size(); ++v)
+    scaled.middleRows<3>(3 * v) *= std::sqrt(vertex_weights[v]);
+  MatrixXf metric = MatrixXf::Zero(rows.cols(), rows.cols());
+  metric.selfadjointView<Eigen::Lower>().rankUpdate(scaled.transpose());
+  return MatrixXf(metric.selfadjointView<Eigen::Lower>()).cast<double>();
+}
+
+/// Weighs up what is off most, round by round, and keeps the best. `gram` is that of all coefficients.
+Fit with_least_largest_error(const MatrixXf& rows, const MatrixXf& coefficients, const MatrixXd& gram,
+                             const Fit& plain, Index count, double tolerance) {
   constexpr int rounds = 12;
   const std::vector<Index> telling = telling_frames(coefficients, plain);
   const MatrixXf judged = columns(coefficients, telling);
   Fit best = plain;
-  Errors now = errors(space, judged, plain);
+  Errors now = errors(rows, judged, plain);
   double least = now.largest;
   VectorXf vertex_weights = VectorXf::Ones(now.by_vertex.size());
-  VectorXf frame_weights = VectorXf::Ones(coefficients.cols());
+  VectorXf frame_weights = VectorXf::Ones(judged.cols());
   for (int round = 0; round < rounds && least > tolerance; ++round) {
+    // Roots of Lawson's factors: with the whole of both, one after the other overshoots.
     const auto scale = static_cast<float>(now.largest);
     for (Index v = 0; v < vertex_weights.size(); ++v)
-      vertex_weights[v] *= 0.1F + now.by_vertex[v] / scale;
+      vertex_weights[v] *= std::sqrt(0.1F + now.by_vertex[v] / scale);
     vertex_weights /= vertex_weights.mean();
     vertex_weights = vertex_weights.cwiseMax(1e-4F);
-    for (size_t i = 0; i < telling.size(); ++i)
-      frame_weights[telling[i]] *= 0.3F + now.by_frame[static_cast<Index>(i)] / scale;
-    const Fit fit = weighted_fit(coefficients, metric_of(space, coefficients.rows(), vertex_weights),
-                                 frame_weights, count);
-    now = errors(space, judged, fit);
+    for (Index f = 0; f < frame_weights.size(); ++f)
+      frame_weights[f] *= std::sqrt(0.3F + now.by_frame[f] / scale);
+    const MatrixXd more = gram_of(judged, (frame_weights.array().square() - 1.0F).matrix());
+    const Fit fit = weighted_fit(metric_of(rows, vertex_weights), gram + more, count);
+    now = errors(rows, judged, fit);
     if (now.largest < least) {
       least = now.largest;
       best = fit;
     }
   }
   return best;
+}
+
+/// Weights of single frames on given shapes for a small largest error: iteratively reweighted least squares
+/// towards the 10-norm (Burrus, Barreto & Selesnick 1994).
+class FrameFit {
+ public:
+  FrameFit(const MatrixXf& rows, const MatrixXf& mix)
+      : shapes_(product(rows, mix)), gram_(shapes_.transpose() * shapes_) {}
+
+  /// Moves `weights` towards the best for a frame whose judged vertices are `off` from them. Far off is what
+  /// counts: a frame hardly off keeps its weights, in between they go part of the way, so that the motion
+  /// stays as smooth as it was. Errors up to `small` are left, from `large` on all is done.
+  void improve(VectorXf off, float small, float large, Eigen::Ref<VectorXf> weights) const {
+    constexpr int rounds = 6;
+    constexpr float norm = 10.0F, over_relaxation = 1.5F, floor = 1e-3F;
+    float least = largest(off);
+    const float share = std::clamp((least - small) / (large - small), 0.0F, 1.0F);
+    if (!(share > 0.0F)) return;
+    const VectorXf start = weights;
+    VectorXf now = start, best = start;
+    for (int round = 0; round < rounds; ++round) {
+      const float most = largest(off);
+      if (!(most > 0.0F)) break;
+      MatrixXf matrix = floor * gram_;
+      VectorXf force = floor * (gram_ * (start - now));
+      for (Index v = 0; 3 * v < off.size(); ++v) {
+        const float length = off.segment<3>(3 * v).norm() / most;
+        if (length < 0.4F) continue;  // to the eighth power it is nothing
+        const auto rows = shapes_.middleRows<3>(3 * v);
+        const float weight = std::pow(length, norm - 2.0F);
+        matrix.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose(), weight);
+        force.noalias() += weight * (rows.transpose() * off.segment<3>(3 * v));
+      }
+      const VectorXf step = (over_relaxation / (norm - 1.0F)) * matrix.llt().solve(force);
+      if (!step.allFinite()) break;
+      now += step;
+      off.noalias() -= shapes_ * step;
+      if (const float error = largest(off); error < least) {
+        least = error;
+        best = now;
+      }
+    }
+    weights = start + share * share * (3.0F - 2.0F * share) * (best - start);
+  }
+
+ private:
+  static float largest(const VectorXf& off) {
+    float most = 0.0F;
+    for (Index i = 0; i < off.size(); i += 3)
+      most = std::max(most, off.segment<3>(i).squaredNorm());
+    return std::sqrt(most);
+  }
+
+  MatrixXf shapes_;  ///< 3 #judged x #components
+  MatrixXf gram_;
+};
+
+/// Weights of the frames that are off farthest, better than by least squares; all others stay.
+void improve_weights(const MatrixXf& rows, const MatrixXf& coefficients, const Fit& fit, double largest,
+                     MatrixXf& weights) {
+  const FrameFit frames(rows, fit.mix);
+  const auto small = static_cast<float>(0.5 * largest), large = static_cast<float>(0.75 * largest);
+  float gain = 0.0F;
+  for (Index i = 0; i + 2 < rows.rows(); i += 3)
+    gain = std::max(gain, rows.middleRows<3>(i).norm());
+  constexpr Index block = 32;
+  tbb::parallel_for(Index{0}, (weights.cols() + block - 1) / block, [&](Index b) {
+    const Index first = b * block, count = std::min(block, weights.cols() - first);
+    const MatrixXf left = coefficients.middleCols(first, count) - fit.mix * weights.middleCols(first, count);
+    std::vector<Index> far;
+    for (Index f = 0; f < count; ++f)
+      if (gain * left.col(f).norm() > small) far.push_back(f);  // else no vertex is off farther
+    if (far.empty()) return;
+    const MatrixXf off = product(rows, left(Eigen::all, far));
+    for (size_t i = 0; i < far.size(); ++i)
+      frames.improve(off.col(static_cast<Index>(i)), small, large, weights.col(first + far[i]));
+  });
+}
+
+/// The vertices to judge by, by their places among those that move: where `fit` leaves most over the take,
+/// and an even sample of the rest.
+std::vector<Index> telling_vertices(const MotionSpace& space, const MatrixXd& gram, const Fit& fit) {
+  constexpr size_t most = 2000;
+  const auto all = space.vertices().size();
+  const size_t stride = std::max<size_t>(1, all / (most / 2));
+  MatrixXd left = MatrixXd::Identity(gram.rows(), gram.rows());
+  left -= (fit.mix * fit.read).cast<double>();
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(left * gram * left.transpose());
+  const MatrixXf roots =
+      (eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal()).cast<float>();
+  const VectorXf squared = space.mixed(roots).rowwise().squaredNorm();
+  std::vector<Index> order(all);
+  std::iota(order.begin(), order.end(), Index{0});
+  const auto energy = [&](Index v) { return squared.segment<3>(3 * v).sum(); };
+  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return energy(a) > energy(b); });
+  std::vector<Index> chosen(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(std::min(most, all)));
+  for (size_t i = most; i < all; i += stride)
+    chosen.push_back(order[i]);
+  std::sort(chosen.begin(), chosen.end());
+  return chosen;
 }
 
 }  // namespace
@@ -136,22 +257,31 @@ Components components(const MotionSpace& space, size_t limit, double tolerance) 
   const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(gram);
   const MatrixXf turn = eigen.eigenvectors().rowwise().reverse().cast<float>();
   const auto plain = [&](Index count) { return Fit{turn.leftCols(count), turn.leftCols(count).transpose()}; };
+  const Index most = std::min(directions, static_cast<Index>(limit));
+  const MatrixXf rows = space.directions_at(telling_vertices(space, gram, plain(most)));
   const auto error_of = [&](Index count) {
     const Fit fit = plain(count);
     const std::vector<Index> telling = telling_frames(coefficients, fit);
-    return errors(space, columns(coefficients, telling), fit).largest;
+    return errors(rows, columns(coefficients, telling), fit).largest;
   };
   Index low = 0, high = directions;  // bisection: the error falls with their number, as good as always
-  while (high - low > 1) {
+  // What is not followed as closely as that would not be reached by any number.
+  while (space.tolerance() <= tolerance && high - low > 1) {
     const Index middle = (low + high) / 2;
     (error_of(middle) <= tolerance ? high : low) = middle;
   }
   if (space.tolerance() <= tolerance) result.wanted = static_cast<size_t>(high);
-  const Index count = std::min(high, static_cast<Index>(limit));
+  const Index count = std::min(high, most);
   Fit fit = plain(count);
-  if (high > count) fit = with_least_largest_error(space, coefficients, fit, count, tolerance);
-  result.sampled_error = errors(space, columns(coefficients, telling_frames(coefficients, fit)), fit).largest;
+  if (high > count) fit = with_least_largest_error(rows, coefficients, gram, fit, count, tolerance);
   result.weights = fit.read * coefficients;
+  const std::vector<Index> telling = telling_frames(coefficients, fit);
+  if (high > count) {
+    const double largest = errors(rows, columns(coefficients, telling), fit).largest;
+    improve_weights(rows, coefficients, fit, largest, result.weights);
+  }
+  result.sampled_error =
+      errors_of(rows, columns(coefficients, telling) - fit.mix * columns(result.weights, telling)).largest;
   // Weights of at most 1, so that a slider in a viewer means something.
   for (Index k = 0; k < count; ++k) {
     const float peak = result.weights.row(k).cwiseAbs().maxCoeff();

@@ -15,15 +15,16 @@ namespace fascia::cli {
 /// basis; Haasdonk 2013, Convergence rates of the POD-greedy method). Both are done at a sample of the
 /// vertices only, on which the directions are orthonormal, and carried over to all: the skin follows a
 /// lattice with far fewer degrees of freedom than the sample has (gappy POD; Everson & Sirovich 1995). How
-/// far a frame is then off at any vertex of all is measured before it is let go.
+/// far a frame is then off at any vertex of all is measured before it is let go, and kept up to date where
+/// directions are given up later. A motion of many directions is followed less closely the more it has.
 class MotionSpace {
  public:
   struct Options {
-    double tolerance = 0.0;          ///< at a sampled vertex, in the frames' unit
-    size_t sampled_vertices = 2500;  ///< about, of those that move
-    size_t most_bytes =
-        96 * 1000000;  ///< of directions; beyond, the least are given up and the tolerance grows
-    size_t most_directions = 256;
+    double tolerance = 0.0;            ///< at a sampled vertex, in the frames' unit
+    size_t sampled_vertices = 2500;    ///< about, of those that move
+    size_t fine_directions = 224;      ///< beyond, the tolerance grows and those of little weight go
+    size_t most_directions = 448;      ///< beyond, the least are given up
+    size_t most_bytes = 96 * 1000000;  ///< of directions, the same
   };
 
   /// `vertices` of the mesh; frames have three numbers for each.
@@ -42,21 +43,26 @@ class MotionSpace {
   const std::vector<uint32_t>& vertices() const { return moving_; }
   /// #directions x #frames.
   const Eigen::MatrixXf& coefficients() const { return coefficients_; }
-  /// #frames: how far a frame's directions are off it at any vertex, in the frames' unit. Empty when some
-  /// directions had to be given up.
+  /// #frames: how far at most a frame's directions are off it at any vertex, in the frames' unit.
   const std::vector<float>& left() const { return left_; }
-  /// 3 #sampled x #directions: the directions at the sampled vertices, with orthonormal columns.
-  const Eigen::MatrixXf& sampled_directions() const { return sampled_directions_; }
+  /// 3 #which x #directions: the directions at some of the vertices, given by their places in `vertices`.
+  Eigen::MatrixXf directions_at(std::span<const Eigen::Index> which) const;
   /// 3 #vertices() x #columns: the directions mixed by `mix` (#directions x #columns).
   Eigen::MatrixXf mixed(const Eigen::MatrixXf& mix) const;
+  /// The largest length at any vertex of each column of the same; nothing of that size is made.
+  std::vector<float> largest_of_mixed(const Eigen::MatrixXf& mix) const;
+  /// What a mix of unit length moves any vertex at most.
+  float largest_gain() const;
 
  private:
   void take_block();
   void find_moving();
   void measure_block();
+  void follow_less_closely();
   void extend(Eigen::Index column);
-  void give_up_the_least();
-  void copy_rows(Eigen::Index row, Eigen::Index count, Eigen::MatrixXf& to) const;
+  void give_up(double budget, size_t least);
+  void add_what_is_lost(const Eigen::MatrixXf& directions, double little);
+  std::vector<const float*> columns(Eigen::Index row) const;
   Eigen::VectorXf whole(std::span<const float> frame) const;
 
   Options options_;
@@ -66,12 +72,12 @@ class MotionSpace {
   std::vector<uint32_t> sampled_;          ///< vertices
   std::vector<std::vector<float>> block_;  ///< whole frames not yet taken in
   size_t waiting_ = 0;
-  std::vector<Eigen::VectorXf> directions_;  ///< at moving vertices; short ones end in zeros
+  std::vector<Eigen::VectorXf> directions_;  ///< at moving vertices
   Eigen::MatrixXf sampled_directions_;
-  Eigen::MatrixXf coefficients_;  ///< room for more columns than frames while frames come
+  std::vector<Eigen::MatrixXf> taken_;  ///< coefficients of each block; later directions are zero there
+  Eigen::MatrixXf coefficients_;        ///< all of them, once the take has ended
   Eigen::MatrixXf sampled_frames_, sampled_left_;
   std::vector<float> left_;  ///< by frame
-  bool is_whole_ = true;     ///< no direction was given up
 };
 
 }  // namespace fascia::cli

@@ -1,10 +1,12 @@
 #include "cli/take/recording.h"
 
 #include <tbb/parallel_for.h>
+#include <tbb/task_group.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 #include "cli/take/keyframes.h"
 
@@ -36,30 +38,55 @@ void write_down(const MotionSpace& space, const RecordingOptions& options, doubl
                                share_of_keys * aim);
 }
 
+/// What shapes and linear weights leave of the directions.
+class Remainder {
+ public:
+  Remainder(const MotionSpace& space, const MeshMotion& motion)
+      : space_(space), motion_(motion), weights_(between_keys(motion.components.weights, motion.keys)) {}
+
+  /// #directions.
+  Eigen::VectorXf of(size_t frame) const {
+    const auto f = static_cast<Index>(frame);
+    return space_.coefficients().col(f) - motion_.components.mix * weights_.col(f);
+  }
+
+ private:
+  const MotionSpace& space_;
+  const MeshMotion& motion_;
+  MatrixXf weights_;
+};
+
 /// The largest error frame by frame is at most what the directions leave of it and what shapes and linear
-/// weights leave of those.
+/// weights leave of those. The latter moves a vertex by no more than its length times the largest gain, so
+/// only frames that could be the worst are looked at vertex by vertex.
 void bound_errors(const MotionSpace& space, MeshMotion& motion) {
+  const Remainder remainder(space, motion);
+  const std::vector<float>& left = space.left();
+  const float gain = space.largest_gain();
+  std::vector<float> most(left.size());
+  tbb::parallel_for(size_t{0}, most.size(),
+                    [&](size_t f) { most[f] = left[f] + gain * remainder.of(f).norm(); });
+  std::vector<size_t> order(most.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return most[a] > most[b]; });
+  motion.left = *std::max_element(left.begin(), left.end());
   motion.largest_error = 0.0;
-  if (space.left().size() != space.frames()) return;
-  const MatrixXf rest =
-      space.coefficients() - motion.components.mix * between_keys(motion.components.weights, motion.keys);
-  constexpr Index block = 64;
-  std::vector<float> errors = space.left();
-  motion.left = *std::max_element(errors.begin(), errors.end());
-  tbb::parallel_for(Index{0}, (rest.cols() + block - 1) / block, [&](Index b) {
-    const Index first = b * block, count = std::min(block, rest.cols() - first);
-    const MatrixXf off = space.mixed(rest.middleCols(first, count));
-    for (Index f = 0; f < count; ++f) {
-      float most = 0.0F;
-      for (Index i = 0; i + 2 < off.rows(); i += 3)
-        most = std::max(most, off.col(f).segment<3>(i).squaredNorm());
-      errors[static_cast<size_t>(first + f)] += std::sqrt(most);
+  motion.largest_error_frame = order.front();
+  constexpr size_t block = 64;
+  for (size_t i = 0; i < order.size(); i += block) {
+    if (static_cast<double>(most[order[i]]) <= motion.largest_error) break;
+    const std::span<const size_t> frames(order.data() + i, std::min(block, order.size() - i));
+    MatrixXf mix(space.coefficients().rows(), static_cast<Index>(frames.size()));
+    for (size_t k = 0; k < frames.size(); ++k)
+      mix.col(static_cast<Index>(k)) = remainder.of(frames[k]);
+    const std::vector<float> off = space.largest_of_mixed(mix);
+    for (size_t k = 0; k < frames.size(); ++k) {
+      const auto error = static_cast<double>(left[frames[k]] + off[k]);
+      if (error <= motion.largest_error) continue;
+      motion.largest_error = error;
+      motion.largest_error_frame = frames[k];
     }
-  });
-  const auto worst = std::max_element(errors.begin(), errors.end());
-  motion.largest_error = static_cast<double>(*worst);
-  motion.largest_error_frame = static_cast<size_t>(worst - errors.begin());
-  motion.is_measured = true;
+  }
 }
 
 /// Writes down a mesh's motion; where its errors add up to more than they may, once more, aiming lower.
@@ -70,47 +97,50 @@ void write_down_within(const MotionSpace& space, const RecordingOptions& options
     bound_errors(space, motion);
     const bool is_full = motion.components.weights.rows() >= static_cast<Index>(options.most_targets);
     const auto left = static_cast<double>(motion.left);
-    if (!motion.is_measured || is_full || motion.largest_error <= options.tolerance ||
-        left > 0.5 * options.tolerance)
-      return;
+    if (is_full || motion.largest_error <= options.tolerance || left > 0.5 * options.tolerance) return;
     aim *= 0.95 * (options.tolerance - left) / (motion.largest_error - left);
   }
 }
 
-/// Measures one mesh, some frames at a time.
-class Measurement {
+/// Takes the frames of all meshes in while the next ones are simulated, on a thread of its own where there
+/// is one. The same, to the last bit, on any number of them.
+class Intake {
  public:
-  explicit Measurement(MeshMotion& motion)
-      : motion_(motion),
-        weights_(between_keys(motion.components.weights, motion.keys)),
-        left_(motion.components.shapes.rows(), block_frames) {}
+  Intake(const std::vector<MeshOfFile>& meshes, std::vector<MotionSpace>& spaces)
+      : meshes_(meshes), spaces_(spaces), arriving_(meshes.size() * batch), taken_(meshes.size() * batch) {}
+  Intake(const Intake&) = delete;
+  Intake& operator=(const Intake&) = delete;
+  ~Intake() { tasks_.wait(); }
 
-  void add(const std::vector<float>& frame) {
-    for (size_t i = 0; i < motion_.vertices.size(); ++i)
-      for (size_t axis = 0; axis < 3; ++axis)
-        left_(static_cast<Index>(3 * i + axis), waiting_) = frame[3 * motion_.vertices[i] + axis];
-    if (++waiting_ == block_frames) finish();
+  void add(const Face& face) {
+    for (size_t m = 0; m < meshes_.size(); ++m)
+      displacement(face, meshes_[m], arriving_[m * batch + count_]);
+    if (++count_ == batch) hand_over();
   }
-
   void finish() {
-    auto left = left_.leftCols(waiting_);
-    left.noalias() -= motion_.components.shapes * weights_.middleCols(done_, waiting_);
-    for (Index f = 0; f < waiting_; ++f)
-      for (Index i = 0; i + 2 < left.rows(); i += 3) {
-        const auto length = static_cast<double>(left.col(f).segment<3>(i).norm());
-        if (length <= motion_.largest_error) continue;
-        motion_.largest_error = length;
-        motion_.largest_error_frame = static_cast<size_t>(done_ + f);
-      }
-    done_ += waiting_;
-    waiting_ = 0;
+    hand_over();
+    tasks_.wait();
   }
 
  private:
-  static constexpr Index block_frames = 16;
-  MeshMotion& motion_;
-  MatrixXf weights_, left_;
-  Index waiting_ = 0, done_ = 0;
+  static constexpr size_t batch = 16;  // frames
+
+  void hand_over() {
+    tasks_.wait();
+    std::swap(arriving_, taken_);
+    tasks_.run([this, count = count_] {
+      for (size_t m = 0; m < meshes_.size(); ++m)
+        for (size_t f = 0; f < count; ++f)
+          spaces_[m].add(taken_[m * batch + f]);
+    });
+    count_ = 0;
+  }
+
+  const std::vector<MeshOfFile>& meshes_;
+  std::vector<MotionSpace>& spaces_;
+  std::vector<std::vector<float>> arriving_, taken_;
+  size_t count_ = 0;
+  tbb::task_group tasks_;
 };
 
 }  // namespace
@@ -147,59 +177,35 @@ Recording record(const Common& common, const Take& take, Face& face, const Recor
   for (const MeshOfFile& mesh : meshes) {
     MotionSpace::Options space;
     space.tolerance = share_of_directions * options.tolerance;
-    space.most_directions = std::max(space.most_directions, 2 * options.most_targets);
+    space.fine_directions = std::max(space.fine_directions, 5 * options.most_targets / 2);
+    space.most_directions = std::max(space.most_directions, 3 * options.most_targets);
     spaces.emplace_back(mesh.vertices, space);
   }
   const auto channels = static_cast<Index>(face.channel_names().size());
   recording.values.resize(channels, static_cast<Index>(take.frames()));
-  std::vector<float> frame;
   common.progress("simulation");
   {
     Progress progress(common, "frame", take.frames());
+    Intake intake(meshes, spaces);
     recording.figures = perform(take, face, progress, [&](size_t f) {
-      for (size_t m = 0; m < meshes.size(); ++m) {
-        displacement(face, meshes[m], frame);
-        spaces[m].add(frame);
-      }
+      intake.add(face);
       recording.values.col(static_cast<Index>(f)) =
           Eigen::Map<const Eigen::VectorXf>(fascia_face_effective_values(face.handle()), channels);
     });
+    intake.finish();
   }
   common.progress("principal components");
   for (size_t m = 0; m < meshes.size(); ++m) {
-    spaces[m].finish();
-    if (spaces[m].vertices().empty()) continue;
+    MotionSpace space = std::move(spaces[m]);  // its memory is free again when it is written down
+    space.finish();
+    if (space.vertices().empty()) continue;
     MeshMotion motion;
     motion.mesh = meshes[m];
-    motion.vertices = spaces[m].vertices();
-    write_down_within(spaces[m], options, motion);
+    motion.vertices = space.vertices();
+    write_down_within(space, options, motion);
     recording.meshes.push_back(std::move(motion));
   }
   return recording;
-}
-
-void measure(const Common& common, const Take& take, Face& face, Recording& recording) {
-  std::vector<MeshMotion*> unknown;
-  for (MeshMotion& motion : recording.meshes)
-    if (!motion.is_measured) unknown.push_back(&motion);
-  if (unknown.empty()) return;
-  std::vector<Measurement> measurements;
-  measurements.reserve(unknown.size());
-  for (MeshMotion* motion : unknown)
-    measurements.emplace_back(*motion);
-  std::vector<float> frame;
-  common.progress("measurement");
-  Progress progress(common, "frame", take.frames());
-  perform(take, face, progress, [&](size_t) {
-    for (size_t m = 0; m < measurements.size(); ++m) {
-      displacement(face, unknown[m]->mesh, frame);
-      measurements[m].add(frame);
-    }
-  });
-  for (Measurement& measurement : measurements)
-    measurement.finish();
-  for (MeshMotion* motion : unknown)
-    motion->is_measured = true;
 }
 
 }  // namespace fascia::cli

@@ -30,11 +30,10 @@ struct MeshMotion {
   double largest_error =
       0.0;  ///< of what is written, at most, at any vertex of any frame, in the mesh's unit
   size_t largest_error_frame = 0;
-  float left = 0.0F;         ///< of that, what the directions leave in their worst frame
-  bool is_measured = false;  ///< whether the errors are known yet
+  float left = 0.0F;  ///< of that, what the directions leave in their worst frame
 };
 
-/// What a first run through a take leaves.
+/// What a run through a take leaves.
 struct Recording {
   std::vector<MeshMotion> meshes;  ///< those that move
   Eigen::MatrixXf values;          ///< #channels x #frames
@@ -48,12 +47,7 @@ struct RecordingOptions {
 
 /// Runs through the take on a fresh face and keeps of it what can be written. Memory grows by the channels
 /// and the directions of motion, not by vertices times frames. Errors are sums of what directions leave of a
-/// frame and what shapes and keys leave of the directions; they are known but of meshes whose motion has too
-/// many directions to keep.
+/// frame and what shapes and keys leave of the directions, so they bound those of what is written.
 Recording record(const Common& common, const Take& take, Face& face, const RecordingOptions& options);
-
-/// Runs through the take again on another fresh face and measures how far what is written is off, at every
-/// vertex of every frame, for the meshes of which that is not known.
-void measure(const Common& common, const Take& take, Face& face, Recording& recording);
 
 }  // namespace fascia::cli

@@ -101,10 +101,10 @@ void add_pointers(GltfEdit& edit, const Recording& recording, Animation& animati
 }  // namespace
 
 void add_take(GltfEdit& edit, const std::string& name, const Take& take, const Face& face,
-              const Recording& recording, const std::vector<NodeMotion>& nodes,
-              std::vector<std::string>& warnings) {
+              Recording recording, const std::vector<NodeMotion>& nodes, std::vector<std::string>& warnings) {
   Animation animation(edit, take, name);
-  for (const MeshMotion& motion : recording.meshes) {
+  for (MeshMotion& recorded : recording.meshes) {
+    const MeshMotion motion = std::move(recorded);  // its memory is free again when it is in the file
     std::vector<std::string> names;
     std::vector<std::vector<PrimitiveMotion>> shapes;
     for (Eigen::Index k = 0; k < motion.components.weights.rows(); ++k) {

@@ -13,7 +13,6 @@ namespace fascia::cli {
 /// and an animation `name` of their weights, of the channels (KHR_animation_pointer) and of the nodes that
 /// turn with the head. What was there keeps its place; lines in `warnings` tell of names that were there.
 void add_take(GltfEdit& edit, const std::string& name, const Take& take, const Face& face,
-              const Recording& recording, const std::vector<NodeMotion>& nodes,
-              std::vector<std::string>& warnings);
+              Recording recording, const std::vector<NodeMotion>& nodes, std::vector<std::string>& warnings);
 
 }  // namespace fascia::cli

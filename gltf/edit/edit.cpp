@@ -24,6 +24,11 @@ std::vector<std::size_t> Edit::nodes_of(uint32_t mesh) const {
   return nodes;
 }
 
+const tinygltf::Model& Edit::model() {
+  if (!model_) model_ = std::make_shared<const tinygltf::Model>(load_model(bytes(), "head"));
+  return *model_;
+}
+
 std::vector<uint8_t> Edit::bytes() const {
   Json out = json;
   if (!bin_.empty()) {
@@ -31,6 +36,15 @@ std::vector<uint8_t> Edit::bytes() const {
     out["buffers"][0]["byteLength"] = bin_.size();
   }
   return glb_bytes(text_of(out), bin_);
+}
+
+Edit::Parts Edit::parts() {
+  if (!bin_.empty()) {
+    if (!json.contains("buffers")) json["buffers"] = Json::array({Json::object()});
+    json["buffers"][0]["byteLength"] = bin_.size();
+  }
+  GlbFrame frame = glb_frame(text_of(json), bin_.size());
+  return {std::move(frame.before), bin_, std::move(frame.after)};
 }
 
 }  // namespace fascia::gltf

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <memory>
+
 #include "gltf/edit/appendix.h"
+#include "gltf/read/model.h"
 
 namespace fascia::gltf {
 
@@ -26,14 +29,28 @@ class Edit {
   /// Nodes that show `mesh`.
   std::vector<std::size_t> nodes_of(uint32_t mesh) const;
 
+  /// The file as tinygltf read it at the first call; what has been appended since is not in it.
+  const tinygltf::Model& model();
+
   /// The file as GLB.
   std::vector<uint8_t> bytes() const;
+
+  /// The same in three parts, one after the other, of which the large one is not copied: `binary` is good
+  /// until the next change.
+  struct Parts {
+    std::vector<uint8_t> before;
+    std::span<const uint8_t> binary;
+    std::vector<uint8_t> after;
+    std::size_t size() const { return before.size() + binary.size() + after.size(); }
+  };
+  Parts parts();
 
   Json json;
 
  private:
   std::vector<uint8_t> bin_;
   Appendix appendix_;
+  std::shared_ptr<const tinygltf::Model> model_;
 };
 
 }  // namespace fascia::gltf

@@ -163,7 +163,7 @@ class MeshMorphs {
 std::vector<MeshTargets> add_morph_targets(Edit& edit, const std::vector<std::string>& names,
                                            const std::vector<std::vector<PrimitiveMotion>>& shapes,
                                            const MorphOptions& options, std::vector<std::string>* warnings) {
-  const tinygltf::Model model = load_model(edit.bytes(), "head");
+  const tinygltf::Model& model = edit.model();
   std::set<uint32_t> meshes;
   for (const auto& shape : shapes)
     for (const PrimitiveMotion& motion : shape)

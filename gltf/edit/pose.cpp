@@ -58,7 +58,7 @@ void put_pose(Edit& edit, const MeshShading& shading, uint32_t mesh,
 }  // namespace
 
 void set_pose(Edit& edit, const std::vector<PosedPrimitive>& posed) {
-  const tinygltf::Model model = load_model(edit.bytes(), "head");
+  const tinygltf::Model& model = edit.model();
   std::map<uint32_t, std::vector<std::vector<Vec3f>>> meshes;
   for (const PosedPrimitive& seen : posed) {
     edit.primitive(seen.mesh, seen.primitive);  // throws when it is not there

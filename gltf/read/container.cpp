@@ -58,26 +58,36 @@ GlbChunks glb_chunks(std::span<const uint8_t> bytes, const std::string& name) {
   return chunks;
 }
 
-std::vector<uint8_t> glb_bytes(std::string_view json, std::span<const uint8_t> binary) {
-  const std::size_t json_size = (json.size() + 3) / 4 * 4, binary_size = (binary.size() + 3) / 4 * 4;
-  const std::size_t total =
-      header_size + chunk_header_size + json_size + (binary.empty() ? 0 : chunk_header_size + binary_size);
-  if (total > UINT32_MAX) throw Error("the file would be larger than the four gigabytes a GLB file can hold");
-  std::vector<uint8_t> bytes;
-  bytes.reserve(total);
+GlbFrame glb_frame(std::string_view json, std::size_t binary_size) {
+  const std::size_t json_size = (json.size() + 3) / 4 * 4, padded_size = (binary_size + 3) / 4 * 4;
+  const std::size_t before =
+      header_size + chunk_header_size + json_size + (binary_size == 0 ? 0 : chunk_header_size);
+  if (before + padded_size > UINT32_MAX)
+    throw Error("the file would be larger than the four gigabytes a GLB file can hold");
+  GlbFrame frame;
+  std::vector<uint8_t>& bytes = frame.before;
+  bytes.reserve(before);
   put_word(bytes, magic);
   put_word(bytes, 2);
-  put_word(bytes, static_cast<uint32_t>(total));
+  put_word(bytes, static_cast<uint32_t>(before + padded_size));
   put_word(bytes, static_cast<uint32_t>(json_size));
   put_word(bytes, json_chunk);
   bytes.insert(bytes.end(), json.begin(), json.end());
   bytes.resize(header_size + chunk_header_size + json_size, ' ');
-  if (!binary.empty()) {
-    put_word(bytes, static_cast<uint32_t>(binary_size));
+  if (binary_size > 0) {
+    put_word(bytes, static_cast<uint32_t>(padded_size));
     put_word(bytes, binary_chunk);
-    bytes.insert(bytes.end(), binary.begin(), binary.end());
-    bytes.resize(total, 0);
   }
+  frame.after.resize(padded_size - binary_size, 0);
+  return frame;
+}
+
+std::vector<uint8_t> glb_bytes(std::string_view json, std::span<const uint8_t> binary) {
+  GlbFrame frame = glb_frame(json, binary.size());
+  std::vector<uint8_t> bytes = std::move(frame.before);
+  bytes.reserve(bytes.size() + binary.size() + frame.after.size());
+  bytes.insert(bytes.end(), binary.begin(), binary.end());
+  bytes.insert(bytes.end(), frame.after.begin(), frame.after.end());
   return bytes;
 }
 

@@ -25,4 +25,11 @@ GlbChunks glb_chunks(std::span<const uint8_t> bytes, const std::string& name);
 /// Throws fascia::Error when the file would pass the format's four gigabytes.
 std::vector<uint8_t> glb_bytes(std::string_view json, std::span<const uint8_t> binary);
 
+/// The same without the binary chunk's bytes: what stands before and behind `binary_size` of them, for files
+/// that are not to be in memory twice.
+struct GlbFrame {
+  std::vector<uint8_t> before, after;
+};
+GlbFrame glb_frame(std::string_view json, std::size_t binary_size);
+
 }  // namespace fascia::gltf

@@ -239,6 +239,18 @@ TEST_F(Tool, PosedGlbKeepsMeshesAndCounts) {
   }
 }
 
+TEST_F(Tool, ValuesBeyondTheirRangeAreSaidToBeCutOff) {
+  const Outcome outcome = run("pose " + at("rig.glb") + " -o " + at("wide.glb") +
+                              " --set jaw_open=5 --set arkit:mouthSmileLeft=1.5 --set arkit:browInnerUp=1 "
+                              "--set jaw_lateral=-1");
+  EXPECT_EQ(outcome.code, 0);
+  for (const std::string says : {"'jaw_open': 5 lies beyond its range, 0 to 1",
+                                 "'arkit:mouthSmileLeft': 1.5 lies beyond its range, 0 to 1"})
+    EXPECT_NE(outcome.err.find(says), std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.err.find("browInnerUp"), std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.err.find("jaw_lateral"), std::string::npos) << outcome.err;
+}
+
 TEST_F(Tool, ExportsEveryPart) {
   for (const char* part : {"skin", "cranium", "mandible", "teeth", "eyes", "smas", "muscles", "all"})
     for (const char* extension : {".ply", ".obj", ".glb"}) {

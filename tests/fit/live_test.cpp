@@ -4,8 +4,10 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <random>
 
+#include "fascia/fascia.hpp"
 #include "fascia/fit.h"
 #include "fit/live/head_pose.h"
 #include "fit/live/landmark.h"
@@ -317,6 +319,54 @@ TEST_F(Live, SeesNothingAndHolds) {
   EXPECT_EQ(std::vector<float>(result.values, result.values + values.size()), values);
   Fit fresh;
   EXPECT_EQ(fresh.push(nothing).seen, 0U);
+}
+
+/// The same through the C++ wrapper, by landmarks' names.
+TEST_F(Live, ByNamesInCpp) {
+  const std::vector<uint8_t> bytes = formats::read_bytes(at("rig.glb"));
+  std::vector<const char*> names;
+  std::vector<float> places;
+  const std::vector<Vec3> standing = places_of(values_of({{"jaw_open", 0.3F}}), false);
+  for (size_t l = 0; l < landmarks.size(); ++l) {
+    names.push_back(landmarks[l].entry.landmark.c_str());
+    for (int k = 0; k < 3; ++k)
+      places.push_back(static_cast<float>(standing[l][k]));
+  }
+  const api::Asset rig = api::Asset::load(bytes);
+  api::Fit fit(rig, names);
+  EXPECT_EQ(fit.info().point_count, names.size());
+  EXPECT_STREQ(fit.info().names[0], names[0]);
+  EXPECT_NEAR(fit.push(places).values[subject->channel("jaw_open")], 0.3, 0.05);
+  places.pop_back();
+  EXPECT_THROW(fit.push(places), api::Error);
+  EXPECT_THROW(api::Fit(rig, "unknown"), api::Error);
+}
+
+/// The tool takes detectors' mark-ups, and says so of others.
+TEST_F(Live, ToolFitsPointsOfDetectors) {
+  const std::vector<Vec3> standing = places_of(values_of({{"jaw_open", 0.35F}}), false);
+  const Mat4 to_file = subject->file().rig.input_to_metres.cast<double>().inverse();
+  const LandmarkSet& set = *find_landmark_set("mediapipe478");
+  nlohmann::json list(set.points, nullptr);
+  for (const LandmarkSet::Entry& entry : set.entries)
+    for (size_t l = 0; l < landmarks.size(); ++l)
+      if (landmarks[l].entry.landmark == entry.landmark)
+        for (const uint32_t p : entry.points) {
+          const Vec3 place = transform_point(to_file, standing[l]);
+          list[p] = {place.x(), place.y(), place.z()};
+        }
+  std::ofstream(at(set.name + ".json")) << nlohmann::json{{"points", list}};
+  const cli::Outcome fitted =
+      run("fit " + at("rig.glb") + " --target " + at(set.name + ".json") + " -o " + at("a.json") + " --json");
+  ASSERT_EQ(fitted.code, 0) << fitted.err;
+  const nlohmann::json report = nlohmann::json::parse(fitted.out);
+  EXPECT_NEAR(report["activations"].value("jaw_open", 0.0), 0.35, 0.05) << set.name;
+  EXPECT_LT(report["rms_mm"].get<double>(), 0.3) << set.name;
+  std::ofstream(at("few.json")) << R"({"points": [[0,0,0],[1,0,0]]})";
+  const cli::Outcome refused =
+      run("fit " + at("rig.glb") + " --target " + at("few.json") + " -o " + at("a.json"));
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_NE(refused.err.find("478"), std::string::npos) << refused.err;
 }
 
 TEST_F(Live, SaysWhatIsWrong) {
