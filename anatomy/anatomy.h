@@ -194,12 +194,14 @@ struct Expression {
   std::string corrects;  ///< the expression it is added to, when it is a corrective; else empty
   std::string note;
   std::vector<std::pair<std::string, double>> weights;  ///< actuator name and weight; negative relaxes
+  std::vector<double> response;  ///< share of the row at each of the set's response_weights; none: the weight
 };
 
 struct ExpressionSet {
   std::string name;  ///< arkit, au, viseme, vrm, smile
   std::string title;
   std::string source;
+  std::vector<double> response_weights;  ///< rising between 0 and 1
   std::vector<Expression> expressions;
 
   /// The expression of this name, or null.

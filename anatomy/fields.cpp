@@ -138,6 +138,10 @@ std::vector<double> Fields::numbers(const char* key) const {
   return result;
 }
 
+std::vector<double> Fields::numbers_or_none(const char* key) const {
+  return has(key) ? numbers(key) : std::vector<double>();
+}
+
 Vec3 Fields::point_mm(const char* key) const {
   return triple(raw(key), *this, key) * metres;
 }

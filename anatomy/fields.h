@@ -49,6 +49,7 @@ class Fields {
   int whole_number(const char* key) const;
   bool flag(const char* key) const;
   std::vector<double> numbers(const char* key) const;
+  std::vector<double> numbers_or_none(const char* key) const;
   Vec3 point_mm(const char* key) const;  ///< millimetres in the file, metres here
   Vec3 direction(const char* key) const;
   std::vector<Vec3> points_mm(const char* key) const;  ///< millimetres in the file, metres here

@@ -45,12 +45,24 @@ std::vector<std::string> members_of(const Fields& entry, Side side) {
   return members;
 }
 
+/// That `numbers` rise from 0 to 1; strictly, and without the ends, when `is_strict`.
+void check_rises(const Fields& entry, const std::vector<double>& numbers, bool is_strict) {
+  double last = 0.0;
+  for (const double number : numbers) {
+    if (is_strict ? !(number > last && number < 1.0) : !(number >= last && number <= 1.0))
+      entry.fail("the numbers of a response must rise from 0 to 1");
+    last = number;
+  }
+}
+
 ExpressionSet set_of(const Json& document, const std::string& file) {
   const Fields root(document, file);
   ExpressionSet set;
   set.name = root.text("name");
   set.title = root.text("title");
   set.source = root.text("source");
+  set.response_weights = root.numbers_or_none("response_weights");
+  check_rises(root, set.response_weights, true);
   for (const Fields& entry : root.list("expressions")) {
     Expression expression;
     expression.name = entry.text("name");
@@ -62,6 +74,10 @@ ExpressionSet set_of(const Json& document, const std::string& file) {
       if (!value.is_number()) entry.fail("the weight of " + name + " must be a number");
       expression.weights.emplace_back(name, value.get<double>());
     }
+    expression.response = entry.numbers_or_none("response");
+    if (!expression.response.empty() && expression.response.size() != set.response_weights.size())
+      entry.fail("\"response\" needs one number for each of the file's response_weights");
+    check_rises(entry, expression.response, false);
     if (set.find(expression.name)) entry.fail("stands twice");
     set.expressions.push_back(expression);
   }

@@ -24,6 +24,7 @@ Subject::Subject(rig::RigFile file, const std::string& level)
   model_ = std::make_unique<sim::FaceModel>(sim::lattice_of(tissue), sim::jaw_of(file_.rig.skull.jaw));
   if (!model_->valid())
     throw Error("FASCIA_tissue, level '" + tissue.name + "': " + model_->fault() + "; build the rig again");
+  jaw_muscles_ = sim::jaw_muscles_of(file_.rig);
   fast_model_ = std::make_unique<sim::realtime::Model>(*model_);
   if (!fast_model_->valid())
     throw Error("FASCIA_tissue, level '" + tissue.name + "': " + fast_model_->fault() +
@@ -104,7 +105,8 @@ sim::Controls Subject::controls(std::span<const float> activations) const {
   };
   sim::Controls controls;
   controls.activations = activations;
-  controls.jaw = sim::clamped({value("jaw_open"), value("jaw_forward"), value("jaw_lateral")});
+  controls.jaw = sim::clamped(
+      jaw_muscles_.moved({value("jaw_open"), value("jaw_forward"), value("jaw_lateral")}, activations));
   return controls;
 }
 

@@ -7,6 +7,7 @@
 
 #include "geometry/mesh.h"
 #include "rig/read/read.h"
+#include "sim/jaw_muscles.h"
 #include "sim/realtime/face.h"
 
 /// Which muscles, how strongly: activations from what a face looks like.
@@ -63,6 +64,7 @@ class Subject {
   rig::RigFile file_;
   size_t level_ = 0;
   std::unique_ptr<sim::FaceModel> model_;
+  sim::JawMuscles jaw_muscles_;
   std::unique_ptr<sim::realtime::Model> fast_model_;
   std::unique_ptr<sim::realtime::Face> face_;
   std::vector<size_t> first_;

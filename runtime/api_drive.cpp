@@ -46,10 +46,7 @@ fascia_result fascia_face_set_member(fascia_face* handle, uint32_t set, uint32_t
     check_index(set, sets.size(), "set");
     check_index(member, sets[set].size(), "member");
     require(std::isfinite(value), "the value is not a finite number");
-    uint32_t first = 0;
-    for (uint32_t i = 0; i < set; ++i)
-      first += static_cast<uint32_t>(sets[i].size());
-    face.drive().set(0, {Target::Kind::member, first + member}, value);
+    face.drive().set(0, {Target::Kind::member, face.asset().first_member(set) + member}, value);
     return FASCIA_OK;
   });
 }

@@ -101,4 +101,21 @@ fascia_result fascia_face_gradient(fascia_face* handle, const float* const* slop
   });
 }
 
+fascia_result fascia_face_member_gradient(const fascia_face* handle, uint32_t set, const float* by_channel,
+                                          float* by_member) {
+  return guarded([&] {
+    const Face& face = checked(handle);
+    const Asset& asset = face.asset();
+    check_index(set, asset.set_members.size(), "set");
+    require(by_channel != nullptr && by_member != nullptr, "the derivatives or the result is null");
+    const std::span<const float> slopes(by_channel, asset.channel_names.size());
+    const uint32_t first = asset.first_member(set);
+    for (uint32_t m = 0; m < asset.set_members[set].size(); ++m) {
+      const float weight = face.drive().get(0, {Target::Kind::member, first + m});
+      by_member[m] = asset.members()[first + m].slope(weight, slopes);
+    }
+    return FASCIA_OK;
+  });
+}
+
 }  // extern "C"

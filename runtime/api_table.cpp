@@ -86,6 +86,7 @@ const fascia_api table = {
     .fit_set_neutral = fascia_fit_set_neutral,
     .fit_push = fascia_fit_push,
     .fit_reset = fascia_fit_reset,
+    .face_member_gradient = fascia_face_member_gradient,
 };
 
 }  // namespace

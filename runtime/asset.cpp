@@ -28,7 +28,37 @@ Failure unsound(std::size_t level, const std::string& fault) {
   return {FASCIA_ERROR_FORMAT, "FASCIA_tissue/levels/" + std::to_string(level) + ": " + fault};
 }
 
+/// Gives each of a set's members its response.
+void read_responses(const rig::NamedSet& set, std::span<Member> members) {
+  const std::size_t knots = set.response_weights.size();
+  for (std::size_t m = 0; m < members.size() && knots > 0; ++m)
+    try {
+      members[m].response =
+          Response(set.response_weights, std::span(set.responses).subspan(m * knots, knots));
+    } catch (const Error& error) {
+      throw Failure(FASCIA_ERROR_FORMAT, "FASCIA_actuation/sets/" + set.name +
+                                             "/responses: " + set.members[m] + ": " + error.what());
+    }
+}
+
 }  // namespace
+
+void Member::add(float weight, std::span<float> channels) const {
+  const float share = response.share(weight);
+  for (const auto& [channel, most] : entries)
+    channels[channel] += most * share;
+  for (const auto& [channel, most] : turns)
+    channels[channel] += most * weight;
+}
+
+float Member::slope(float weight, std::span<const float> by_channel) const {
+  float by_share = 0.0F, by_weight = 0.0F;
+  for (const auto& [channel, most] : entries)
+    by_share += most * by_channel[channel];
+  for (const auto& [channel, most] : turns)
+    by_weight += most * by_channel[channel];
+  return by_share * response.slope(weight) + by_weight;
+}
 
 std::string lower_case(std::string_view text) {
   std::string lower(text);
@@ -45,9 +75,9 @@ Asset::Asset(std::span<const uint8_t> bytes)
   index_sets();
   for (const auto& [name, target] : names_)
     spellings_.emplace(spelled(name), target);
-  find_jaw_muscles();
   if (const char* fault = sim::jaw_fault(sim::jaw_of(rig().skull.jaw)))
     throw Failure(FASCIA_ERROR_FORMAT, std::string("FASCIA_skull/jaw: ") + fault);
+  jaw_muscles_ = sim::jaw_muscles_of(rig());
   for (std::size_t level = 0; level < models_.size(); ++level)
     if (const char* fault = sim::lattice_fault(sim::lattice_of(rig().tissue.levels[level])))
       throw unsound(level, fault);
@@ -84,8 +114,13 @@ void Asset::index_sets() {
   for (const rig::NamedSet& set : rig().actuation.sets) {
     const auto first = static_cast<uint32_t>(members_.size());
     members_.resize(first + set.members.size());
-    for (std::size_t e = 0; e < set.weights.size(); ++e)
-      members_[first + set.member_indices[e]].entries.emplace_back(set.channel_indices[e], set.weights[e]);
+    for (std::size_t e = 0; e < set.weights.size(); ++e) {
+      const uint32_t channel = set.channel_indices[e];
+      Member& member = members_[first + set.member_indices[e]];
+      auto& list = rig().actuation.channels[channel].group == "eye" ? member.turns : member.entries;
+      list.emplace_back(channel, set.weights[e]);
+    }
+    read_responses(set, std::span(members_).subspan(first));
     auto& texts = set_members.emplace_back();
     for (uint32_t m = 0; m < set.members.size(); ++m) {
       texts.push_back(set.members[m].c_str());
@@ -97,32 +132,11 @@ void Asset::index_sets() {
   }
 }
 
-/// Muscles with one end on the mandible and the other on a bone that stands still: of each the mean of its
-/// fibres.
-void Asset::find_jaw_muscles() {
-  std::vector<sim::JawMuscle> pulls;
-  const auto& channels = rig().actuation.channels;
-  for (uint32_t c = 0; c < channels.size(); ++c) {
-    if (channels[c].muscle < 0) continue;
-    const rig::Muscle& muscle = rig().muscles[static_cast<std::size_t>(channels[c].muscle)];
-    const bool ends_there =
-        muscle.insertion == rig::FibreEnd::mandible && muscle.origin == rig::FibreEnd::cranium;
-    const bool begins_there =
-        muscle.origin == rig::FibreEnd::mandible && muscle.insertion == rig::FibreEnd::cranium;
-    if ((!ends_there && !begins_there) || muscle.fibre_offsets.size() < 2) continue;
-    sim::JawMuscle pull;
-    pull.channel = c;
-    pull.strength = static_cast<double>(muscle.strength);
-    const double share = 1.0 / static_cast<double>(muscle.fibre_offsets.size() - 1);
-    for (std::size_t f = 0; f + 1 < muscle.fibre_offsets.size(); ++f) {
-      const uint32_t first = muscle.fibre_offsets[f], last = muscle.fibre_offsets[f + 1];
-      if (last <= first) continue;
-      pull.origin += share * muscle.points[ends_there ? first : last - 1].cast<double>();
-      pull.insertion += share * muscle.points[ends_there ? last - 1 : first].cast<double>();
-    }
-    pulls.push_back(pull);
-  }
-  jaw_muscles_ = sim::JawMuscles(sim::jaw_of(rig().skull.jaw), pulls);
+uint32_t Asset::first_member(std::size_t set) const {
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < set; ++i)
+    first += set_members[i].size();
+  return static_cast<uint32_t>(first);
 }
 
 const rig::Binding* Asset::binding(std::size_t level, std::size_t primitive) const {

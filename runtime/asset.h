@@ -13,6 +13,7 @@
 
 #include "rig/read/read.h"
 #include "runtime/allocator.h"
+#include "runtime/drivers/response.h"
 #include "runtime/mesh_shape.h"
 #include "runtime/message.h"
 #include "sim/face_model.h"
@@ -34,9 +35,17 @@ struct Driven {
   bool overrides = false;  ///< takes the channel from all other names, where it speaks
 };
 
-/// A member of a named set as the channels it adds to.
+/// A member of a named set as the channels it adds to. Eyes turn by the weight itself, for a direction of
+/// gaze is a number of degrees; everything else follows the response.
 struct Member {
   std::vector<std::pair<uint32_t, float>> entries;  ///< channel, weight
+  std::vector<std::pair<uint32_t, float>> turns;    ///< the same for channels of the group `eye`
+  Response response;
+
+  /// Adds what the member at `weight` asks of each channel to `channels`.
+  void add(float weight, std::span<float> channels) const;
+  /// Derivative by the weight, at `weight`, of a loss whose derivatives by the channels are `by_channel`.
+  float slope(float weight, std::span<const float> by_channel) const;
 };
 
 /// The channels that the jaw and the eyes listen to; -1 where the rig has none.
@@ -56,6 +65,8 @@ class Asset {
   /// The binding of primitive `primitive` at `level`, or null.
   const rig::Binding* binding(std::size_t level, std::size_t primitive) const;
   const std::vector<Member>& members() const { return members_; }
+  /// Place of a set's first member among them.
+  uint32_t first_member(std::size_t set) const;
   const BoneChannels& bones() const { return bones_; }
   const sim::JawMuscles& jaw_muscles() const { return jaw_muscles_; }
 
@@ -86,7 +97,6 @@ class Asset {
  private:
   void index_channels();
   void index_sets();
-  void find_jaw_muscles();
 
   rig::RigFile file_;
   std::vector<Member> members_;

@@ -97,9 +97,7 @@ void Drive::sum_up(Layer& layer, std::vector<float>& sums) const {
               finite(layer.curve_channels[c]);
   for (std::size_t m = 0; m < layer.members.size(); ++m) {
     const float value = finite(layer.members[m]) + finite(layer.curve_members[m]);
-    if (value == 0.0F) continue;
-    for (const auto& [channel, weight] : asset_->members()[m].entries)
-      sums[channel] += weight * value;
+    if (value != 0.0F) asset_->members()[m].add(value, sums);
   }
   for (std::size_t c = 0; c < sums.size(); ++c) {
     if (layer.taken_weight[c] <= 0.0F || !std::isfinite(layer.taken[c])) continue;

@@ -105,6 +105,12 @@ Hinge make_hinge(std::array<uint32_t, 4> nodes, double rigidity, const Vec3* res
   return hinge;
 }
 
+bool is_folded_shut(const std::array<uint32_t, 4>& nodes, const Vec3* rest) {
+  const HingeFrame f = hinge_frame(nodes, rest);
+  return (f.normal_a / std::sqrt(f.area_a) + f.normal_b / std::sqrt(f.area_b)).squaredNorm() <
+         formulas::fold_softness;
+}
+
 HingeNormal hinge_normal(const Hinge& h, const Vec3* x) {
   const auto& n = h.nodes;
   double inverse_length = 0.0;

@@ -89,6 +89,10 @@ Membrane make_membrane(std::array<uint32_t, 3> nodes, double youngs_thickness, d
 Hinge make_hinge(std::array<uint32_t, 4> nodes, double rigidity, const Vec3* rest);
 Prism make_prism(std::array<uint32_t, 6> nodes, double stiffness, const Vec3* rest);
 
+/// Whether a hinge's triangles lie on each other to within 6 degrees: it has no mean normal that says where
+/// it bends to, and what it pulled with at rest would throw it open at the least disturbance.
+bool is_folded_shut(const std::array<uint32_t, 4>& nodes, const Vec3* rest);
+
 /// Angle in radians between the planes of a hinge, 0 flat, positive where the edge stands out.
 double hinge_angle(const std::array<uint32_t, 4>& nodes, const Vec3* x);
 /// Volume of a prism in cubic metres.

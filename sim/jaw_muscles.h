@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "sim/jaw.h"
@@ -33,5 +34,33 @@ class JawMuscles {
   };
   std::vector<Lever> levers_;
 };
+
+/// Those of a rig (any struct with its field names): muscles with one end on the mandible and the other on a
+/// bone that stands still, of each the mean of its fibres.
+template <class Rig>
+JawMuscles jaw_muscles_of(const Rig& rig) {
+  std::vector<JawMuscle> pulls;
+  const auto& channels = rig.actuation.channels;
+  for (uint32_t c = 0; c < channels.size(); ++c) {
+    if (channels[c].muscle < 0) continue;
+    const auto& muscle = rig.muscles[static_cast<size_t>(channels[c].muscle)];
+    using End = std::decay_t<decltype(muscle.origin)>;
+    const bool ends_there = muscle.insertion == End::mandible && muscle.origin == End::cranium;
+    const bool begins_there = muscle.origin == End::mandible && muscle.insertion == End::cranium;
+    if ((!ends_there && !begins_there) || muscle.fibre_offsets.size() < 2) continue;
+    JawMuscle pull;
+    pull.channel = c;
+    pull.strength = static_cast<double>(muscle.strength);
+    const double share = 1.0 / static_cast<double>(muscle.fibre_offsets.size() - 1);
+    for (size_t f = 0; f + 1 < muscle.fibre_offsets.size(); ++f) {
+      const uint32_t first = muscle.fibre_offsets[f], last = muscle.fibre_offsets[f + 1];
+      if (last <= first) continue;
+      pull.origin += share * muscle.points[ends_there ? first : last - 1].template cast<double>();
+      pull.insertion += share * muscle.points[ends_there ? last - 1 : first].template cast<double>();
+    }
+    pulls.push_back(pull);
+  }
+  return JawMuscles(jaw_of(rig.skull.jaw), pulls);
+}
 
 }  // namespace fascia::sim

@@ -16,6 +16,7 @@ const std::vector<Expectation>& expectations() {
       {"orbicularis_oculi_preseptal_lower", 1, "orbitale_left", {0, 1, 0}, 0.2, 5},
       {"orbicularis_oculi_orbital_upper", 1, "superciliare_left", {0, -1, 0}, 0.7, 6},
       {"orbicularis_oculi_orbital_lower", 1, "zygomaxillare_skin_left", {0, 1, 0}, 0.7, 6},
+      {"orbicularis_oculi_malar", 1, "malare_left", {0, 1, 0}, 2, 10},
       {"levator_palpebrae_superioris", 1, "palpebrale_superius_left", {0, 1, 0}, 0.5, 4},
       // Slung over the nose from side to side, the two press the skin beside the ala onto it: against the
       // outward normal of the groove.

@@ -54,11 +54,13 @@ anatomy::ExpressionSet table_of(const std::string& path) {
   std::ifstream file(path);
   table.expressions.clear();
   const nlohmann::json played = nlohmann::json::parse(file);
+  table.response_weights = played.value("response_weights", std::vector<double>());
   for (const auto& entry : played["expressions"]) {
     anatomy::Expression row;
     row.name = entry["name"];
     for (const auto& [actuator, weight] : entry["weights"].items())
       row.weights.emplace_back(actuator, weight.get<double>());
+    row.response = entry.value("response", std::vector<double>());
     table.expressions.push_back(std::move(row));
   }
   return table;

@@ -14,18 +14,27 @@ namespace {
 constexpr std::array<double, 4> weights = {0.1, 0.25, 0.5, 0.75};
 using Way = std::array<double, weights.size()>;
 
-/// By shape: share of the way at each weight.
+/// By shape: share of the way at each weight; of a corrective, of what it adds to the shape it corrects.
 std::map<std::string, Way> ways_of(const SculptedHead& head, const anatomy::ExpressionSet& table,
                                    const std::string& level) {
   std::map<std::string, Way> ways;
   KnownFace face(head, level);
   for (const auto& [name, shape] : face.shapes()) {
     if (table.find(name) == nullptr) continue;
-    const Eigen::VectorXd whole = face.pose(face.activations(table, {{name, 1.0}}));
+    const auto added = [&, name = name, values = shape.values](double weight) {
+      std::map<std::string, double> with = values, without;
+      for (auto& [member, value] : with) {
+        value *= weight;
+        if (member != name) without[member] = value;
+      }
+      Eigen::VectorXd moved = face.pose(face.activations(table, with));
+      if (!without.empty()) moved -= face.pose(face.activations(table, without));
+      return moved;
+    };
+    const Eigen::VectorXd whole = added(1.0);
     if (whole.squaredNorm() < 1e-12) continue;
     for (size_t w = 0; w < weights.size(); ++w)
-      ways[name][w] =
-          face.pose(face.activations(table, {{name, weights[w]}})).dot(whole) / whole.squaredNorm();
+      ways[name][w] = added(weights[w]).dot(whole) / whole.squaredNorm();
   }
   return ways;
 }
@@ -56,16 +65,17 @@ void run_response(const std::vector<SculptedHead>& heads, const anatomy::Express
     if (!failures[h].empty()) std::printf("%s: %s\n", heads[h].name.c_str(), failures[h].c_str());
   std::map<std::string, Way> sums;
   std::map<std::string, int> counts;
+  std::map<std::string, double> worst;  ///< of a head, from its weight
   for (const auto& ways : by_head)
     for (const auto& [name, way] : ways) {
       ++counts[name];
       for (size_t w = 0; w < way.size(); ++w)
-        sums[name][w] += way[w];
+        sums[name][w] += way[w], worst[name] = std::max(worst[name], std::abs(way[w] - weights[w]));
     }
   std::printf("%-20s", "share of the way at");
   for (const double w : weights)
     std::printf(" %6.2f", w);
-  std::printf("\n");
+  std::printf("  worst head\n");
   Way mean{}, apart{};
   std::array<int, weights.size()> within{};
   for (auto& [name, sum] : sums) {
@@ -77,7 +87,7 @@ void run_response(const std::vector<SculptedHead>& heads, const anatomy::Express
       within[w] += off <= 0.05 ? 1 : 0;
       std::printf(" %6.3f", way);
     }
-    std::printf("\n");
+    std::printf("  %6.3f\n", worst[name]);
   }
   std::printf("%-20s", "mean");
   for (const double value : mean)

@@ -7,9 +7,11 @@
 #include <fstream>
 #include <iterator>
 
+#include "cli/embedded_head.h"
 #include "cli/fit_shapes.h"
 #include "formats/scene.h"
 #include "geometry/error.h"
+#include "runtime/drivers/response.h"
 #include "tests/paths/paths.h"
 
 namespace fascia::bench {
@@ -58,6 +60,12 @@ std::vector<SculptedHead> sculpted_heads() {
   own("avatar", "asian_business");
   own("facecap", "facecap_plain");
   return heads;
+}
+
+SculptedHead generic_head() {
+  const fs::path head = fs::temp_directory_path() / "fascia_embedded_head.obj";
+  cli::write_embedded_head(head, fs::path(head).replace_extension(".mrk.json"));
+  return {"embedded", "generic", head, {}, {}};
 }
 
 fs::path rig_of(const SculptedHead& head, const std::string& detail) {
@@ -143,9 +151,18 @@ std::vector<float> KnownFace::activations(const anatomy::ExpressionSet& table,
   for (const auto& [name, value] : values) {
     const anatomy::Expression* row = table.find(name);
     if (row == nullptr) continue;
-    for (const auto& [actuator, weight] : row->weights)
-      if (const int32_t at = subject_->channel(actuator); at >= 0)
-        result[static_cast<size_t>(at)] += static_cast<float>(value * weight);
+    const std::vector<float> knots(table.response_weights.begin(), table.response_weights.end());
+    const std::vector<float> response(row->response.begin(), row->response.end());
+    const float share = response.empty()
+                            ? static_cast<float>(value)
+                            : runtime::Response(knots, response).share(static_cast<float>(value));
+    for (const auto& [actuator, weight] : row->weights) {
+      const int32_t at = subject_->channel(actuator);
+      if (at < 0) continue;
+      const auto c = static_cast<size_t>(at);
+      result[c] +=
+          static_cast<float>(weight) * (channels[c].group == "eye" ? static_cast<float>(value) : share);
+    }
   }
   for (size_t c = 0; c < channels.size(); ++c)
     result[c] = std::clamp(result[c], channels[c].minimum, channels[c].maximum);

@@ -22,6 +22,9 @@ struct SculptedHead {
 /// the data are not there.
 std::vector<SculptedHead> sculpted_heads();
 
+/// The generic head as a file of its own, named "embedded"; it has no shapes.
+SculptedHead generic_head();
+
 /// The rig of `head` at `detail`, built by the tool with landmarks found, as a user would; a rig is kept in
 /// the temporary folder and built anew when the head's file or the tool has changed. Throws fascia::Error
 /// with the tool's message when it is refused.
@@ -49,7 +52,8 @@ class KnownFace {
   /// By ARKit name. mouthClose corrects an open jaw and is played and known with jawOpen.
   const std::map<std::string, KnownShape>& shapes() const { return shapes_; }
 
-  /// Channel values that play expressions of `table`, each held to its channel's range.
+  /// Channel values that play expressions of `table`, each by its response (eyes by the value itself), held
+  /// to their channels' ranges.
   std::vector<float> activations(const anatomy::ExpressionSet& table,
                                  const std::map<std::string, double>& values) const;
   /// 3 x #face vertices, metres: the static pose of `activations`, from rest.

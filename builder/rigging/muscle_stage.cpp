@@ -134,6 +134,13 @@ std::vector<rig::Muscle> build_muscles(const anatomy::GenericAnatomy& anatomy,
   return all;
 }
 
+std::vector<float> floats(const std::vector<double>& numbers) {
+  std::vector<float> result;
+  for (const double number : numbers)
+    result.push_back(static_cast<float>(number));
+  return result;
+}
+
 rig::Actuation rig_actuation(const anatomy::GenericAnatomy& anatomy,
                              const std::vector<rig::Muscle>& muscles) {
   rig::Actuation out;
@@ -167,8 +174,12 @@ rig::Actuation rig_actuation(const anatomy::GenericAnatomy& anatomy,
   for (const anatomy::ExpressionSet& vocabulary : anatomy.expression_sets) {
     rig::NamedSet set;
     set.name = vocabulary.name;
+    set.response_weights = floats(vocabulary.response_weights);
     for (const anatomy::Expression& expression : vocabulary.expressions) {
       set.members.push_back(expression.name);
+      const std::vector<float> response =
+          expression.response.empty() ? set.response_weights : floats(expression.response);
+      set.responses.insert(set.responses.end(), response.begin(), response.end());
       for (const auto& [channel, weight] : expression.weights)
         add_entry(set, channel, weight);
     }

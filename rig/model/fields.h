@@ -244,6 +244,8 @@ void named_set_fields(V& v, T& set, std::size_t channels) {
   const std::size_t entries = set.member_indices.size();
   v.index("entryChannels", set.channel_indices, entries, channels);
   v.list("entryWeights", set.weights, entries);
+  v.list("responseWeights", set.response_weights, any);
+  v.list("responses", set.responses, set.response_weights.size() * set.members.size());
 }
 
 template <class V, class T>

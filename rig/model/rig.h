@@ -226,13 +226,16 @@ struct Channel {
   std::string unit;     ///< "1", "rad"
 };
 
-/// A named vocabulary (arkit, au, viseme, vrm) as a sparse matrix onto the channels.
+/// A named vocabulary (arkit, au, viseme, vrm) as a sparse matrix onto the channels, and what share of its
+/// row a member's weight plays: without knots, the weight itself.
 struct NamedSet {
   std::string name;
   std::vector<std::string> members;
   std::vector<uint32_t> member_indices;   ///< #entries
   std::vector<uint32_t> channel_indices;  ///< #entries
   std::vector<float> weights;             ///< #entries
+  std::vector<float> response_weights;    ///< #knots: weights of members, rising between 0 and 1
+  std::vector<float> responses;  ///< #members * #knots: share of a member's row that each weight plays
 };
 
 struct Actuation {

@@ -212,7 +212,7 @@ TEST(Actuators, EveryMuscleAndTheJawEyesLidsLips) {
     EXPECT_NE(generic().actuator(name), nullptr) << name;
   EXPECT_EQ(generic().actuator("jaw_lateral")->minimum, -1.0);
   ASSERT_NE(generic().whole("orbicularis_oculi_left"), nullptr);
-  EXPECT_EQ(generic().whole("orbicularis_oculi_left")->members.size(), 6U);
+  EXPECT_EQ(generic().whole("orbicularis_oculi_left")->members.size(), 7U);
   EXPECT_EQ(generic().whole("orbicularis_oculi_pretarsal_right")->members.size(), 2U);
 }
 

@@ -29,10 +29,14 @@ class Numbers {
     add(anatomy.mechanics);
     for (const Actuator& actuator : anatomy.actuators)
       add(actuator.minimum, actuator.maximum, actuator.rest);
-    for (const ExpressionSet& set : anatomy.expression_sets)
-      for (const Expression& expression : set.expressions)
+    for (const ExpressionSet& set : anatomy.expression_sets) {
+      add(set.response_weights);
+      for (const Expression& expression : set.expressions) {
         for (const auto& [name, weight] : expression.weights)
           add(weight);
+        add(expression.response);
+      }
+    }
   }
   bool operator==(const Numbers&) const = default;
 

@@ -54,8 +54,7 @@ void SweptFace::add(const runtime::Target& target, float value) {
   if (target.kind == runtime::Target::Kind::channel)
     values_[target.index] += value;
   else
-    for (const auto& [channel, weight] : asset_->members()[target.index].entries)
-      values_[channel] += weight * value;
+    asset_->members()[target.index].add(value, values_);
   for (size_t c = 0; c < values_.size(); ++c)
     values_[c] = std::clamp(values_[c], asset_->channel_minimum[c], asset_->channel_maximum[c]);
 }

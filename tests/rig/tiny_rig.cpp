@@ -217,8 +217,10 @@ rig::Actuation tiny_actuation() {
                      {"mouthSmileLeft", "mouthSmileRight", "jawOpen"},
                      {0, 1, 2, 2},
                      {0, 1, 2, 3},
-                     {0.9F, 0.9F, 1.0F, 0.1F}},
-                    {"au", {"12"}, {0, 0}, {0, 1}, {0.8F, 0.8F}}};
+                     {0.9F, 0.9F, 1.0F, 0.1F},
+                     {},
+                     {}},
+                    {"au", {"12"}, {0, 0}, {0, 1}, {0.8F, 0.8F}, {0.25F, 0.5F, 0.75F}, {0.15F, 0.4F, 0.7F}}};
   return actuation;
 }
 

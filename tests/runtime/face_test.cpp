@@ -66,7 +66,8 @@ TEST(FaceTest, MembersAddUpAndAreClamped) {
   ASSERT_EQ(fascia_face_set(face.face, "zygomaticus_major_left", 0.1F), FASCIA_OK);
   ASSERT_EQ(fascia_face_pose(face.face), FASCIA_OK);
   const float* effective = fascia_face_effective_values(face.face);
-  EXPECT_NEAR(effective[0], 0.1F + 0.9F * 0.5F + 0.8F * 0.25F, 1e-6F);
+  EXPECT_NEAR(effective[0], 0.1F + 0.9F * 0.5F + 0.8F * 0.15F, 1e-6F)
+      << "the response of au:12 plays 0.15 of its row at 0.25";
   EXPECT_EQ(effective[1], 1.0F);
   float value = 0;
   ASSERT_EQ(fascia_face_get(face.face, "au:12", &value), FASCIA_OK);

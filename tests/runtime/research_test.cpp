@@ -143,4 +143,33 @@ TEST(Research, TheGradientIsThatOfFiniteDifferences) {
   EXPECT_EQ(gradient[0], 0.0F);
 }
 
+TEST(Research, TheGradientByMembersFollowsTheirResponse) {
+  const Loaded rig;
+  const Face face(rig.asset);
+  const float by_channel[6] = {1.0F, -2.0F, 0.5F, 3.0F, 0.7F, 0.0F};
+  uint32_t set = 0, member = 0;
+  for (const char* name : {"au:12", "arkit:jawOpen"}) {
+    ASSERT_EQ(fascia_asset_find_member(rig.asset, name, &set, &member), FASCIA_OK);
+    for (const float weight : {0.1F, 0.25F, 0.4F, 0.9F}) {
+      const auto loss = [&](float at) {
+        EXPECT_EQ(fascia_face_set(face.face, name, at), FASCIA_OK);
+        EXPECT_EQ(fascia_face_pose(face.face), FASCIA_OK);
+        float sum = 0.0F;
+        for (int channel = 0; channel < 5; ++channel)
+          sum += by_channel[channel] * fascia_face_effective_values(face.face)[channel];
+        return sum;
+      };
+      const float difference = (loss(weight + 0.01F) - loss(weight - 0.01F)) / 0.02F;
+      loss(weight);
+      float by_member[3] = {};
+      ASSERT_EQ(fascia_face_member_gradient(face.face, set, by_channel, by_member), FASCIA_OK);
+      EXPECT_NEAR(by_member[member], difference, 0.02F) << name << " at " << weight;
+    }
+    fascia_face_clear(face.face);
+  }
+  float by_member[3] = {};
+  EXPECT_EQ(fascia_face_member_gradient(face.face, 9, by_channel, by_member), FASCIA_ERROR_ARGUMENT);
+  EXPECT_EQ(fascia_face_member_gradient(face.face, 0, nullptr, by_member), FASCIA_ERROR_ARGUMENT);
+}
+
 }  // namespace

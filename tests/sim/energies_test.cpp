@@ -70,6 +70,24 @@ TEST(Energies, GradientsMatchFiniteDifferences) {
   }
 }
 
+TEST(Energies, TrianglesThatLieOnEachOtherMakeNoHinge) {
+  const auto fan = [](double degrees) {
+    const double angle = degrees * 3.14159265358979 / 180.0;
+    return Positions{Vec3(0, 0, 0), Vec3(.005, 0, 0), Vec3(.002, .004, 0),
+                     Vec3(.002, .004 * std::cos(angle), .004 * std::sin(angle))};
+  };
+  const std::array<uint32_t, 4> nodes = {0, 1, 2, 3};
+  EXPECT_TRUE(is_folded_shut(nodes, fan(0.0).data()));
+  EXPECT_TRUE(is_folded_shut(nodes, fan(4.0).data()));
+  for (const double degrees : {8.0, 20.0, 90.0, 180.0}) {
+    const Positions rest = fan(degrees);
+    EXPECT_FALSE(is_folded_shut(nodes, rest.data())) << degrees;
+    Positions gradient(4, Vec3::Zero());
+    EXPECT_LT(hinge_energy(make_hinge(nodes, 1e-4, rest.data()), rest.data(), gradient.data()), 1e-20)
+        << "what is a hinge is at ease at rest";
+  }
+}
+
 TEST(Energies, RigidMotionCostsNothing) {
   const Eigen::AngleAxisd turn(1.1, Vec3(1, 2, -1).normalized());
   const Positions fan = {six[0], six[1], six[2], Vec3(.002, -.004, -.001)};

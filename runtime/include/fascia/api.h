@@ -105,6 +105,8 @@ typedef struct fascia_api {
   fascia_result (*fit_push)(fascia_fit* fit, const float* points, const float* weights,
                             fascia_fit_result* result);
   fascia_result (*fit_reset)(fascia_fit* fit);
+  fascia_result (*face_member_gradient)(const fascia_face* face, uint32_t set, const float* by_channel,
+                                        float* by_member);
 } fascia_api;
 
 /* The library's table, for a host that was made for `version` (FASCIA_VERSION_MAJOR << 16 |

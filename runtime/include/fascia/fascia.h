@@ -245,7 +245,8 @@ FASCIA_API float* fascia_face_values(fascia_face* face);
 /* Sets a value by name, case-insensitive: a channel, "set:member" such as "arkit:jawOpen" or "au:12", or a
  * member's bare name when no channel and no earlier set has it; other spellings (mouthSmile_L) and other
  * programs' names (viseme_PP, Joy) are known too. A member's value stays until it is set again,
- * and adds to the channels it maps onto. */
+ * and adds to the channels it maps onto: as much as makes the face go that share of its way (the member's
+ * response), and eyes turn by that share of their angle. */
 FASCIA_API fascia_result fascia_face_set(fascia_face* face, const char* name, float value);
 
 /* The value last set by that name. */

@@ -62,6 +62,12 @@ FASCIA_API fascia_result fascia_face_fibre_forces(fascia_face* face, float* to, 
 FASCIA_API fascia_result fascia_face_gradient(fascia_face* face, const float* const* slopes,
                                               float* by_channel);
 
+/* What those derivatives are by the members of a set: `by_channel` has channel_count floats, `by_member` gets
+ * one float a member. Where each member stands is what fascia_face_set and its kin have set, and its response
+ * (a weight is a share of the way that the face goes, not of its muscles' pull) is differentiated with it. */
+FASCIA_API fascia_result fascia_face_member_gradient(const fascia_face* face, uint32_t set,
+                                                     const float* by_channel, float* by_member);
+
 #ifdef __cplusplus
 }
 #endif

@@ -7,9 +7,12 @@
 //   identify tissue TABLE.json [--heads NAME,...] [--only SHAPE,...] [--actuators FILE] [--data DIR] -o
 //   MECHANICS.json
 //
+//   identify responses anatomy/data/expressions [--heads NAME,...] [--level low] [--threads N]
+//
 // `tables` fits the rows of the ARKit table on several heads of several makers together and writes it;
 // `--left` looks at one side of one-sided shapes alone. `tissue` makes a step of Gauss and Newton on the
-// tissue's constants.
+// tissue's constants. `responses` finds for each row of every table what share of it to play at a weight, so
+// that the face shows that weight of the shape; "embedded" is the generic head itself.
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -19,19 +22,21 @@
 #include <set>
 
 #include "geometry/error.h"
+#include "tools/anatomy/identify/responses.h"
+#include "tools/anatomy/identify/table_file.h"
 #include "tools/anatomy/identify/tables.h"
 #include "tools/anatomy/identify/tissue.h"
 
 namespace fascia::identify {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 struct Request {
   std::string table, output, level = "low", actuators = "anatomy/figures/expression_actuators.json";
   std::set<std::string> heads = {"neutral", "person_3", "asian_business", "rpm_avatar", "facecap_plain"},
                         only;
+  bool has_heads = false;
   double reach = 1.0;
+  ResponseOptions responses;
   TableOptions options;
   TissueOptions tissue;
 };
@@ -47,33 +52,6 @@ std::set<std::string> list_of(const std::string& text) {
       name.clear();
     }
   return names;
-}
-
-/// One expression a line.
-void write_table(const std::string& path, const Json& table) {
-  std::ofstream file(path);
-  file << "{\n";
-  for (const auto& [key, value] : table.items())
-    if (key != "expressions") file << "  " << Json(key).dump() << ": " << value.dump() << ",\n";
-  file << "  \"expressions\": [\n";
-  const Json& rows = table["expressions"];
-  for (size_t r = 0; r < rows.size(); ++r) {
-    std::string line = "{";
-    for (const auto& [key, value] : rows[r].items()) {
-      if (line.size() > 1) line += ", ";
-      line += Json(key).dump() + ": ";
-      if (!value.is_object()) {
-        line += value.dump();
-        continue;
-      }
-      std::string inner = "{";
-      for (const auto& [name, number] : value.items())
-        inner += (inner.size() > 1 ? ", " : "") + Json(name).dump() + ": " + number.dump();
-      line += inner + "}";
-    }
-    file << "    " << line << (r + 1 < rows.size() ? "},\n" : "}\n");
-  }
-  file << "  ]\n}\n";
 }
 
 Json sorted(const Weights& weights) {
@@ -109,8 +87,7 @@ std::vector<ShapeEntry> entries_of(const Request& request) {
 }
 
 void fit_tissue(const Request& request) {
-  std::ifstream file(request.table);
-  const Json table = Json::parse(file);
+  const Json table = read_table(request.table);
   std::map<std::string, Weights> rows;
   for (const Json& row : table["expressions"])
     rows[row["name"]] = row["weights"].get<Weights>();
@@ -123,9 +100,21 @@ void fit_tissue(const Request& request) {
   identify_tissue(entries_of(request), rows, heads, weights, request.tissue, request.output);
 }
 
+/// The generic head too, which has no shapes of its own and needs none here.
+void fit_responses(const Request& request) {
+  const std::set<std::string> wanted =
+      request.has_heads ? request.heads : std::set<std::string>{"neutral", "rpm_avatar", "embedded"};
+  std::vector<bench::SculptedHead> heads;
+  for (const bench::SculptedHead& head : bench::sculpted_heads())
+    if (wanted.contains(head.name)) heads.push_back(head);
+  const std::filesystem::path folder = request.table;
+  if (wanted.contains("embedded")) heads.push_back(bench::generic_head());
+  if (heads.empty()) throw Error("none of these heads lies in the measured data");
+  identify_responses(folder, heads, request.level, request.responses);
+}
+
 void fit_tables(const Request& request) {
-  std::ifstream file(request.table);
-  Json table = Json::parse(file);
+  Json table = read_table(request.table);
   const auto row_of = [&](const std::string& name) -> Json& {
     for (Json& row : table["expressions"])
       if (row["name"] == name) return row;
@@ -176,7 +165,9 @@ int main(int argc, char** argv) {
     const std::string word = argv[i];
     const auto value = [&]() -> std::string { return i + 1 < argc ? argv[++i] : ""; };
     if (word == "--heads")
-      request.heads = fascia::identify::list_of(value());
+      request.heads = fascia::identify::list_of(value()), request.has_heads = true;
+    else if (word == "--threads")
+      request.responses.threads = std::stoi(value());
     else if (word == "--only")
       request.only = fascia::identify::list_of(value());
     else if (word == "--level")
@@ -197,16 +188,18 @@ int main(int argc, char** argv) {
       request.table = word;
   }
   try {
-    if ((command != "tables" && command != "tissue") || request.table.empty() ||
+    if ((command != "tables" && command != "tissue" && command != "responses") || request.table.empty() ||
         (command == "tissue" && request.output.empty())) {
-      std::fprintf(
-          stderr,
-          "usage: identify tables|tissue TABLE.json [--heads NAME,...] [--only SHAPE,...] [--actuators FILE] "
-          "[--level NAME] [--reach R] [--left] [--data DIR] [-o FILE]\n");
+      std::fprintf(stderr,
+                   "usage: identify tables|tissue TABLE.json|responses FOLDER [--heads NAME,...] [--only "
+                   "SHAPE,...] [--actuators FILE] "
+                   "[--level NAME] [--reach R] [--left] [--data DIR] [-o FILE]\n");
       return 2;
     }
     if (command == "tables")
       fascia::identify::fit_tables(request);
+    else if (command == "responses")
+      fascia::identify::fit_responses(request);
     else
       fascia::identify::fit_tissue(request);
   } catch (const std::exception& error) {
