@@ -1,9 +1,11 @@
 #include "sim/face_model.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <map>
 
+#include "sim/formulas/elements.h"
 #include "sim/rest_stiffness.h"
 
 namespace fascia::sim {
@@ -99,6 +101,14 @@ void FaceModel::make_elements() {
   }
 }
 
+/// Whether a hinge's triangles lie on each other to within 6 degrees: it has no mean normal that says where
+/// it bends to, and what it pulled with at rest would throw it open at the least disturbance.
+static bool is_folded_shut(const std::array<uint32_t, 4>& n, const Positions& rest) {
+  const Vec3 edge = rest[n[1]] - rest[n[0]];
+  const Vec3 a = edge.cross(rest[n[2]] - rest[n[0]]), b = (rest[n[3]] - rest[n[0]]).cross(edge);
+  return (a.stableNormalized() + b.stableNormalized()).squaredNorm() < formulas::fold_softness;
+}
+
 void FaceModel::make_hinges() {
   // Opposite corner and first triangle's direction of every edge; the second triangle closes the hinge.
   std::map<std::pair<uint32_t, uint32_t>, uint32_t> opposite;
@@ -114,8 +124,8 @@ void FaceModel::make_hinges() {
       if (a > b || other == opposite.end()) continue;
       const double mean = 0.5 * (static_cast<double>(rigidity[a]) + rigidity[b]);
       if (mean == 0.0) continue;
-      hinges_.push_back(
-          make_hinge({first + a, first + b, first + corner, first + other->second}, mean, rest_.data()));
+      const std::array<uint32_t, 4> nodes = {first + a, first + b, first + corner, first + other->second};
+      if (!is_folded_shut(nodes, rest_)) hinges_.push_back(make_hinge(nodes, mean, rest_.data()));
     }
   }
 }

@@ -67,6 +67,10 @@ MinimiseResult Face::pose_at_once(const Controls& controls, const PoseOptions& o
   place(jaw, controls.activations, *work, solve.boundary);
   float* const x = work->start.data();
   std::copy(work->carried.data(), work->carried.data() + model_->places(), x);
+  if (!options.from_last_pose) {  // nothing of the poses before, so that equal controls give equal poses
+    std::fill(reach_.begin(), reach_.end(), BoneReach{});
+    std::fill(facing_.begin(), facing_.end(), FacingPair{});
+  }
   if (options.from_last_pose && pose_offset_.size() > 0)
     model_->loops().add(1.0F, pose_offset_.data(), x, model_->places());
   const Contacts& contacts = model_->face().contacts();
