@@ -15,12 +15,6 @@ namespace {
 
 using api::sized;
 
-/// Where the vertices of a Part come from.
-struct Source {
-  uint32_t mesh = 0;               ///< as the runtime counts
-  std::vector<uint32_t> vertices;  ///< of it
-};
-
 std::optional<Eye> eye_of(const rig::Eye& eye) {
   if (!(eye.radius > 0.0F)) return {};
   return Eye{eye.centre.cast<double>(), static_cast<double>(eye.radius), eye.gaze.cast<double>()};
@@ -29,6 +23,12 @@ std::optional<Eye> eye_of(const rig::Eye& eye) {
 }  // namespace
 
 struct RigHead::State {
+  /// Where the vertices of a Part come from.
+  struct Source {
+    uint32_t mesh = 0;               ///< as the runtime counts
+    std::vector<uint32_t> vertices;  ///< of it
+  };
+
   std::string name;
   rig::RigFile file;
   std::unique_ptr<fascia_asset, decltype(&fascia_asset_release)> asset{nullptr, fascia_asset_release};
@@ -143,7 +143,7 @@ Player RigHead::player() {
     Shape shape;
     uint32_t mesh = UINT32_MAX;
     std::vector<Vec3> whole;
-    for (const Source& source : state.sources) {
+    for (const State::Source& source : state.sources) {
       if (source.mesh != mesh) whole = state.positions(state.face.get(), mesh = source.mesh);
       std::vector<Vec3>& vertices = shape.emplace_back();
       vertices.reserve(source.vertices.size());

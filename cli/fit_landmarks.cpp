@@ -19,7 +19,7 @@ namespace fascia::cli {
 
 namespace {
 
-using nlohmann::json;
+using PlainJson = nlohmann::json;
 using Points = std::map<std::string, Vec3>;
 
 struct Frame {
@@ -40,23 +40,23 @@ class Reader {
 
   LandmarkFrames read() const {
     const std::vector<uint8_t> bytes = formats::read_bytes(path_);
-    const json content = json::parse(bytes.begin(), bytes.end(), nullptr, false);
+    const PlainJson content = PlainJson::parse(bytes.begin(), bytes.end(), nullptr, false);
     if (!content.is_object()) fail("it is not a JSON object");
     LandmarkFrames out;
     if (content.contains("frames")) {
-      out.units =
-          content.value("units", json()).is_string() ? content["units"].get<std::string>() : std::string();
+      out.units = content.value("units", PlainJson()).is_string() ? content["units"].get<std::string>()
+                                                                  : std::string();
       out.is_take = true;
       if (!content["frames"].is_array() || content["frames"].empty())
         fail("'frames' is not a list with entries");
-      for (const json& entry : content["frames"])
+      for (const PlainJson& entry : content["frames"])
         out.frames.push_back(frame(entry, "frame " + std::to_string(out.frames.size())));
       for (size_t f = 1; f < out.frames.size(); ++f)
         if (!(out.frames[f].time > out.frames[f - 1].time))
           fail("the times of its frames do not rise at frame " + std::to_string(f));
     } else if (content.contains("points")) {
-      out.units =
-          content.value("units", json()).is_string() ? content["units"].get<std::string>() : std::string();
+      out.units = content.value("units", PlainJson()).is_string() ? content["units"].get<std::string>()
+                                                                  : std::string();
       out.frames = {{0.0, by_number(content["points"], "'points'")}};
     } else {
       const formats::LandmarkFile file = formats::read_landmarks(path_);
@@ -69,7 +69,7 @@ class Reader {
  private:
   [[noreturn]] void fail(const std::string& what) const { throw Error("'" + path_.string() + "': " + what); }
 
-  Vec3 point(const json& value, const std::string& where) const {
+  Vec3 point(const PlainJson& value, const std::string& where) const {
     Vec3 p = Vec3::Zero();
     if (!value.is_array() || value.size() != 3) fail(where + " is not three numbers");
     for (size_t k = 0; k < 3; ++k) {
@@ -81,7 +81,7 @@ class Reader {
   }
 
   /// The landmarks that a detector's points show; one whose points it has not all seen (null) is left out.
-  Points by_number(const json& list, const std::string& where) const {
+  Points by_number(const PlainJson& list, const std::string& where) const {
     const auto& sets = fit::landmark_sets();
     const auto set = std::find_if(sets.begin(), sets.end(), [&](const fit::LandmarkSet& known) {
       return list.is_array() && known.points == list.size();
@@ -103,7 +103,7 @@ class Reader {
     return points;
   }
 
-  Frame frame(const json& entry, const std::string& where) const {
+  Frame frame(const PlainJson& entry, const std::string& where) const {
     if (!entry.is_object() || !entry.contains("time") || !entry["time"].is_number())
       fail(where + " has no 'time' in seconds");
     Frame out{entry["time"].get<double>(), {}};

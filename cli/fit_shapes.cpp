@@ -14,17 +14,17 @@ namespace fascia::cli {
 
 namespace {
 
-using nlohmann::json;
+using PlainJson = nlohmann::json;
 
 /// A glTF document with its accessors.
 class Accessors {
  public:
   explicit Accessors(const formats::Scene& scene)
       : path_(scene.path.string()),
-        gltf_(json::parse(scene.document.json)),
+        gltf_(PlainJson::parse(scene.document.json)),
         model_(gltf::load_model(gltf::glb_bytes(scene.document.json, scene.document.bin), path_)) {}
 
-  const json& gltf() const { return gltf_; }
+  const PlainJson& gltf() const { return gltf_; }
 
   [[noreturn]] void fail(const std::string& what) const { throw Error("'" + path_ + "': " + what); }
 
@@ -35,11 +35,11 @@ class Accessors {
 
  private:
   std::string path_;
-  json gltf_;
+  PlainJson gltf_;
   tinygltf::Model model_;
 };
 
-std::string target_name(const json& mesh, size_t target) {
+std::string target_name(const PlainJson& mesh, size_t target) {
   if (const auto extras = mesh.find("extras"); extras != mesh.end() && extras->is_object())
     if (const auto names = extras->find("targetNames");
         names != extras->end() && names->is_array() && target < names->size() && (*names)[target].is_string())
@@ -47,9 +47,9 @@ std::string target_name(const json& mesh, size_t target) {
   return "shape_" + std::to_string(target);
 }
 
-size_t target_count(const json& mesh) {
+size_t target_count(const PlainJson& mesh) {
   size_t count = 0;
-  for (const json& primitive : mesh.at("primitives"))
+  for (const PlainJson& primitive : mesh.at("primitives"))
     if (primitive.contains("targets")) count = std::max(count, primitive["targets"].size());
   return count;
 }
@@ -58,7 +58,7 @@ template <class Work>
 auto with_json_errors(const formats::Scene& scene, Work work) {
   try {
     return work();
-  } catch (const json::exception& error) {
+  } catch (const PlainJson::exception& error) {
     throw Error("'" + scene.path.string() + "': its morph targets are damaged: " + error.what());
   }
 }
@@ -67,10 +67,10 @@ std::vector<Shape> read_shapes(const formats::Scene& scene) {
   const Accessors accessors(scene);
   std::vector<Shape> shapes;
   std::map<std::string, size_t> known;
-  const json meshes = accessors.gltf().value("meshes", json::array());
+  const PlainJson meshes = accessors.gltf().value("meshes", PlainJson::array());
   for (size_t m = 0; m < meshes.size(); ++m)
     for (size_t p = 0; p < meshes[m].at("primitives").size(); ++p) {
-      const json targets = meshes[m]["primitives"][p].value("targets", json::array());
+      const PlainJson targets = meshes[m]["primitives"][p].value("targets", PlainJson::array());
       for (size_t t = 0; t < targets.size(); ++t) {
         const std::string name = target_name(meshes[m], t);
         const auto [at, is_new] = known.try_emplace(name, shapes.size());
@@ -119,27 +119,27 @@ struct WeightKeys {
 
 ShapeCurves read_curves(const formats::Scene& scene, const std::vector<Shape>& shapes) {
   const Accessors accessors(scene);
-  const json& gltf = accessors.gltf();
+  const PlainJson& gltf = accessors.gltf();
   std::map<std::string, size_t> index;
   for (size_t s = 0; s < shapes.size(); ++s)
     index[shapes[s].name] = s;
   ShapeCurves curves;
-  for (const json& animation : gltf.value("animations", json::array())) {
+  for (const PlainJson& animation : gltf.value("animations", PlainJson::array())) {
     std::vector<std::pair<size_t, WeightKeys>> channels;  // mesh
     std::set<double> times;
-    for (const json& channel : animation.at("channels")) {
-      const json& target = channel.at("target");
+    for (const PlainJson& channel : animation.at("channels")) {
+      const PlainJson& target = channel.at("target");
       if (target.value("path", "") != "weights" || !target.contains("node")) continue;
-      const json& node = gltf.at("nodes").at(target["node"].get<size_t>());
+      const PlainJson& node = gltf.at("nodes").at(target["node"].get<size_t>());
       if (!node.contains("mesh")) continue;
       const auto mesh = node["mesh"].get<size_t>();
-      const json& sampler = animation.at("samplers").at(channel.at("sampler").get<size_t>());
+      const PlainJson& sampler = animation.at("samplers").at(channel.at("sampler").get<size_t>());
       WeightKeys keys;
       keys.times = accessors.read(sampler.at("input").get<size_t>());
       keys.values = accessors.read(sampler.at("output").get<size_t>());
       keys.interpolation = sampler.value("interpolation", "LINEAR");
       keys.width = target_count(gltf.at("meshes").at(mesh));
-      const json& holder = node.contains("weights") ? node : gltf.at("meshes").at(mesh);
+      const PlainJson& holder = node.contains("weights") ? node : gltf.at("meshes").at(mesh);
       if (holder.contains("weights")) keys.base = holder["weights"].get<std::vector<double>>();
       keys.base.resize(keys.width, 0.0);
       const size_t parts = keys.interpolation == "CUBICSPLINE" ? 3 : 1;

@@ -8,17 +8,6 @@ namespace fascia::landmarks {
 
 namespace {
 
-struct Cloud {
-  const std::vector<Vec3>* points;
-  size_t kdtree_get_point_count() const { return points->size(); }
-  double kdtree_get_pt(size_t i, size_t axis) const { return (*points)[i][static_cast<Eigen::Index>(axis)]; }
-  template <class Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
-  }
-};
-using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Cloud>, Cloud, 3>;
-
 /// The i-th point of the additive recurrence with the plastic number: evenly spread in the unit square.
 Vec2 spread(size_t i) {
   const double plastic = 1.32471795724474602596;
@@ -84,6 +73,18 @@ bool is_inside_out(const Samples& samples, const spatial::SurfaceQuery& surface)
 }
 
 struct Neighbours::State {
+  struct Cloud {
+    const std::vector<Vec3>* points;
+    size_t kdtree_get_point_count() const { return points->size(); }
+    double kdtree_get_pt(size_t i, size_t axis) const {
+      return (*points)[i][static_cast<Eigen::Index>(axis)];
+    }
+    template <class Box>
+    bool kdtree_get_bbox(Box&) const {
+      return false;
+    }
+  };
+  using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Cloud>, Cloud, 3>;
   Samples samples;
   std::unique_ptr<Tree> tree;
   Cloud cloud{nullptr};
@@ -93,7 +94,7 @@ Neighbours::Neighbours(Samples samples) {
   auto state = std::make_shared<State>();
   state->samples = std::move(samples);
   state->cloud.points = &state->samples.points;
-  state->tree = std::make_unique<Tree>(3, state->cloud, nanoflann::KDTreeSingleIndexAdaptorParams(12));
+  state->tree = std::make_unique<State::Tree>(3, state->cloud, nanoflann::KDTreeSingleIndexAdaptorParams(12));
   state_ = std::move(state);
 }
 

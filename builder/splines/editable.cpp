@@ -17,12 +17,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// One column of the border: a row added to the factored ones, or one of them taken out of use.
-struct Column {
-  int removed = -1;  ///< factored row, -1 for an added row
-  Row added;
-};
-
 template <class T>
 void erase_at(std::vector<T>& values, int at) {
   if (!values.empty()) values.erase(values.begin() + at);
@@ -56,6 +50,12 @@ void check_index(int at, int count, const char* what) {
 // E holds unit columns of R: c_R = 0, and s takes up whatever the datum there says. Its Schur complement
 // [C 0; 0 0] - [B E]^T M^-1 [B E] is small.
 struct EditableFactorisation::State {
+  /// One column of the border: a row added to the factored ones, or one of them taken out of use.
+  struct Column {
+    int removed = -1;  ///< factored row, -1 for an added row
+    Row added;
+  };
+
   Sites sites;
   SplineOptions options;
   int edit_limit = 0;

@@ -142,7 +142,7 @@ TEST(LoadAnatomy, UnknownChannelInATable) {
   copy.edit("expressions/arkit.json", "\"jaw_open\"", "\"jaw_opened\"");
   const std::string text = message(copy.path());
   EXPECT_NE(text.find("jaw_opened"), std::string::npos) << text;
-  EXPECT_NE(text.find("arkit:jawOpen"), std::string::npos) << text;
+  EXPECT_NE(text.find("arkit:jawForward"), std::string::npos) << text;
 }
 
 }  // namespace
