@@ -168,11 +168,13 @@ struct Lips {
   double roll_depth = 0.0;  ///< metres: of the axis of roll: above (below) the edge and behind it
   double roll_in = 0.0;     ///< radians: turn at lip_roll = 1
   double roll_out = 0.0;    ///< radians: turn at lip_roll = -1
-  double protrusion_height = 0.0;  ///< metres: of the axis a protruding lip swings about, above (below) its edge
-  double protrusion_upper = 0.0;   ///< radians: swing of the upper lip at full contraction of its peripheral part
-  double protrusion_lower = 0.0;   ///< radians: of the lower
-  double protrusion_drive = 0.0;   ///< pascal per metre: stiffness an area with which lips follow that swing
-  Ramp protrusion_fade;            ///< metres: from the lips' edge over which it fades: the white lip comes along
+  double protrusion_height =
+      0.0;  ///< metres: of the axis a protruding lip swings about, above (below) its edge
+  double protrusion_upper =
+      0.0;  ///< radians: swing of the upper lip at full contraction of its peripheral part
+  double protrusion_lower = 0.0;  ///< radians: of the lower
+  double protrusion_drive = 0.0;  ///< pascal per metre: stiffness an area with which lips follow that swing
+  Ramp protrusion_fade;  ///< metres: from the lips' edge over which it fades: the white lip comes along
 };
 
 /// The vestibule of the mouth: where lips and cheeks lie on air and mucosa instead of bone.

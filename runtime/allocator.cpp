@@ -1,5 +1,7 @@
 #include "runtime/allocator.h"
 
+#include <new>
+
 #include "runtime/message.h"
 
 namespace fascia::runtime {
@@ -8,7 +10,7 @@ constinit fascia_allocator hosts_allocator{};
 constinit bool can_redirect_memory = false;
 
 namespace {
-thread_local bool ran_out = false;
+thread_local bool ran_out = false, deferred = false;
 }
 
 bool has_run_out() noexcept {
@@ -17,6 +19,26 @@ bool has_run_out() noexcept {
 
 void set_run_out(bool has) noexcept {
   ran_out = has;
+}
+
+bool are_refusals_deferred() noexcept {
+  return deferred;
+}
+
+void set_refusals_deferred(bool is_deferred) noexcept {
+  deferred = is_deferred;
+}
+
+RefusalsDeferred::RefusalsDeferred() noexcept {
+  deferred = true;
+}
+
+RefusalsDeferred::~RefusalsDeferred() {
+  deferred = false;
+}
+
+void RefusalsDeferred::finish() const {
+  if (ran_out) throw std::bad_alloc();
 }
 
 }  // namespace fascia::runtime

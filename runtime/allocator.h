@@ -17,6 +17,21 @@ extern bool can_redirect_memory;
 bool has_run_out() noexcept;
 void set_run_out(bool has) noexcept;
 
+/// While one lives, this thread's allocations that are refused come from a reserve of the library's own, and
+/// has_run_out() tells of it; only when that is used up do they fail. For work with third parties whose
+/// destructors take memory, and would end the host's program where they got none. finish() throws
+/// std::bad_alloc when any was refused.
+class RefusalsDeferred {
+ public:
+  RefusalsDeferred() noexcept;
+  ~RefusalsDeferred();
+  RefusalsDeferred(const RefusalsDeferred&) = delete;
+  RefusalsDeferred& operator=(const RefusalsDeferred&) = delete;
+  void finish() const;
+};
+bool are_refusals_deferred() noexcept;
+void set_refusals_deferred(bool deferred) noexcept;
+
 /// Assets, faces and curves that the host holds: all memory of the library but for tables kept for good.
 inline std::atomic<int64_t> live_handles{0};
 

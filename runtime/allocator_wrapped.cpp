@@ -52,13 +52,16 @@ Notes notes_of(const void* block) {
 
 /// Where memory comes from when it has run out: undoing what was begun takes some as well (nlohmann's
 /// destructor fills a list of what it is to delete), and a destructor that cannot have it would end the
-/// host's program. It is whole again when all of it has been given back.
+/// host's program. The last block is free again when it is given back, all of it when every block is.
 class Reserve {
  public:
-  void* take(std::size_t size, std::size_t alignment) {
+  static constexpr std::size_t whole = 4 << 20, half = whole / 2;
+
+  /// A block that ends within the first `limit` bytes, or null.
+  void* take(std::size_t size, std::size_t alignment, std::size_t limit = whole) {
     const std::lock_guard lock(mutex_);
     const std::size_t begin = (used_ + sizeof(uint64_t) + alignment - 1) / alignment * alignment;
-    if (begin > sizeof bytes_ || size > sizeof bytes_ - begin) return nullptr;
+    if (begin > limit || size > limit - begin) return nullptr;
     const uint64_t note = size;
     std::memcpy(bytes_ + begin - sizeof note, &note, sizeof note);
     used_ = begin + size;
@@ -69,8 +72,10 @@ class Reserve {
     const auto address = reinterpret_cast<uintptr_t>(block), begin = reinterpret_cast<uintptr_t>(bytes_);
     return address - begin < sizeof bytes_;
   }
-  void give_back() {
+  void give_back(const void* block) {
     const std::lock_guard lock(mutex_);
+    const std::size_t begin = static_cast<std::size_t>(static_cast<const char*>(block) - bytes_);
+    if (begin + size_of(block) == used_) used_ = begin - sizeof(uint64_t);
     if (--live_ == 0) used_ = 0;
   }
   static std::size_t size_of(const void* block) {
@@ -80,7 +85,7 @@ class Reserve {
   }
 
  private:
-  alignas(4096) char bytes_[1 << 20] = {};
+  alignas(4096) char bytes_[whole] = {};
   std::mutex mutex_;
   std::size_t used_ = 0, live_ = 0;
 };
@@ -88,6 +93,13 @@ constinit Reserve reserve;
 
 /// After the first refusal, which the caller gets to know, blocks come from the reserve.
 void* refused(std::size_t size, std::size_t alignment) {
+  if (fascia::runtime::are_refusals_deferred()) {
+    fascia::runtime::set_run_out(true);
+    if (void* const block = reserve.take(size, alignment, Reserve::half)) return block;
+    fascia::runtime::set_refusals_deferred(
+        false);  // this one is the caller's to know, the rest is for undoing
+    return nullptr;
+  }
   if (fascia::runtime::has_run_out()) return reserve.take(size, alignment);
   fascia::runtime::set_run_out(true);
   return nullptr;
@@ -142,7 +154,7 @@ int __wrap_posix_memalign(void** block, std::size_t alignment, std::size_t size)
 void __wrap_free(void* block) {
   if (block == nullptr) return;
   if (reserve.has(block))
-    reserve.give_back();
+    reserve.give_back(block);
   else if (host.allocate == nullptr)
     __real_free(block);
   else

@@ -38,7 +38,9 @@ fascia_result fascia_asset_load(const void* bytes, size_t size, fascia_asset** a
     require(asset != nullptr && (bytes != nullptr || size == 0), "fascia_asset_load: bytes or asset is null");
     require(size > 0, "the file is empty");
     const auto* begin = static_cast<const uint8_t*>(bytes);
+    const RefusalsDeferred reading;
     auto loaded = std::make_shared<const Asset>(std::span<const uint8_t>(begin, size));
+    reading.finish();
     *asset = new fascia_asset{std::move(loaded)};
     return FASCIA_OK;
   });

