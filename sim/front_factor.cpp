@@ -7,7 +7,11 @@
 
 namespace fascia::sim {
 
-using Panel = Eigen::Map<const Eigen::MatrixXd>;
+namespace {
+
+constexpr Eigen::Index at_once = 32;  // columns that the cache holds of all rows
+
+}  // namespace
 
 void FrontFactor::analyse(const Matrix& matrix, const Positions& places) {
   std::vector<Eigen::Triplet<double>> pairs;
@@ -129,28 +133,52 @@ bool FrontFactor::compute(const Matrix& matrix, const Positions& places) {
 }
 
 Eigen::MatrixXd FrontFactor::solve(const Eigen::MatrixXd& right) const {
-  constexpr Eigen::Index at_once = 32;  // columns that the cache holds of all rows
-  Eigen::MatrixXd solution(right.rows(), right.cols());
+  return backward(forward(right));
+}
+
+Eigen::MatrixXd FrontFactor::forward(const Eigen::MatrixXd& right) const {
+  const auto& order = dissection_->order();
+  Eigen::MatrixXd halfway(right.cols(), right.rows()), x;
   for (Eigen::Index first = 0; first < right.cols(); first += at_once) {
     const Eigen::Index count = std::min(at_once, right.cols() - first);
-    solve_some(right.middleCols(first, count), solution.middleCols(first, count));
+    x.resize(count, right.rows());
+    for (size_t k = 0; k < order.size(); ++k)
+      x.middleCols<3>(static_cast<Eigen::Index>(3 * k)) =
+          right.block(static_cast<Eigen::Index>(3 * order[k]), first, 3, count).transpose();
+    go_forward(x);
+    halfway.middleRows(first, count) = x;
+  }
+  return halfway;
+}
+
+Eigen::MatrixXd FrontFactor::backward(const Eigen::MatrixXd& halfway) const {
+  const auto& order = dissection_->order();
+  Eigen::MatrixXd solution(halfway.cols(), halfway.rows()), x;
+  for (Eigen::Index first = 0; first < halfway.rows(); first += at_once) {
+    const Eigen::Index count = std::min(at_once, halfway.rows() - first);
+    x = halfway.middleRows(first, count);
+    go_backward(x);
+    for (size_t k = 0; k < order.size(); ++k)
+      solution.block(static_cast<Eigen::Index>(3 * order[k]), first, 3, count) =
+          x.middleCols<3>(static_cast<Eigen::Index>(3 * k)).transpose();
   }
   return solution;
 }
 
-void FrontFactor::solve_some(const Eigen::Ref<const Eigen::MatrixXd>& right,
-                             Eigen::Ref<Eigen::MatrixXd> solution) const {
-  const auto& order = dissection_->order();
-  // Transposed, so that all of a row lie together: rows are gathered and scattered.
-  Eigen::MatrixXd x(right.cols(), right.rows()), bottom;
-  for (size_t k = 0; k < order.size(); ++k)
-    x.middleCols<3>(static_cast<Eigen::Index>(3 * k)) =
-        right.middleRows<3>(static_cast<Eigen::Index>(3 * order[k])).transpose();
+FrontFactor::Panel FrontFactor::panel_of(size_t front) const {
+  const Front& f = fronts_[front];
+  return {values_.data() + f.values, f.width + f.below, f.width};
+}
+
+/// `x` has a row a right-hand side, so that all of a node lie together: nodes are gathered and scattered.
+void FrontFactor::go_forward(Eigen::MatrixXd& x) const {
+  Eigen::MatrixXd bottom;
   for (size_t f = 0; f < fronts_.size(); ++f) {
     const Front& front = fronts_[f];
     const auto& nodes = dissection_->fronts()[f];
-    const Panel panel(values_.data() + front.values, front.width + front.below, front.width);
     auto here = x.middleCols(static_cast<Eigen::Index>(3 * nodes.first), front.width);
+    if (here.isZero(0.0)) continue;  // none of them reaches this far down
+    const Panel panel = panel_of(f);
     panel.topRows(front.width)
         .triangularView<Eigen::Lower>()
         .transpose()
@@ -161,10 +189,14 @@ void FrontFactor::solve_some(const Eigen::Ref<const Eigen::MatrixXd>& right,
       x.middleCols<3>(static_cast<Eigen::Index>(3 * nodes.rows[r])) -=
           bottom.middleCols<3>(static_cast<Eigen::Index>(3 * r));
   }
+}
+
+void FrontFactor::go_backward(Eigen::MatrixXd& x) const {
+  Eigen::MatrixXd bottom;
   for (size_t f = fronts_.size(); f-- > 0;) {
     const Front& front = fronts_[f];
     const auto& nodes = dissection_->fronts()[f];
-    const Panel panel(values_.data() + front.values, front.width + front.below, front.width);
+    const Panel panel = panel_of(f);
     auto here = x.middleCols(static_cast<Eigen::Index>(3 * nodes.first), front.width);
     if (front.below > 0) {
       bottom.resize(x.rows(), front.below);
@@ -175,9 +207,6 @@ void FrontFactor::solve_some(const Eigen::Ref<const Eigen::MatrixXd>& right,
     }
     panel.topRows(front.width).triangularView<Eigen::Lower>().solveInPlace<Eigen::OnTheRight>(here);
   }
-  for (size_t k = 0; k < order.size(); ++k)
-    solution.middleRows<3>(static_cast<Eigen::Index>(3 * order[k])) =
-        x.middleCols<3>(static_cast<Eigen::Index>(3 * k)).transpose();
 }
 
 }  // namespace fascia::sim

@@ -34,11 +34,17 @@ class FrontFactor {
 
   /// The solution for each column of `right` (3 x #nodes rows).
   Eigen::MatrixXd solve(const Eigen::MatrixXd& right) const;
+  /// The two halves of `solve`, of a matrix A = L L': `forward` gives the transpose of L^-1 `right`, a row
+  /// for each column and its columns in the factor's own order; `backward` takes that and gives the
+  /// solutions. Columns of `right` that hold the same few nodes cost less where they stand together.
+  Eigen::MatrixXd forward(const Eigen::MatrixXd& right) const;
+  Eigen::MatrixXd backward(const Eigen::MatrixXd& halfway) const;
 
   size_t entries() const { return values_.size(); }  ///< of the factor
   double work() const { return work_; }              ///< multiplications of a whole factor, about
 
  private:
+  using Panel = Eigen::Map<const Eigen::MatrixXd>;
   struct Front {
     Eigen::Index width = 0, below = 0;  ///< rows of the front, three a node
     size_t values = 0;                  ///< of its panel, (width + below) x width
@@ -48,7 +54,9 @@ class FrontFactor {
   void prepare();
   void analyse(const Matrix& matrix, const Positions& places);
   bool factor_front(size_t index);
-  void solve_some(const Eigen::Ref<const Eigen::MatrixXd>& right, Eigen::Ref<Eigen::MatrixXd> solution) const;
+  Panel panel_of(size_t front) const;
+  void go_forward(Eigen::MatrixXd& x) const;
+  void go_backward(Eigen::MatrixXd& x) const;
 
   std::unique_ptr<const realtime::Dissection> dissection_;
   std::vector<int> outer_, inner_;  ///< the pattern it was made for

@@ -137,17 +137,17 @@ bool Sensitivity::advance(double work) {
 /// Some columns of what the factor makes of the pulls; true when there are no more.
 bool Sensitivity::solve_pulls(double work) {
   if (pulls_.cols() == 0) return true;
-  const double a_column = 2.0 * static_cast<double>(factor_.entries());
+  const double a_column = static_cast<double>(factor_.entries());
   const Eigen::Index left = pulls_.cols() - pulls_done_,
                      count = work < a_column * static_cast<double>(left)
                                  ? std::max<Eigen::Index>(1, static_cast<Eigen::Index>(work / a_column))
                                  : left;
-  solved_pulls_.middleCols(pulls_done_, count) =
-      factor_.solve(Eigen::MatrixXd(pulls_.middleCols(pulls_done_, count)));
+  halfway_pulls_.middleRows(pulls_done_, count) =
+      factor_.forward(Eigen::MatrixXd(pulls_.middleCols(pulls_done_, count)));
   pulls_done_ += count;
   if (pulls_done_ < pulls_.cols()) return false;
-  Eigen::MatrixXd small = pulls_.transpose() * solved_pulls_;
-  small.diagonal().array() += 1.0;
+  Eigen::MatrixXd small = Eigen::MatrixXd::Identity(pulls_.cols(), pulls_.cols());
+  small.selfadjointView<Eigen::Lower>().rankUpdate(halfway_pulls_);
   pull_factor_.compute(small);
   return true;
 }
@@ -297,14 +297,16 @@ void Sensitivity::gather_pulls() {
   }
   pulls_.resize(size, static_cast<Eigen::Index>(curvature_.pulls.size()));
   pulls_.setFromTriplets(list.begin(), list.end());
-  solved_pulls_.resize(size, pulls_.cols());
+  halfway_pulls_.resize(pulls_.cols(), size);
   pulls_done_ = 0;
 }
 
 Eigen::MatrixXd Sensitivity::solve(const Eigen::MatrixXd& right) const {
-  Eigen::MatrixXd solution = factor_.solve(right);
-  if (pulls_.cols() > 0) solution -= solved_pulls_ * pull_factor_.solve(pulls_.transpose() * solution);
-  return solution;
+  Eigen::MatrixXd halfway = factor_.forward(right);
+  if (pulls_.cols() > 0)
+    halfway.noalias() -=
+        pull_factor_.solve(halfway_pulls_ * halfway.transpose()).transpose() * halfway_pulls_;
+  return factor_.backward(halfway);
 }
 
 Eigen::MatrixXd Sensitivity::columns(std::span<const uint32_t> channels) const {

@@ -78,10 +78,10 @@ class Sensitivity {
   bool is_held_up_ = false;   ///< the last matrix has had more of the rest stiffness than it wants
   Positions unknown_places_;  ///< at rest
   // Fibres' pulls, which couple all nodes along them, are kept out of the factor and brought back by the
-  // identity of Sherman, Morrison and Woodbury.
+  // identity of Sherman, Morrison and Woodbury; half of each solve is enough for that.
   Eigen::SparseMatrix<double> pulls_;
-  Eigen::MatrixXd solved_pulls_;
-  Eigen::Index pulls_done_ = 0;  ///< columns of it
+  Eigen::MatrixXd halfway_pulls_;  ///< FrontFactor::forward of them
+  Eigen::Index pulls_done_ = 0;    ///< rows of it
   Eigen::LDLT<Eigen::MatrixXd> pull_factor_;
   mutable Positions work_, direction_, product_;
 };
