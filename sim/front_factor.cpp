@@ -74,7 +74,7 @@ bool FrontFactor::factor_front(size_t index) {
   const Front& front = fronts_[index];
   const auto& order = dissection_->order();
   const Eigen::Index size = front.width + front.below;
-  Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(size, size);
+  Dense dense = Dense::Zero(size, size);
   for (uint32_t c = 0; c < nodes.width; ++c)
     local_[nodes.first + c] = 3 * c;
   for (uint32_t r = 0; r < nodes.rows.size(); ++r)
@@ -87,12 +87,12 @@ bool FrontFactor::factor_front(size_t index) {
         const uint32_t other = position_[row / 3];
         if (other < nodes.first + c) continue;  // it took the block along
         dense(static_cast<Eigen::Index>(local_[other] + row % 3), static_cast<Eigen::Index>(3 * c) + k) +=
-            e.value();
+            static_cast<float>(e.value());
       }
   }
   for (const uint32_t child : front.children) {
     const auto& rows = dissection_->fronts()[child].rows;
-    const Eigen::MatrixXd& from = left_[child];
+    const Dense& from = left_[child];
     for (size_t c = 0; c < rows.size(); ++c)
       for (size_t r = c; r < rows.size(); ++r)
         dense.block<3, 3>(local_[rows[r]], local_[rows[c]]) +=
@@ -100,13 +100,13 @@ bool FrontFactor::factor_front(size_t index) {
     left_[child].resize(0, 0);
   }
   auto diagonal = dense.topLeftCorner(front.width, front.width);
-  const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>, Eigen::Lower> cholesky(diagonal);  // in place
+  const Eigen::LLT<Eigen::Ref<Dense>, Eigen::Lower> cholesky(diagonal);  // in place
   if (cholesky.info() != Eigen::Success) return false;
   auto under = dense.bottomLeftCorner(front.below, front.width);
   diagonal.triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(under);
-  dense.bottomRightCorner(front.below, front.below).selfadjointView<Eigen::Lower>().rankUpdate(under, -1.0);
+  dense.bottomRightCorner(front.below, front.below).selfadjointView<Eigen::Lower>().rankUpdate(under, -1.0F);
   left_[index] = dense.bottomRightCorner(front.below, front.below);
-  Eigen::Map<Eigen::MatrixXd>(values_.data() + front.values, size, front.width) = dense.leftCols(front.width);
+  Eigen::Map<Dense>(values_.data() + front.values, size, front.width) = dense.leftCols(front.width);
   return true;
 }
 
@@ -132,13 +132,13 @@ bool FrontFactor::compute(const Matrix& matrix, const Positions& places) {
   return is_sound_;
 }
 
-Eigen::MatrixXd FrontFactor::solve(const Eigen::MatrixXd& right) const {
+FrontFactor::Dense FrontFactor::solve(const Dense& right) const {
   return backward(forward(right));
 }
 
-Eigen::MatrixXd FrontFactor::forward(const Eigen::MatrixXd& right) const {
+FrontFactor::Dense FrontFactor::forward(const Dense& right) const {
   const auto& order = dissection_->order();
-  Eigen::MatrixXd halfway(right.cols(), right.rows()), x;
+  Dense halfway(right.cols(), right.rows()), x;
   for (Eigen::Index first = 0; first < right.cols(); first += at_once) {
     const Eigen::Index count = std::min(at_once, right.cols() - first);
     x.resize(count, right.rows());
@@ -151,9 +151,9 @@ Eigen::MatrixXd FrontFactor::forward(const Eigen::MatrixXd& right) const {
   return halfway;
 }
 
-Eigen::MatrixXd FrontFactor::backward(const Eigen::MatrixXd& halfway) const {
+FrontFactor::Dense FrontFactor::backward(const Dense& halfway) const {
   const auto& order = dissection_->order();
-  Eigen::MatrixXd solution(halfway.cols(), halfway.rows()), x;
+  Dense solution(halfway.cols(), halfway.rows()), x;
   for (Eigen::Index first = 0; first < halfway.rows(); first += at_once) {
     const Eigen::Index count = std::min(at_once, halfway.rows() - first);
     x = halfway.middleRows(first, count);
@@ -171,13 +171,13 @@ FrontFactor::Panel FrontFactor::panel_of(size_t front) const {
 }
 
 /// `x` has a row a right-hand side, so that all of a node lie together: nodes are gathered and scattered.
-void FrontFactor::go_forward(Eigen::MatrixXd& x) const {
-  Eigen::MatrixXd bottom;
+void FrontFactor::go_forward(Dense& x) const {
+  Dense bottom;
   for (size_t f = 0; f < fronts_.size(); ++f) {
     const Front& front = fronts_[f];
     const auto& nodes = dissection_->fronts()[f];
     auto here = x.middleCols(static_cast<Eigen::Index>(3 * nodes.first), front.width);
-    if (here.isZero(0.0)) continue;  // none of them reaches this far down
+    if (here.isZero(0.0F)) continue;  // none of them reaches this far down
     const Panel panel = panel_of(f);
     panel.topRows(front.width)
         .triangularView<Eigen::Lower>()
@@ -191,8 +191,8 @@ void FrontFactor::go_forward(Eigen::MatrixXd& x) const {
   }
 }
 
-void FrontFactor::go_backward(Eigen::MatrixXd& x) const {
-  Eigen::MatrixXd bottom;
+void FrontFactor::go_backward(Dense& x) const {
+  Dense bottom;
   for (size_t f = fronts_.size(); f-- > 0;) {
     const Front& front = fronts_[f];
     const auto& nodes = dissection_->fronts()[f];

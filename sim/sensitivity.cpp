@@ -143,10 +143,10 @@ bool Sensitivity::solve_pulls(double work) {
                                  ? std::max<Eigen::Index>(1, static_cast<Eigen::Index>(work / a_column))
                                  : left;
   halfway_pulls_.middleRows(pulls_done_, count) =
-      factor_.forward(Eigen::MatrixXd(pulls_.middleCols(pulls_done_, count)));
+      factor_.forward(Eigen::MatrixXd(pulls_.middleCols(pulls_done_, count)).cast<float>());
   pulls_done_ += count;
   if (pulls_done_ < pulls_.cols()) return false;
-  Eigen::MatrixXd small = Eigen::MatrixXd::Identity(pulls_.cols(), pulls_.cols());
+  FrontFactor::Dense small = FrontFactor::Dense::Identity(pulls_.cols(), pulls_.cols());
   small.selfadjointView<Eigen::Lower>().rankUpdate(halfway_pulls_);
   pull_factor_.compute(small);
   return true;
@@ -302,11 +302,11 @@ void Sensitivity::gather_pulls() {
 }
 
 Eigen::MatrixXd Sensitivity::solve(const Eigen::MatrixXd& right) const {
-  Eigen::MatrixXd halfway = factor_.forward(right);
+  FrontFactor::Dense halfway = factor_.forward(right.cast<float>());
   if (pulls_.cols() > 0)
     halfway.noalias() -=
         pull_factor_.solve(halfway_pulls_ * halfway.transpose()).transpose() * halfway_pulls_;
-  return factor_.backward(halfway);
+  return factor_.backward(halfway).cast<double>();
 }
 
 Eigen::MatrixXd Sensitivity::columns(std::span<const uint32_t> channels) const {

@@ -80,9 +80,9 @@ class Sensitivity {
   // Fibres' pulls, which couple all nodes along them, are kept out of the factor and brought back by the
   // identity of Sherman, Morrison and Woodbury; half of each solve is enough for that.
   Eigen::SparseMatrix<double> pulls_;
-  Eigen::MatrixXd halfway_pulls_;  ///< FrontFactor::forward of them
-  Eigen::Index pulls_done_ = 0;    ///< rows of it
-  Eigen::LDLT<Eigen::MatrixXd> pull_factor_;
+  FrontFactor::Dense halfway_pulls_;  ///< FrontFactor::forward of them
+  Eigen::Index pulls_done_ = 0;       ///< rows of it
+  Eigen::LLT<FrontFactor::Dense> pull_factor_;
   mutable Positions work_, direction_, product_;
 };
 
