@@ -52,6 +52,9 @@ void add_plates(const std::vector<Curvature::Plate>& plates, Blocks& blocks) {
   }
 }
 
+/// What a fibre's pull must add to the stiffness along itself to count: a share of what is there without it.
+constexpr float least_pull = 0.03F;
+
 bool is_held(uint8_t anchor) {
   const auto kind = static_cast<FibreAnchor>(anchor);
   return kind == FibreAnchor::cranium || kind == FibreAnchor::mandible;
@@ -142,12 +145,14 @@ bool Sensitivity::solve_pulls(double work) {
                      count = work < a_column * static_cast<double>(left)
                                  ? std::max<Eigen::Index>(1, static_cast<Eigen::Index>(work / a_column))
                                  : left;
-  halfway_pulls_.middleRows(pulls_done_, count) =
+  const FrontFactor::Dense halfway =
       factor_.forward(Eigen::MatrixXd(pulls_.middleCols(pulls_done_, count)).cast<float>());
+  for (Eigen::Index row = 0; row < count; ++row)
+    if (halfway.row(row).squaredNorm() > least_pull) halfway_pulls_.row(pulls_kept_++) = halfway.row(row);
   pulls_done_ += count;
   if (pulls_done_ < pulls_.cols()) return false;
-  FrontFactor::Dense small = FrontFactor::Dense::Identity(pulls_.cols(), pulls_.cols());
-  small.selfadjointView<Eigen::Lower>().rankUpdate(halfway_pulls_);
+  FrontFactor::Dense small = FrontFactor::Dense::Identity(pulls_kept_, pulls_kept_);
+  small.selfadjointView<Eigen::Lower>().rankUpdate(halfway_pulls_.topRows(pulls_kept_));
   pull_factor_.compute(small);
   return true;
 }
@@ -298,14 +303,15 @@ void Sensitivity::gather_pulls() {
   pulls_.resize(size, static_cast<Eigen::Index>(curvature_.pulls.size()));
   pulls_.setFromTriplets(list.begin(), list.end());
   halfway_pulls_.resize(pulls_.cols(), size);
-  pulls_done_ = 0;
+  pulls_done_ = pulls_kept_ = 0;
 }
 
 Eigen::MatrixXd Sensitivity::solve(const Eigen::MatrixXd& right) const {
   FrontFactor::Dense halfway = factor_.forward(right.cast<float>());
-  if (pulls_.cols() > 0)
-    halfway.noalias() -=
-        pull_factor_.solve(halfway_pulls_ * halfway.transpose()).transpose() * halfway_pulls_;
+  if (pulls_kept_ > 0) {
+    const auto pulls = halfway_pulls_.topRows(pulls_kept_);
+    halfway.noalias() -= pull_factor_.solve(pulls * halfway.transpose()).transpose() * pulls;
+  }
   return factor_.backward(halfway).cast<double>();
 }
 

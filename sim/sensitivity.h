@@ -80,8 +80,8 @@ class Sensitivity {
   // Fibres' pulls, which couple all nodes along them, are kept out of the factor and brought back by the
   // identity of Sherman, Morrison and Woodbury; half of each solve is enough for that.
   Eigen::SparseMatrix<double> pulls_;
-  FrontFactor::Dense halfway_pulls_;  ///< FrontFactor::forward of them
-  Eigen::Index pulls_done_ = 0;       ///< rows of it
+  FrontFactor::Dense halfway_pulls_;  ///< FrontFactor::forward of those that count, from the first row on
+  Eigen::Index pulls_done_ = 0, pulls_kept_ = 0;
   Eigen::LLT<FrontFactor::Dense> pull_factor_;
   mutable Positions work_, direction_, product_;
 };
