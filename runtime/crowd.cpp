@@ -5,8 +5,8 @@
 #include <mutex>
 #include <new>
 
+#include "geometry/arithmetic_mode.h"
 #include "runtime/allocator.h"
-#include "runtime/arithmetic_mode.h"
 
 namespace fascia::runtime {
 namespace {

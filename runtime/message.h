@@ -7,9 +7,9 @@
 #include <string>
 
 #include "fascia/fascia.h"
+#include "geometry/arithmetic_mode.h"
 #include "geometry/error.h"
 #include "runtime/allocator.h"
-#include "runtime/arithmetic_mode.h"
 
 namespace fascia::runtime {
 

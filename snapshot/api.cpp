@@ -5,8 +5,8 @@
 #include <new>
 #include <string_view>
 
+#include "geometry/arithmetic_mode.h"
 #include "geometry/error.h"
-#include "runtime/arithmetic_mode.h"
 #include "snapshot/compare.h"
 #include "snapshot/file.h"
 
@@ -67,7 +67,7 @@ fascia_result fascia_snapshot_check(const void* rig, size_t rig_size, const void
   for (size_t i = 0; i < chosen.curve_count; ++i)
     if (!chosen.curves[i].bytes) return fail(FASCIA_ERROR_ARGUMENT, "a file of curves is null");
   // Worker threads take it over from this one.
-  const fascia::runtime::ArithmeticMode mode;
+  const fascia::ArithmeticMode mode;
   try {
     *failed = check(bytes_of(rig, rig_size), {static_cast<const char*>(snapshot), snapshot_size}, chosen);
     return FASCIA_OK;
