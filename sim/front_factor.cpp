@@ -138,10 +138,10 @@ FrontFactor::Dense FrontFactor::solve(const Dense& right) const {
 
 FrontFactor::Dense FrontFactor::forward(const Dense& right) const {
   const auto& order = dissection_->order();
-  Dense halfway(right.cols(), right.rows()), x;
+  Dense halfway(right.cols(), right.rows());
   for (Eigen::Index first = 0; first < right.cols(); first += at_once) {
     const Eigen::Index count = std::min(at_once, right.cols() - first);
-    x.resize(count, right.rows());
+    Dense x(count, right.rows());
     for (size_t k = 0; k < order.size(); ++k)
       x.middleCols<3>(static_cast<Eigen::Index>(3 * k)) =
           right.block(static_cast<Eigen::Index>(3 * order[k]), first, 3, count).transpose();
@@ -153,16 +153,25 @@ FrontFactor::Dense FrontFactor::forward(const Dense& right) const {
 
 FrontFactor::Dense FrontFactor::backward(const Dense& halfway) const {
   const auto& order = dissection_->order();
-  Dense solution(halfway.cols(), halfway.rows()), x;
+  Dense solution(halfway.cols(), halfway.rows());
   for (Eigen::Index first = 0; first < halfway.rows(); first += at_once) {
     const Eigen::Index count = std::min(at_once, halfway.rows() - first);
-    x = halfway.middleRows(first, count);
+    Dense x = halfway.middleRows(first, count);
     go_backward(x);
     for (size_t k = 0; k < order.size(); ++k)
       solution.block(static_cast<Eigen::Index>(3 * order[k]), first, 3, count) =
           x.middleCols<3>(static_cast<Eigen::Index>(3 * k)).transpose();
   }
   return solution;
+}
+
+// Rows of the largest front, for memory to be taken once: Eigen 3.4 frees a matrix twice when memory runs out
+// while it is made larger.
+Eigen::Index FrontFactor::most_below() const {
+  Eigen::Index most = 0;
+  for (const Front& front : fronts_)
+    most = std::max(most, front.below);
+  return most;
 }
 
 FrontFactor::Panel FrontFactor::panel_of(size_t front) const {
@@ -172,7 +181,7 @@ FrontFactor::Panel FrontFactor::panel_of(size_t front) const {
 
 /// `x` has a row a right-hand side, so that all of a node lie together: nodes are gathered and scattered.
 void FrontFactor::go_forward(Dense& x) const {
-  Dense bottom;
+  Dense below(x.rows(), most_below());
   for (size_t f = 0; f < fronts_.size(); ++f) {
     const Front& front = fronts_[f];
     const auto& nodes = dissection_->fronts()[f];
@@ -184,6 +193,7 @@ void FrontFactor::go_forward(Dense& x) const {
         .transpose()
         .solveInPlace<Eigen::OnTheRight>(here);
     if (front.below == 0) continue;
+    auto bottom = below.leftCols(front.below);
     bottom.noalias() = here * panel.bottomRows(front.below).transpose();
     for (size_t r = 0; r < nodes.rows.size(); ++r)
       x.middleCols<3>(static_cast<Eigen::Index>(3 * nodes.rows[r])) -=
@@ -192,14 +202,14 @@ void FrontFactor::go_forward(Dense& x) const {
 }
 
 void FrontFactor::go_backward(Dense& x) const {
-  Dense bottom;
+  Dense below(x.rows(), most_below());
   for (size_t f = fronts_.size(); f-- > 0;) {
     const Front& front = fronts_[f];
     const auto& nodes = dissection_->fronts()[f];
     const Panel panel = panel_of(f);
     auto here = x.middleCols(static_cast<Eigen::Index>(3 * nodes.first), front.width);
     if (front.below > 0) {
-      bottom.resize(x.rows(), front.below);
+      auto bottom = below.leftCols(front.below);
       for (size_t r = 0; r < nodes.rows.size(); ++r)
         bottom.middleCols<3>(static_cast<Eigen::Index>(3 * r)) =
             x.middleCols<3>(static_cast<Eigen::Index>(3 * nodes.rows[r]));

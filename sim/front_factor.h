@@ -55,6 +55,7 @@ class FrontFactor {
   void prepare();
   void analyse(const Matrix& matrix, const Positions& places);
   bool factor_front(size_t index);
+  Eigen::Index most_below() const;
   Panel panel_of(size_t front) const;
   void go_forward(Dense& x) const;
   void go_backward(Dense& x) const;
