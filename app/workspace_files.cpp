@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cctype>
 
-#include "anatomy/anatomy.h"
 #include "app/workspace.h"
+#include "builder/rigging/embedded_head.h"
 #include "formats/files.h"
 #include "geometry/error.h"
 #include "geometry/text.h"
@@ -47,8 +47,7 @@ void Workspace::open_embedded_head() {
   try {
     const std::filesystem::path folder = places_.state / "built";
     std::filesystem::create_directories(folder);
-    const std::string_view head = anatomy::embedded_file("head.obj");
-    formats::write_bytes(folder / "embedded_head.obj", head.data(), head.size());
+    rigging::write_embedded_head(folder / "embedded_head.obj", folder / "embedded_head_landmarks.json");
     open(folder / "embedded_head.obj");
   } catch (const std::exception& error) {
     notify(error.what(), Notice::Kind::error);

@@ -4,10 +4,10 @@
 #include <nlohmann/json.hpp>
 
 #include "anatomy/anatomy.h"
+#include "builder/rigging/embedded_head.h"
 #include "cli/bake_file.h"
 #include "cli/common.h"
 #include "cli/demo_curves.h"
-#include "cli/embedded_head.h"
 #include "cli/picture.h"
 #include "cli/play_file.h"
 #include "cli/progress.h"
@@ -175,7 +175,7 @@ void run(const Common& common, const std::filesystem::path& folder,
   progress.begin("build");
   const std::filesystem::path head = folder / "head.obj", landmarks = folder / "head_landmarks.json",
                               rig_path = folder / "rig.glb", curves = folder / "curves.csv";
-  write_embedded_head(anatomy_for(anatomy_folder), head, landmarks);
+  rigging::write_embedded_head(anatomy_for(anatomy_folder), head, landmarks);
   BuildRequest request;
   request.head = head;
   request.anatomy = anatomy_folder;

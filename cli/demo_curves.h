@@ -2,8 +2,6 @@
 
 #include <filesystem>
 
-#include "cli/embedded_head.h"
-
 namespace fascia::cli {
 
 /// Ten seconds of smile, frown, surprise and speech-like jaw as CSV, ARKit names and actuators mixed.

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "cli/embedded_head.h"
+#include "builder/rigging/embedded_head.h"
 #include "cli/fit_shapes.h"
 #include "formats/scene.h"
 #include "geometry/error.h"
@@ -64,7 +64,7 @@ std::vector<SculptedHead> sculpted_heads() {
 
 SculptedHead generic_head() {
   const fs::path head = fs::temp_directory_path() / "fascia_embedded_head.obj";
-  cli::write_embedded_head(head, fs::path(head).replace_extension(".mrk.json"));
+  rigging::write_embedded_head(head, fs::path(head).replace_extension(".mrk.json"));
   return {"embedded", "generic", head, {}, {}};
 }
 

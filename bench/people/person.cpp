@@ -2,9 +2,9 @@
 
 #include "anatomy/anatomy.h"
 #include "builder/rigging/build_rig.h"
+#include "builder/rigging/embedded_head.h"
 #include "builder/rigging/gltf_source.h"
 #include "builder/spatial/surface_query.h"
-#include "cli/demo_curves.h"
 #include "geometry/error.h"
 #include "rig/write/write.h"
 #include "tests/paths/paths.h"
@@ -31,7 +31,7 @@ formats::LandmarkFile landmarks_on(const formats::Scene& person) {
 Person embedded() {
   const fs::path head = fs::temp_directory_path() / "fascia_bench_head.obj";
   const fs::path points = fs::temp_directory_path() / "fascia_bench_landmarks.json";
-  cli::write_embedded_head(head, points);
+  rigging::write_embedded_head(head, points);
   Person person{formats::read(head), formats::read_landmarks(points)};
   fs::remove(head);
   fs::remove(points);

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "bench/smas/workload.h"
+#include "builder/rigging/embedded_head.h"
 #include "builder/rigging/find_landmarks.h"
 #include "builder/rigging/stages.h"
 #include "builder/smas/smas.h"
-#include "cli/demo_curves.h"
 #include "geometry/error.h"
 
 namespace {
@@ -67,8 +67,8 @@ int main(int count, char** arguments) {
       std::filesystem::path file = arguments[i];
       if (std::strcmp(arguments[i], "embedded") == 0) {
         file = std::filesystem::temp_directory_path() / "fascia_bench_smas_head.obj";
-        cli::write_embedded_head(file,
-                                 std::filesystem::temp_directory_path() / "fascia_bench_smas_landmarks.json");
+        rigging::write_embedded_head(
+            file, std::filesystem::temp_directory_path() / "fascia_bench_smas_landmarks.json");
       }
       run(file, anatomy);
     } catch (const Error& error) {

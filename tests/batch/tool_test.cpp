@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/demo_curves.h"
+#include "builder/rigging/embedded_head.h"
 #include "tests/cli/tool.h"
 
 namespace fascia::cli {
@@ -18,7 +18,7 @@ class BatchTool : public ::testing::Test {
     folder = new fs::path(fs::temp_directory_path() / "fascia_batch_tool_test");
     fs::remove_all(*folder);
     fs::create_directories(*folder / "heads");
-    write_embedded_head(*folder / "heads/first.obj", *folder / "landmarks.json");
+    rigging::write_embedded_head(*folder / "heads/first.obj", *folder / "landmarks.json");
     std::ofstream(at("heads/none.obj")) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
     std::ofstream(at("heads.jsonl")) << "{\"head\": \"heads/first.obj\", \"landmarks\": \"landmarks.json\", "
                                         "\"detail\": \"low\", \"id\": \"one\"}\n"

@@ -10,10 +10,10 @@
 
 #include "anatomy/anatomy.h"
 #include "anatomy/fields.h"
+#include "builder/rigging/embedded_head.h"
 #include "builder/rigging/find_landmarks.h"
 #include "builder/rigging/stages.h"
 #include "builder/tissue/build.h"
-#include "cli/demo_curves.h"
 #include "formats/scene.h"
 #include "geometry/error.h"
 #include "rig/model/fields.h"
@@ -113,7 +113,7 @@ class Stages {
   Stages() {
     const fs::path folder = fs::path(::testing::TempDir()) / "fascia_anatomy_effect";
     fs::create_directories(folder);
-    cli::write_embedded_head(folder / "head.obj", folder / "landmarks.json");
+    rigging::write_embedded_head(folder / "head.obj", folder / "landmarks.json");
     scene_ = formats::read(folder / "head.obj");
     found_ =
         rigging::find_landmarks(scene_, formats::read_landmarks(folder / "landmarks.json"), anatomy_, {});

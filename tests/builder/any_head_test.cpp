@@ -8,8 +8,8 @@
 #include <sstream>
 
 #include "anatomy/anatomy.h"
+#include "builder/rigging/embedded_head.h"
 #include "builder/spatial/surface_query.h"
-#include "cli/demo_curves.h"
 #include "formats/landmark_file.h"
 #include "formats/scene.h"
 #include "tests/builder/posed_face.h"
@@ -29,7 +29,7 @@ class Variant {
       const std::string& name, const Change& change, const Place& place = [](const Vec3& p) { return p; }) {
     const fs::path folder = fs::temp_directory_path() / ("fascia_any_head_" + name);
     fs::create_directories(folder);
-    cli::write_embedded_head(folder / "head.obj", folder / "landmarks.json");
+    rigging::write_embedded_head(folder / "head.obj", folder / "landmarks.json");
     const formats::Scene scene = formats::read(folder / "head.obj");
     TriangleMesh skin;
     for (const formats::SceneMesh& mesh : scene.meshes) {

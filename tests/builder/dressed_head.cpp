@@ -4,7 +4,7 @@
 #include <cstdio>
 
 #include "anatomy/anatomy.h"
-#include "cli/demo_curves.h"
+#include "builder/rigging/embedded_head.h"
 #include "formats/scene.h"
 
 namespace fascia::testing {
@@ -76,7 +76,7 @@ class ObjText {
 }  // namespace
 
 void write_dressed_head(const std::filesystem::path& head, const std::filesystem::path& landmarks) {
-  cli::write_embedded_head(head, landmarks);
+  rigging::write_embedded_head(head, landmarks);
   const std::vector<uint8_t> bytes = formats::read_bytes(head);
   ObjText obj(std::string(bytes.begin(), bytes.end()));
   const anatomy::GenericAnatomy anatomy = anatomy::load_generic();

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "cli/demo_curves.h"
+#include "builder/rigging/embedded_head.h"
 #include "formats/scene.h"
 #include "tests/builder/face_checks.h"
 #include "tests/paths/paths.h"
@@ -20,7 +20,7 @@ class EmbeddedHead : public ::testing::Test {
   static void SetUpTestSuite() {
     folder_ = new fs::path(fs::temp_directory_path() / "fascia_end_to_end");
     fs::create_directories(*folder_);
-    cli::write_embedded_head(*folder_ / "head.obj", *folder_ / "landmarks.json");
+    rigging::write_embedded_head(*folder_ / "head.obj", *folder_ / "landmarks.json");
     face_ = new PosedFace(*folder_ / "head.obj", *folder_ / "landmarks.json", "test_embedded");
   }
   static void TearDownTestSuite() {

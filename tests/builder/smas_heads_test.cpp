@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "builder/rigging/embedded_head.h"
 #include "builder/rigging/find_landmarks.h"
 #include "builder/rigging/stages.h"
 #include "builder/spatial/surface_query.h"
-#include "cli/demo_curves.h"
 #include "geometry/connectivity.h"
 #include "tests/paths/paths.h"
 
@@ -38,7 +38,7 @@ struct Head {
 fs::path embedded_head() {
   const fs::path folder = fs::path(::testing::TempDir()) / "fascia_smas_heads";
   fs::create_directories(folder);
-  cli::write_embedded_head(folder / "head.obj", folder / "landmarks.json");
+  rigging::write_embedded_head(folder / "head.obj", folder / "landmarks.json");
   return folder / "head.obj";
 }
 

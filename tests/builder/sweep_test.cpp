@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 
 #include "builder/rigging/build_rig.h"
+#include "builder/rigging/embedded_head.h"
 #include "builder/rigging/gltf_source.h"
 #include "builder/spatial/surface_query.h"
-#include "cli/demo_curves.h"
 #include "formats/landmark_file.h"
 #include "formats/scene.h"
 #include "rig/write/write.h"
@@ -24,7 +24,7 @@ const Heads& heads() {
   static const Heads heads = [] {
     const fs::path folder = fs::temp_directory_path() / "fascia_sweep";
     fs::create_directories(folder);
-    cli::write_embedded_head(folder / "head.obj", folder / "landmarks.json");
+    rigging::write_embedded_head(folder / "head.obj", folder / "landmarks.json");
     const formats::Scene scene = formats::read(folder / "head.obj");
     rigging::BuildResult built = rigging::build_rig(scene, formats::read_landmarks(folder / "landmarks.json"),
                                                     anatomy::load_generic());

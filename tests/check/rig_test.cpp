@@ -7,10 +7,10 @@
 #include <set>
 
 #include "builder/rigging/build_rig.h"
+#include "builder/rigging/embedded_head.h"
 #include "builder/rigging/gltf_source.h"
 #include "check/check.h"
 #include "check/rig_head.h"
-#include "cli/demo_curves.h"
 #include "formats/landmark_file.h"
 #include "rig/write/write.h"
 
@@ -24,7 +24,7 @@ struct Built {
   Built() {
     const std::filesystem::path folder = std::filesystem::temp_directory_path();
     const auto head = folder / "fascia_check_head.obj", points = folder / "fascia_check_landmarks.json";
-    cli::write_embedded_head(head, points);
+    rigging::write_embedded_head(head, points);
     scene = formats::read(head);
     rigging::BuildOptions options;
     options.detail = "low";

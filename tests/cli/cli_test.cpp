@@ -5,7 +5,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "cli/demo_curves.h"
+#include "builder/rigging/embedded_head.h"
 #include "formats/scene.h"
 #include "tests/cli/tool.h"
 
@@ -21,7 +21,7 @@ class Tool : public ::testing::Test {
     folder = new fs::path(fs::temp_directory_path() / "fascia_cli_test");
     fs::remove_all(*folder);
     fs::create_directories(*folder);
-    write_embedded_head(at("head.obj"), at("landmarks.json"));
+    rigging::write_embedded_head(at("head.obj"), at("landmarks.json"));
     built = new Outcome(run("build " + at("head.obj") + " --landmarks " + at("landmarks.json") +
                             " --detail low -o " + at("rig.glb") + " --json"));
   }

@@ -10,7 +10,7 @@
 #include <valijson/validator.hpp>
 
 #include "anatomy/anatomy.h"
-#include "cli/demo_curves.h"
+#include "builder/rigging/embedded_head.h"
 #include "tests/cli/tool.h"
 
 namespace fascia::cli {
@@ -25,7 +25,7 @@ class Edits : public ::testing::Test {
     folder = new fs::path(fs::temp_directory_path() / "fascia_edits_test");
     fs::remove_all(*folder);
     fs::create_directories(*folder);
-    write_embedded_head(at("head.obj"), at("landmarks.json"));
+    rigging::write_embedded_head(at("head.obj"), at("landmarks.json"));
     skin = new std::vector<Vec3>();
     const anatomy::GenericAnatomy anatomy = anatomy::load_generic();
     for (const Vec3& p : anatomy.head_object("skin")->mesh.vertices)

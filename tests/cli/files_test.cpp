@@ -8,7 +8,7 @@
 #include <numeric>
 #include <sstream>
 
-#include "cli/demo_curves.h"
+#include "builder/rigging/embedded_head.h"
 #include "formats/scene.h"
 #include "gltf/read/container.h"
 #include "tests/cli/tool.h"
@@ -25,7 +25,7 @@ class FilesOfTheTool : public ::testing::Test {
     folder = new fs::path(fs::temp_directory_path() / "fascia_cli_files_test");
     fs::remove_all(*folder);
     fs::create_directories(*folder);
-    write_embedded_head(at("head.obj"), at("landmarks.json"));
+    rigging::write_embedded_head(at("head.obj"), at("landmarks.json"));
     const Outcome built = run("build " + at("head.obj") + " --detail low -o " + at("rig.glb"));
     ASSERT_EQ(built.code, 0) << built.err;
   }

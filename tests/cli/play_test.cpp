@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "cli/demo_curves.h"
+#include "builder/rigging/embedded_head.h"
 #include "tests/cli/tool.h"
 
 namespace fascia::cli {
@@ -23,7 +23,7 @@ class Play : public ::testing::Test {
   static void SetUpTestSuite() {
     folder = new fs::path(fs::temp_directory_path() / ("fascia_play_test_" + std::to_string(getpid())));
     fs::create_directories(*folder);
-    write_embedded_head(at("head.obj"), at("landmarks.json"));
+    rigging::write_embedded_head(at("head.obj"), at("landmarks.json"));
     const Outcome built = run("build " + at("head.obj") + " --landmarks " + at("landmarks.json") +
                               " --detail low -o " + at("rig.glb"));
     ASSERT_EQ(built.code, 0) << built.err;

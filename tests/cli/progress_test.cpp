@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "cli/demo_curves.h"
+#include "builder/rigging/embedded_head.h"
 #include "tests/cli/tool.h"
 
 namespace fascia::cli {
@@ -40,7 +40,7 @@ TEST(Progress, IsSeenOnATerminalAndNowhereElse) {
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
   const std::string head = (folder / "head.obj").string(), rig = (folder / "rig.glb").string();
-  write_embedded_head(head, folder / "landmarks.json");
+  rigging::write_embedded_head(head, folder / "landmarks.json");
   const std::string build = "build " + head + " --detail low -o " + rig;
   ASSERT_EQ(std::system(("script -qec '" + test::tool().string() + " " + build + "' /dev/null >" +
                          (folder / "seen.txt").string() + " </dev/null")

@@ -6,7 +6,7 @@
 #include <regex>
 #include <set>
 
-#include "cli/demo_curves.h"
+#include "builder/rigging/embedded_head.h"
 #include "tests/cli/tool.h"
 
 namespace fascia::cli {
@@ -138,7 +138,7 @@ TEST_P(Tutorial, CanBeFollowed) {
   const fs::path folder = fs::temp_directory_path() / (std::string("fascia_tutorial_") + GetParam());
   fs::remove_all(folder);
   fs::create_directories(folder);
-  write_embedded_head(folder / "head.obj", folder / "landmarks_of_the_head.json");
+  rigging::write_embedded_head(folder / "head.obj", folder / "landmarks_of_the_head.json");
   const std::string script = script_of(project() / "docs/tutorials" / (std::string(GetParam()) + ".md"));
   ASSERT_GT(std::count(script.begin(), script.end(), '\n'), 5);
   const fs::path tools = test::tool().parent_path(), libraries = tools.parent_path() / "lib";

@@ -9,7 +9,7 @@
 #include <sstream>
 #include <thread>
 
-#include "cli/demo_curves.h"
+#include "builder/rigging/embedded_head.h"
 #include "tests/faults/workplace.h"
 
 namespace fascia::testing {
@@ -50,7 +50,7 @@ class Killed : public Workplace {
 };
 
 TEST_F(Killed, AtAnyMomentNothingIsHalfWritten) {
-  cli::write_embedded_head(at("head.obj"), at("landmarks.json"));
+  rigging::write_embedded_head(at("head.obj"), at("landmarks.json"));
   const std::vector<std::string> build = {"build",    at("head.obj"), "--landmarks", at("landmarks.json"),
                                           "--detail", "low",          "-o",          at("built.glb")};
   const auto begun = std::chrono::steady_clock::now();

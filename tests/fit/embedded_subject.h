@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/embedded_head.h"
+#include "builder/rigging/embedded_head.h"
 #include "fit/subject.h"
 #include "formats/scene.h"
 #include "tests/cli/tool.h"
@@ -24,7 +24,7 @@ class EmbeddedSubject : public ::testing::Test {
                                        ("fascia_fit_test_" + std::to_string(getpid())));
     std::filesystem::remove_all(*folder);
     std::filesystem::create_directories(*folder);
-    cli::write_embedded_head(*folder / "head.obj", *folder / "landmarks.json");
+    rigging::write_embedded_head(*folder / "head.obj", *folder / "landmarks.json");
     const cli::Outcome built = run("build " + at("head.obj") + " --landmarks " + at("landmarks.json") +
                                    " --detail low -o " + at("rig.glb") + " --quiet");
     ASSERT_EQ(built.code, 0) << built.err;

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <random>
 
-#include "cli/embedded_head.h"
+#include "builder/rigging/embedded_head.h"
 #include "fit/live/head_pose.h"
 #include "fit/live/landmark.h"
 #include "fit/live/landmark_sets.h"
@@ -90,7 +90,7 @@ int main(int argc, char** argv) {
   using namespace fascia;
   if (argc != 3) return 2;
   const std::filesystem::path folder = argv[2];
-  cli::write_embedded_head(folder / "embedded.obj", folder / "embedded_landmarks.json");
+  rigging::write_embedded_head(folder / "embedded.obj", folder / "embedded_landmarks.json");
   const auto at = [&](const char* name) { return (folder / name).string(); };
   const std::string command = std::string(argv[1]) + " build " + at("embedded.obj") + " --landmarks " +
                               at("embedded_landmarks.json") + " --detail low -o " + at("embedded.glb") +

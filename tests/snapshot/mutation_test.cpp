@@ -4,7 +4,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "cli/demo_curves.h"
+#include "builder/rigging/embedded_head.h"
 #include "tests/cli/tool.h"
 
 namespace fascia::cli {
@@ -19,7 +19,7 @@ class SnapshotOfTheEmbeddedHead : public ::testing::Test {
     folder = new fs::path(fs::temp_directory_path() / "fascia_snapshot_test");
     fs::remove_all(*folder);
     fs::create_directories(*folder);
-    write_embedded_head(at("head.obj"), at("landmarks.json"));
+    rigging::write_embedded_head(at("head.obj"), at("landmarks.json"));
     ASSERT_EQ(build("rig.glb").code, 0);
     const Outcome outcome = run("snapshot record " + at("rig.glb") + " -o " + at("snapshot.json"));
     ASSERT_EQ(outcome.code, 0) << outcome.err;

@@ -1,4 +1,4 @@
-#include "cli/embedded_head.h"
+#include "builder/rigging/embedded_head.h"
 
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -8,7 +8,7 @@
 #include "formats/write.h"
 #include "geometry/error.h"
 
-namespace fascia::cli {
+namespace fascia::rigging {
 
 namespace {
 
@@ -125,4 +125,4 @@ void write_embedded_head(const std::filesystem::path& head, const std::filesyste
   write_embedded_head(anatomy::load_generic(), head, landmarks);
 }
 
-}  // namespace fascia::cli
+}  // namespace fascia::rigging

@@ -4,7 +4,7 @@
 
 #include "anatomy/anatomy.h"
 
-namespace fascia::cli {
+namespace fascia::rigging {
 
 /// The generic head of `anatomy` as OBJ in millimetres, as a user would bring one: skin, eyes, teeth, gums
 /// and tongue, lashes, with its material library and pictures in the same folder, and its landmarks.
@@ -14,4 +14,4 @@ void write_embedded_head(const anatomy::GenericAnatomy& anatomy, const std::file
 /// The same of the built-in anatomy.
 void write_embedded_head(const std::filesystem::path& head, const std::filesystem::path& landmarks);
 
-}  // namespace fascia::cli
+}  // namespace fascia::rigging
