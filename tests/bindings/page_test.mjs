@@ -46,7 +46,7 @@ try {
     return result.result.value;
   };
   const until = async (expression) => {
-    for (let i = 0; i < 240; ++i) {
+    for (let i = 0; i < 720; ++i) {
       if (await ask(expression)) return;
       await new Promise((later) => setTimeout(later, 250));
     }
