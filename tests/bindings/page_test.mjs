@@ -32,7 +32,7 @@ try {
     answers.get(message.id)?.(message);
     if (message.method === 'Runtime.exceptionThrown') complaints.push(message.params.exceptionDetails.exception?.description ?? 'exception');
     if (message.method === 'Log.entryAdded' && message.params.entry.level !== 'info' && !/GPU stall|GL Driver/.test(message.params.entry.text))
-      complaints.push(message.params.entry.text);
+      complaints.push(`${message.params.entry.text} ${message.params.entry.url ?? ""}`.trim());
     if (message.method === 'Runtime.consoleAPICalled' && ['error', 'warning', 'assert'].includes(message.params.type))
       complaints.push(message.params.args.map(({value}) => value).join(' '));
   });
