@@ -140,6 +140,28 @@ TEST(Memory, ComesFromTheHost) {
   EXPECT_EQ(fascia_set_allocator(&lacking), FASCIA_ERROR_ARGUMENT);
 }
 
+/// Uses the library with an allocator of the host's and ends.
+[[noreturn]] void use_and_end(const std::vector<uint8_t>& bytes) {
+  static Host host;
+  const fascia_allocator allocator = {sizeof allocator, 0, allocate, release, &host};
+  if (fascia_set_allocator(&allocator) == FASCIA_ERROR_MODULE) std::exit(0);
+  fascia_asset* asset = nullptr;
+  fascia_face* face = nullptr;
+  if (fascia_asset_load(bytes.data(), bytes.size(), &asset) != FASCIA_OK) std::exit(2);
+  if (fascia_face_create(asset, nullptr, &face) != FASCIA_OK) std::exit(3);
+  fascia_face_set(face, "mouthSmile_L", 0.1F);
+  fascia_face_release(face);
+  fascia_asset_release(asset);
+  std::exit(0);
+}
+
+/// What the library made before the host's allocator was set is not the host's when the program ends.
+TEST(Memory, AProgramMayEndWithItsAllocatorSet) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const std::vector<uint8_t> bytes = tiny_rig_file();
+  EXPECT_EXIT(use_and_end(bytes), testing::ExitedWithCode(0), "");
+}
+
 TEST(Api, TheTableIsAllThereIs) {
   const fascia_api* api = nullptr;
   ASSERT_EQ(fascia_get_api(FASCIA_VERSION_MAJOR << 16 | FASCIA_VERSION_MINOR << 8, &api), FASCIA_OK);
