@@ -197,14 +197,20 @@ FittedRow fit_row(const ShapeEntry& entry, const Weights& base, const Weights& s
   FittedRow row;
   if (fit.empty()) return row;
   Eigen::VectorXd x = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(list.size()));
-  for (size_t p = 0; p < list.size(); ++p) {  // from the present row
-    const auto& [name, limit] = *list[p].limits.begin();
-    const auto found = start.find(name);
-    const double own = found == start.end()
-                           ? 0.0
-                           : found->second - (entry.given.contains(name) ? entry.given.at(name) : 0.0);
-    if (own * limit > 0.0) x[static_cast<Eigen::Index>(p)] = std::min(1.0, own / limit);
-  }
+  Weights left = start;  // of the present row, from which the fit sets out
+  for (const auto& [name, value] : entry.given)
+    if (left.contains(name)) left[name] -= value;
+  for (const bool is_both : {true, false})  // what two sides share before what one has more
+    for (size_t p = 0; p < list.size(); ++p) {
+      if ((list[p].limits.size() > 1) != is_both) continue;
+      double most = 1.0;
+      for (const auto& [name, limit] : list[p].limits)
+        most = std::min(most, left.contains(name) ? left[name] / limit : 0.0);
+      if (most <= 0.0) continue;
+      x[static_cast<Eigen::Index>(p)] = most;
+      for (const auto& [name, limit] : list[p].limits)
+        left[name] -= most * limit;
+    }
   x = fit.pruned(x);
   std::vector<double> errors;
   row.share = 1.0 - fit.look(x, nullptr, &errors);
