@@ -53,7 +53,7 @@ LidLook::LidLook(const Head& head, const Skin& skin, const Eye& eye, const Seam&
       eye_(eye),
       frame_(head.landmarks.at(left ? "exocanthion_left" : "exocanthion_right"),
              head.landmarks.at(left ? "endocanthion_left" : "endocanthion_right"), eye, left),
-      lids_(patch_about(skin.rest(), eye.centre, (outside + 0.1) * eye.radius)) {
+      lids_(moving_patch_about(skin, eye.centre, (outside + 0.1) * eye.radius)) {
   for (size_t p = 0; p < head.parts.size(); ++p)
     if (head.parts[p].name == (left ? "eye_left" : "eye_right")) eyeball_.push_back(p);
   constexpr double more = 0.1;  // radians beyond the edges at rest

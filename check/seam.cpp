@@ -66,7 +66,7 @@ std::vector<uint8_t> sides_of_opening(const Skin& skin, const Vec3& upper, const
   const std::vector<Vec3>& vertices = skin.rest().vertices;
   std::vector<bool> within(vertices.size());
   for (size_t v = 0; v < within.size(); ++v)
-    within[v] = (vertices[v] - centre).norm() < reach;
+    within[v] = (vertices[v] - centre).norm() < reach && !skin.is_still()[v];
   const std::vector<double> to_upper = ways(skin, upper, within), to_lower = ways(skin, lower, within);
   std::vector<uint8_t> sides(vertices.size(), Seam::none);
   for (size_t v = 0; v < sides.size(); ++v)
@@ -182,7 +182,7 @@ Seam lid_seam(const Skin& skin, const std::map<std::string, Vec3>& landmarks, co
   const LidFrame frame(landmarks.at("exocanthion" + side), landmarks.at("endocanthion" + side), eye, left);
   const double width = (frame.at_left - frame.at_right).norm();
   seam.sides = sides_of_opening(skin, top, bottom, 0.5 * (frame.at_left + frame.at_right), 0.9 * width);
-  const Patch lids = patch_about(skin.rest(), eye.centre, 1.7 * eye.radius);
+  const Patch lids = moving_patch_about(skin, eye.centre, 1.7 * eye.radius);
   if (lids.triangles.empty()) return seam;
   const TriangleMesh mesh = lids.mesh(skin.rest().vertices);
   std::vector<uint8_t> sides;
