@@ -108,15 +108,22 @@ bool find_edges(const spatial::SurfaceQuery& query, const TriangleMesh& mesh,
     return std::abs(seen[a].distance - seen[b].distance) > look.jump;
   };
   size_t up = cut, down = cut;  // up: one after the last upper place
+  // Where one looks past everything it is the opening for certain; folds of the lid only jump.
+  const auto is_hole = [&](size_t i) { return seen[i].distance == infinite; };
+  bool any_above = false, any_below = false;
   for (size_t i = 0; i + 1 < cut; ++i)
-    if (seen[i].side == Seam::upper && (seen[i + 1].distance == infinite || apart(i, i + 1))) {
+    any_above = any_above || (seen[i].side == Seam::upper && is_hole(i + 1));
+  for (size_t i = count; i-- > cut + 1;)
+    any_below = any_below || (seen[i].side == Seam::lower && is_hole(i - 1));
+  for (size_t i = 0; i + 1 < cut; ++i)
+    if (seen[i].side == Seam::upper && (is_hole(i + 1) || (!any_above && apart(i, i + 1)))) {
       // A jump that leads back to nearer places is a fold, not the opening.
       if (seen[i + 1].distance < seen[i].distance) continue;
       up = i + 1;
       break;
     }
   for (size_t i = count; i-- > cut + 1;)
-    if (seen[i].side == Seam::lower && (seen[i - 1].distance == infinite || apart(i, i - 1))) {
+    if (seen[i].side == Seam::lower && (is_hole(i - 1) || (!any_below && apart(i, i - 1)))) {
       if (seen[i - 1].distance < seen[i].distance) continue;
       down = i;
       break;

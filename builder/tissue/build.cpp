@@ -97,7 +97,7 @@ TissueResult build(const TissueInputs& given, const TissueOptions& options) {
     const Columns columns = make_columns(inputs, region, beneath, symmetry, wanted, options);
     rig::TissueLevel level = complete_level(inputs, region, beneath, wanted, options, columns);
     const std::vector<Follow> skin = follow_skin(inputs, region, columns);
-    settle_lids(inputs, region, columns, skin, level);
+    settle_lids(inputs, region, columns, skin, symmetry && symmetry->is_exact, level);
     result.tissue.bindings[at] = bind_parts(inputs, region, columns, skin);
     result.figures[at] = figures_of(level);
     result.tissue.levels[at] = std::move(level);

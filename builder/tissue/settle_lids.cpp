@@ -10,17 +10,17 @@ namespace fascia::tissue {
 namespace {
 
 constexpr size_t stations = 33;
-constexpr double edge = 0.004;      // metres beside the opening among which a lid's edge is looked for
-constexpr double first = 0.05;      // of the fissure: nearer to a canthus both lids are one
-constexpr double overlap = 0.012;   // radians that a closed upper lid reaches over the lower one
-constexpr double most_added = 0.9;  // radians
-constexpr double widest = 2.2;      // radians about the globe: farther round is its socket
-constexpr double slope = 0.035;     // radians a station: how steeply what is added may change along a lid
+constexpr double edge = 0.004;       // metres beside the opening among which a lid's edge is looked for
+constexpr double first = 0.05;       // of the fissure: nearer to a canthus both lids are one
+constexpr double overlap = 0.03;     // radians that a closed upper lid is to reach over the lower one
+constexpr double touching = -0.012;  // radians: more is a slit, for edges are polygons between stations
+constexpr double widest = 2.2;       // radians about the globe: farther round is its socket
+constexpr double slope = 0.06;       // radians a station: how steeply what is added may change along a lid
 
 /// The edges of the head's own mesh that lie along an eye's fissure, and the lid each is of.
 class LidEdges {
  public:
-  LidEdges(const FaceRegion& region, const Fissure& fissure, bool left) : region_(region), fissure_(fissure) {
+  LidEdges(const FaceRegion& region, const Fissure& fissure, bool left) : fissure_(fissure) {
     const auto& distance =
         region.opening_distance[static_cast<size_t>(left ? Opening::eye_left : Opening::eye_right)];
     const auto is_near = [&](size_t v) { return distance[v] < edge; };
@@ -65,7 +65,6 @@ class LidEdges {
     size_t a, b;  // of the region
     bool is_upper;
   };
-  const FaceRegion& region_;
   const Fissure& fissure_;
   std::vector<Edge> edges_;
 };
@@ -92,27 +91,42 @@ struct Eye {
         edges(region, fissure, left),
         channel(channel_index(inputs.channels, left ? "lid_upper_left" : "lid_upper_right")) {}
 
-  /// Adds what gapes, spread along the lid; false when nothing does.
+  /// Adds what gapes at each station; false when nothing does. What was added in vain, as where not the lids
+  /// are apart but a fold beside them, is taken back.
   bool widen(const std::vector<Vec3>& places) {
+    constexpr double least_use = 0.08;  // radians closed, of one that was added
+    constexpr double most_gain = 2.0;
     const auto gaps = edges.gaps(places);
-    std::array<double, stations> wanted{};
-    double most = 0.0;
+    bool any = false;
     for (size_t k = 0; k < stations; ++k) {
       const double place = static_cast<double>(k) / (stations - 1);
       if (gaps[k] == LidEdges::none || place < first || place > 1.0 - first) continue;
-      wanted[k] = std::max(0.0, gaps[k] + overlap);
-      most = std::max(most, gaps[k]);
-    }
-    if (!(most > 0.0)) return false;
-    for (size_t k = 0; k < stations; ++k)
-      for (size_t j = 0; j < stations; ++j) {
-        const double steps = std::abs(static_cast<double>(j) - static_cast<double>(k));
-        added[k] = std::max(added[k], before[k] + wanted[j] - slope * steps);
+      if (given[k] > 0.0) {
+        const double use = (before[k] - gaps[k]) / given[k];
+        if (use < least_use) in_vain[k] = true;
+        gain[k] = std::clamp(1.0 / std::max(use, 1e-3), 1.0, most_gain);
       }
-    for (double& angle : added)
-      angle = std::min(angle, most_added);
-    before = added;
-    return true;
+      if (in_vain[k]) own[k] = 0.0;
+      given[k] = in_vain[k] || gaps[k] <= touching ? 0.0 : gain[k] * (gaps[k] + overlap);
+      before[k] = gaps[k];
+      if (given[k] == 0.0) continue;
+      own[k] = std::min(added[k] + given[k], most_added(place));
+      any = true;
+    }
+    spread();
+    return any;
+  }
+
+  /// More than this, in radians, would be another fault than the skin's resistance.
+  double most_added(double place) const { return 0.3 + 0.5 * fissure.gap(place); }
+
+  void spread() {
+    for (size_t k = 0; k < stations; ++k) {
+      added[k] = 0.0;
+      for (size_t j = 0; j < stations; ++j)
+        added[k] =
+            std::max(added[k], own[j] - slope * std::abs(static_cast<double>(j) - static_cast<double>(k)));
+    }
   }
 
   double added_at(double place) const {
@@ -126,14 +140,33 @@ struct Eye {
   Fissure fissure;
   LidEdges edges;
   int channel;
-  std::array<double, stations> added{}, before{};
+  std::array<double, stations> added{};  ///< radians at full closing
+  std::array<double, stations> own{};    ///< what each station asks for, before it is spread
+
+ private:
+  std::array<double, stations> before{}, given{}, gain = filled(1.2);
+  std::array<bool, stations> in_vain{};
+
+  static std::array<double, stations> filled(double value) {
+    std::array<double, stations> all;
+    all.fill(value);
+    return all;
+  }
 };
+
+/// Gives both eyes of a head that is the same on both sides what either asks for.
+void share_with_image(Eye& left, Eye& right) {
+  for (size_t k = 0; k < stations; ++k)
+    left.own[k] = right.own[stations - 1 - k] = std::max(left.own[k], right.own[stations - 1 - k]);
+  left.spread();
+  right.spread();
+}
 
 }  // namespace
 
 void settle_lids(const TissueInputs& inputs, const FaceRegion& region, const Columns& c,
-                 const std::vector<Follow>& skin, rig::TissueLevel& level) {
-  constexpr int rounds = 4;
+                 const std::vector<Follow>& skin, bool is_mirrored, rig::TissueLevel& level) {
+  constexpr int rounds = 5;
   if (inputs.blink.empty()) return;
   std::vector<Eye> eyes;
   eyes.reserve(2);
@@ -159,6 +192,7 @@ void settle_lids(const TissueInputs& inputs, const FaceRegion& region, const Col
     for (Eye& eye : eyes)
       any = eye.widen(places) || any;
     if (!any) return;
+    if (is_mirrored && eyes.size() == 2) share_with_image(eyes[0], eyes[1]);
     for (size_t k = 0; k < level.carrier_angle.size(); ++k)
       for (const Eye& eye : eyes) {
         if (static_cast<int>(level.carrier_channel[k]) != eye.channel) continue;
