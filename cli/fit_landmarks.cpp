@@ -82,7 +82,7 @@ class Reader {
 
   /// The landmarks that a detector's points show; one whose points it has not all seen (null) is left out.
   Points by_number(const PlainJson& list, const std::string& where) const {
-    const auto& sets = fit::landmark_sets();
+    static const auto sets = fit::landmark_sets();
     const auto set = std::find_if(sets.begin(), sets.end(), [&](const fit::LandmarkSet& known) {
       return list.is_array() && known.points == list.size();
     });

@@ -1,17 +1,13 @@
 #include "formats/files.h"
 
 #include <fcntl.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <fstream>
-#include <random>
 
-#include "formats/partial.h"
+#include "formats/new_file.h"
 #include "geometry/error.h"
 
 namespace fascia::formats {
@@ -20,89 +16,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void fail_to_write(const fs::path& path, int error) {
-  throw Error("'" + path.string() + "' cannot be written: " + std::strerror(error) +
-              "; check the folder, its permissions and free space");
-}
-
 using Parts = std::vector<std::span<const uint8_t>>;
-
-bool write_all(int file, std::span<const uint8_t> part) {
-  const uint8_t* at = part.data();
-  size_t size = part.size();
-  while (size > 0) {
-    const ssize_t written = ::write(file, at, std::min(size, size_t{1} << 30));
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) {
-      if (written == 0) errno = EIO;
-      return false;
-    }
-    at += written;
-    size -= static_cast<size_t>(written);
-  }
-  return true;
-}
-
-bool write_all(int file, const Parts& parts) {
-  return std::all_of(parts.begin(), parts.end(), [&](const auto& part) { return write_all(file, part); });
-}
-
-/// A new file beside its target, removed again unless it is renamed into place.
-class NewFile {
- public:
-  explicit NewFile(const fs::path& target) : target_(target) {
-    std::random_device random;
-    do {
-      char number[24];
-      std::snprintf(number, sizeof number, ".%08x%08x.part", random(), random());
-      name_ = target.string() + number;
-      // Noted before it is made, so that no signal finds it unknown.
-      remember_partial(name_);
-      file_ = open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-      if (file_ >= 0) return;
-      const int error = errno;
-      forget_partial(name_);
-      if (error != EEXIST) fail_to_write(target_, error);
-    } while (true);
-  }
-  NewFile(const NewFile&) = delete;
-  NewFile& operator=(const NewFile&) = delete;
-  ~NewFile() {
-    if (file_ >= 0) close(file_);
-    if (name_.empty()) return;
-    unlink(name_.c_str());
-    forget_partial(name_);
-  }
-
-  void write(const Parts& parts) {
-    struct stat old = {};
-    const mode_t mask = umask(0);
-    umask(mask);
-    const mode_t mode = stat(target_.c_str(), &old) == 0 ? old.st_mode & 07777 : 0666 & ~mask;
-    if (!write_all(file_, parts) || fchmod(file_, mode) != 0) fail_to_write(target_, errno);
-    // Some file systems report a full disk only now.
-    if (fsync(file_) != 0 && errno != EINVAL && errno != EROFS) fail_to_write(target_, errno);
-    const int closed = close(file_);
-    file_ = -1;
-    if (closed != 0) fail_to_write(target_, errno);
-  }
-
-  void rename_into_place() {
-    if (std::rename(name_.c_str(), target_.c_str()) != 0) fail_to_write(target_, errno);
-    forget_partial(name_);
-    name_.clear();
-  }
-
- private:
-  fs::path target_;
-  std::string name_;
-  int file_ = -1;
-};
 
 void write_into(const fs::path& device, const Parts& parts) {
   const int file = open(device.c_str(), O_WRONLY);
   if (file < 0) fail_to_write(device, errno);
-  const bool done = write_all(file, parts);
+  const bool done =
+      std::all_of(parts.begin(), parts.end(), [&](const auto& part) { return write_all(file, part); });
   const int error = errno;
   close(file);
   if (!done) fail_to_write(device, error);
@@ -142,11 +62,10 @@ void write_parts(const fs::path& path, const Parts& parts) {
   const fs::file_status there = fs::status(path, status);
   if (fs::is_directory(there)) throw Error("'" + path.string() + "' is a folder; give the name of a file");
   if (fs::exists(there) && !fs::is_regular_file(there)) return write_into(path, parts);
-  const bool is_link = fs::is_symlink(fs::symlink_status(path, status));
-  const fs::path target = is_link ? fs::weakly_canonical(path, status) : path;
-  NewFile file(target);
-  file.write(parts);
-  file.rename_into_place();
+  NewFile file(path);
+  for (const auto& part : parts)
+    file.write(part);
+  file.put_in_place();
 }
 
 void write_text(const fs::path& path, const std::string& text) {

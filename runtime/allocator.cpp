@@ -29,12 +29,14 @@ void set_refusals_deferred(bool is_deferred) noexcept {
   deferred = is_deferred;
 }
 
-RefusalsDeferred::RefusalsDeferred() noexcept {
+RefusalsDeferred::RefusalsDeferred() noexcept : was_deferred_(deferred), had_run_out_(ran_out) {
   deferred = true;
+  ran_out = false;
 }
 
 RefusalsDeferred::~RefusalsDeferred() {
-  deferred = false;
+  ran_out = was_deferred_ && (ran_out || had_run_out_);
+  deferred = was_deferred_;
 }
 
 void RefusalsDeferred::finish() const {

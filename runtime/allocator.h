@@ -18,9 +18,10 @@ bool has_run_out() noexcept;
 void set_run_out(bool has) noexcept;
 
 /// While one lives, this thread's allocations that are refused come from a reserve of the library's own, and
-/// has_run_out() tells of it; only when that is used up do they fail. For work with third parties whose
-/// destructors take memory, and would end the host's program where they got none. finish() throws
-/// std::bad_alloc when any was refused.
+/// has_run_out() tells of it; only when that is used up do they fail. So a call's work is done whole or not
+/// at all, and third parties whose destructors take memory do not end the host's program where they get none.
+/// Every call of the C interface has one (guarded(), released()), and every task on a thread of the host's.
+/// finish() throws std::bad_alloc when any was refused.
 class RefusalsDeferred {
  public:
   RefusalsDeferred() noexcept;
@@ -28,6 +29,9 @@ class RefusalsDeferred {
   RefusalsDeferred(const RefusalsDeferred&) = delete;
   RefusalsDeferred& operator=(const RefusalsDeferred&) = delete;
   void finish() const;
+
+ private:
+  bool was_deferred_, had_run_out_;  ///< of the call around this one, if any
 };
 bool are_refusals_deferred() noexcept;
 void set_refusals_deferred(bool deferred) noexcept;

@@ -1,6 +1,10 @@
 // The host's allocator. The shared library is linked with --wrap, so that its own code, libstdc++'s (linked
 // in) and Eigen's reach malloc and the like through here. Linux only: see runtime/CMakeLists.txt.
+#include <malloc.h>
+
 #include <algorithm>
+#include <atomic>
+#include <bit>
 #include <cerrno>
 #include <cstddef>
 #include <cstdint>
@@ -30,24 +34,50 @@ const bool is_announced = fascia::runtime::can_redirect_memory = true;
 fascia_allocator& host = fascia::runtime::hosts_allocator;
 
 constexpr std::size_t usual_alignment = alignof(std::max_align_t);
+static_assert(usual_alignment == 16);
+constexpr std::size_t largest_alignment = std::size_t{1} << 15;
 
-/// A host's block with its size before it, for realloc. `alignment` at least usual_alignment.
-void* hosts_block(std::size_t size, std::size_t alignment) {
-  if (size > SIZE_MAX - alignment) return nullptr;
-  auto* const raw = static_cast<char*>(host.allocate(size + alignment, alignment, host.user));
-  if (raw == nullptr) return nullptr;
-  const uint64_t notes[2] = {size, alignment};
-  std::memcpy(raw + alignment - sizeof notes, notes, sizeof notes);
-  return raw + alignment;
-}
-
+/// Before a host's block: its size, and a mark that tells it from malloc's, which holds the alignment's
+/// logarithm. Blocks of before the host set its allocator (texts of static objects) are given back when the
+/// program ends, while the host's allocator may still be set.
 struct Notes {
-  uint64_t size, alignment;
+  uint64_t size, mark;
 };
+constexpr uint64_t secret = 0x9E3779B97F4A7C10ULL;
+std::atomic<bool> is_any_hosts{false};
+
 Notes notes_of(const void* block) {
   Notes notes{};
   std::memcpy(&notes, static_cast<const char*>(block) - sizeof notes, sizeof notes);
   return notes;
+}
+
+/// A block of malloc's is told by what glibc keeps before it, which is read here.
+bool is_hosts(const void* block) {
+  return is_any_hosts.load(std::memory_order_relaxed) &&
+         (notes_of(block).mark & ~uint64_t{15}) == (reinterpret_cast<uintptr_t>(block) ^ secret);
+}
+
+/// A host's block with its notes. `alignment` at least usual_alignment.
+void* hosts_block(std::size_t size, std::size_t alignment) {
+  if (alignment > largest_alignment || size > SIZE_MAX - alignment) return nullptr;
+  auto* const raw = static_cast<char*>(host.allocate(size + alignment, alignment, host.user));
+  if (raw == nullptr) return nullptr;
+  char* const block = raw + alignment;
+  const Notes notes = {size, (reinterpret_cast<uintptr_t>(block) ^ secret) |
+                                 static_cast<uint64_t>(std::countr_zero(alignment))};
+  std::memcpy(block - sizeof notes, &notes, sizeof notes);
+  is_any_hosts.store(true, std::memory_order_relaxed);
+  return block;
+}
+
+/// To the host that is set; one that took its allocator back has lost the table that is kept for good.
+void give_back_to_host(void* block) {
+  const Notes notes = notes_of(block);
+  const uint64_t nothing = 0;
+  std::memcpy(static_cast<char*>(block) - sizeof nothing, &nothing, sizeof nothing);  // no block any more
+  if (host.release != nullptr)
+    host.release(static_cast<char*>(block) - (std::size_t{1} << (notes.mark & 15)), host.user);
 }
 
 /// Where memory comes from when it has run out: undoing what was begun takes some as well (nlohmann's
@@ -131,11 +161,13 @@ void* __wrap_calloc(std::size_t count, std::size_t size) {
 
 void* __wrap_realloc(void* block, std::size_t size) {
   if (block == nullptr) return __wrap_malloc(size);
-  const bool is_reserves = reserve.has(block);
-  if (host.allocate == nullptr && !is_reserves) return __real_realloc(block, size);
+  const bool is_reserves = reserve.has(block), is_malloced = !is_reserves && !is_hosts(block);
+  if (host.allocate == nullptr && is_malloced) return __real_realloc(block, size);
   void* const grown = __wrap_malloc(size);
   if (grown == nullptr) return nullptr;
-  const std::size_t held = is_reserves ? Reserve::size_of(block) : notes_of(block).size;
+  const std::size_t held = is_reserves   ? Reserve::size_of(block)
+                           : is_malloced ? malloc_usable_size(block)
+                                         : notes_of(block).size;
   std::memcpy(grown, block, std::min<std::size_t>(size, held));
   __wrap_free(block);
   return grown;
@@ -155,10 +187,10 @@ void __wrap_free(void* block) {
   if (block == nullptr) return;
   if (reserve.has(block))
     reserve.give_back(block);
-  else if (host.allocate == nullptr)
-    __real_free(block);
+  else if (is_hosts(block))
+    give_back_to_host(block);
   else
-    host.release(static_cast<char*>(block) - notes_of(block).alignment, host.user);
+    __real_free(block);
 }
 
 }  // extern "C"

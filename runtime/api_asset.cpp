@@ -38,16 +38,14 @@ fascia_result fascia_asset_load(const void* bytes, size_t size, fascia_asset** a
     require(asset != nullptr && (bytes != nullptr || size == 0), "fascia_asset_load: bytes or asset is null");
     require(size > 0, "the file is empty");
     const auto* begin = static_cast<const uint8_t*>(bytes);
-    const RefusalsDeferred reading;
     auto loaded = std::make_shared<const Asset>(std::span<const uint8_t>(begin, size));
-    reading.finish();
-    *asset = new fascia_asset{std::move(loaded)};
+    hand_over(std::unique_ptr<fascia_asset>(new fascia_asset{std::move(loaded)}), asset);
     return FASCIA_OK;
   });
 }
 
 void fascia_asset_release(fascia_asset* asset) {
-  delete asset;
+  released(asset);
 }
 
 fascia_result fascia_asset_get_info(const fascia_asset* handle, fascia_asset_info* info) {

@@ -22,9 +22,10 @@ struct fascia_curves {
     const std::lock_guard lock(mutex_);
     auto& found = driven_[asset.serial()];
     if (!found) {
-      found = std::make_unique<std::vector<std::vector<Driven>>>();
+      auto made = std::make_unique<std::vector<std::vector<Driven>>>();
       for (const Curve& curve : curves.curves)
-        found->push_back(asset.resolve(curve.name));
+        made->push_back(asset.resolve(curve.name));
+      found = std::move(made);  // whole, or not at all
     }
     return *found;
   }
@@ -75,13 +76,13 @@ fascia_result fascia_curves_load_as(const void* bytes, size_t size, const fascia
     for (const std::string& note : loaded->curves.notes)
       loaded->notes.push_back(note.c_str());
     find_head(*loaded);
-    *curves = loaded.release();
+    hand_over(std::move(loaded), curves);
     return FASCIA_OK;
   });
 }
 
 void fascia_curves_release(fascia_curves* curves) {
-  delete curves;
+  released(curves);
 }
 
 fascia_result fascia_curves_get_info(const fascia_curves* curves, fascia_curves_info* info) {

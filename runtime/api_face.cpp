@@ -35,13 +35,13 @@ fascia_result fascia_face_create(fascia_asset* asset, const fascia_face_options*
   return guarded([&] {
     require(asset != nullptr && face != nullptr, "fascia_face_create: asset or face is null");
     auto made = std::make_unique<Face>(asset->asset, taken(options, fascia_default_face_options()));
-    *face = new fascia_face{std::move(made)};
+    hand_over(std::unique_ptr<fascia_face>(new fascia_face{std::move(made)}), face);
     return FASCIA_OK;
   });
 }
 
 void fascia_face_release(fascia_face* face) {
-  delete face;
+  released(face);
 }
 
 fascia_result fascia_face_pose(fascia_face* handle) {

@@ -37,14 +37,13 @@ fascia_result fascia_fit_create(fascia_asset* asset, const fascia_fit_landmarks*
     auto made = std::make_unique<fascia_fit>();
     made->fit = std::make_unique<Fit>(asset->asset, taken(landmarks, fascia_fit_landmarks{}),
                                       taken(options, fascia_default_fit_options()));
-    *fit = made.release();
+    hand_over(std::move(made), fit);
     return FASCIA_OK;
   });
 }
 
 void fascia_fit_release(fascia_fit* fit) {
-  const ArithmeticMode mode;
-  delete fit;
+  released(fit);
 }
 
 fascia_result fascia_fit_get_info(const fascia_fit* handle, fascia_fit_info* info) {

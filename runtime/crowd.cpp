@@ -3,8 +3,10 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <new>
 
-#include "runtime/arithmetic_mode.h"
+#include "geometry/arithmetic_mode.h"
+#include "runtime/allocator.h"
 
 namespace fascia::runtime {
 namespace {
@@ -15,6 +17,7 @@ struct Work {
   std::atomic<std::size_t> diverged{0};
   std::mutex mutex;
   std::exception_ptr fault;  ///< the first; nothing may pass through the host's code
+  std::atomic<bool> ran_out{false};
 
   void run(std::size_t first, std::size_t end) {
     for (std::size_t i = first; i < end && i < faces.size(); ++i)
@@ -29,7 +32,10 @@ struct Work {
 
 void run_range(uint32_t first, uint32_t end, void* context) {
   const ArithmeticMode mode;  // of a thread of the host's
-  static_cast<Work*>(context)->run(first, end);
+  const RefusalsDeferred refusals;
+  auto& work = *static_cast<Work*>(context);
+  work.run(first, end);
+  if (has_run_out()) work.ran_out = true;
 }
 
 }  // namespace
@@ -44,13 +50,14 @@ bool are_different(std::span<fascia_face* const> faces) {
 }
 
 std::size_t step_all(std::span<fascia_face* const> faces, double seconds, const fascia_tasks* tasks) {
-  Work work{faces, seconds, {}, {}, {}};
+  Work work{faces, seconds, {}, {}, {}, {}};
   if (tasks == nullptr || faces.empty()) {
     work.run(0, faces.size());
   } else if (void* task = tasks->begin(run_range, static_cast<uint32_t>(faces.size()), 1, &work, tasks->user);
              task != nullptr) {
     tasks->finish(task, tasks->user);
   }
+  if (work.ran_out) throw std::bad_alloc();
   if (work.fault) std::rethrow_exception(work.fault);
   return work.diverged;
 }

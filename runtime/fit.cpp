@@ -60,8 +60,8 @@ Fit::Fit(std::shared_ptr<const Asset> asset, const fascia_fit_landmarks& landmar
   require(ways == 1, "give one of set, names and places");
   std::vector<fit::Landmark> found;
   if (landmarks.set != nullptr) {
-    const fit::LandmarkSet* set = fit::find_landmark_set(landmarks.set);
-    if (set == nullptr) {
+    const std::optional<fit::LandmarkSet> set = fit::find_landmark_set(landmarks.set);
+    if (!set) {
       std::string known;
       for (const fit::LandmarkSet& other : fit::landmark_sets())
         known += (known.empty() ? "" : ", ") + other.name;

@@ -1,14 +1,15 @@
 #pragma once
 
 #include <cstring>
+#include <memory>
 #include <new>
 #include <stdexcept>
 #include <string>
 
 #include "fascia/fascia.h"
+#include "geometry/arithmetic_mode.h"
 #include "geometry/error.h"
 #include "runtime/allocator.h"
-#include "runtime/arithmetic_mode.h"
 
 namespace fascia::runtime {
 
@@ -33,14 +34,16 @@ inline void require(bool condition, const char* message) {
   if (!condition) throw Failure(FASCIA_ERROR_ARGUMENT, message);
 }
 
-/// Runs `body` in the usual mode of arithmetic and turns whatever it throws into a result: the wall between
-/// C++ and the C interface.
+/// Runs `body` in the usual mode of arithmetic and turns whatever it throws, and memory that was refused,
+/// into a result: the wall between C++ and the C interface.
 template <class Body>
 fascia_result guarded(const Body& body) noexcept {
   const ArithmeticMode mode;
-  set_run_out(false);
+  const RefusalsDeferred refusals;
   try {
-    return body();
+    const fascia_result result = body();
+    refusals.finish();
+    return result;
   } catch (const std::bad_alloc&) {
     return report(FASCIA_ERROR_MEMORY, "out of memory");
   } catch (const std::exception& fault) {
@@ -48,6 +51,21 @@ fascia_result guarded(const Body& body) noexcept {
   } catch (...) {
     return report(FASCIA_ERROR_INTERNAL, "an unknown fault");
   }
+}
+
+/// Gives the caller what was made for it, unless memory was refused in the making: last in a guarded body.
+template <class Handle>
+void hand_over(std::unique_ptr<Handle> made, Handle** to) {
+  if (has_run_out()) throw std::bad_alloc();
+  *to = made.release();
+}
+
+/// Takes back what was handed over; null does nothing.
+template <class Handle>
+void released(Handle* handle) noexcept {
+  const ArithmeticMode mode;
+  const RefusalsDeferred refusals;
+  delete handle;
 }
 
 /// Copies `value` to the caller's structure, as much of it as the caller knows. `to->struct_size` says how

@@ -8,6 +8,9 @@ rig=$(realpath "${1:-build/tests/samples/tiny.glb}")
 out=build/hosts
 mkdir -p "$out"
 export LD_LIBRARY_PATH=$PWD/build/lib
+# A whole face and a stream of its landmarks, for the way from landmarks to muscles.
+head=build/tests/samples/embedded.glb stream=samples/capture/stream.csv
+[ -f "$head" ] || build/bin/make_capture build/bin/fascia build/tests/samples
 failed=()
 
 part() {  # name, programs it needs..., -- command...
@@ -29,14 +32,14 @@ part() {  # name, programs it needs..., -- command...
 python() {
   cmake -S . -B build -DFASCIA_BUILD_PYTHON=ON -DPython3_EXECUTABLE=/usr/bin/python3
   cmake --build build --target fascia_python python_wheel
-  PYTHONPATH=build/python FASCIA=$PWD/build/bin/fascia /usr/bin/python3 tests/bindings/python_test.py "$rig"
+  PYTHONPATH=build/python FASCIA=$PWD/build/bin/fascia /usr/bin/python3 tests/bindings/python_test.py "$rig" "$head" "$stream"
   # The wheel alone, elsewhere.
   rm -rf "$out/wheel" && mkdir "$out/wheel" && (cd "$out/wheel" && unzip -q ../../wheel/*.whl)
-  env -u LD_LIBRARY_PATH PYTHONPATH="$out/wheel" /usr/bin/python3 tests/bindings/python_test.py "$rig"
+  env -u LD_LIBRARY_PATH PYTHONPATH="$out/wheel" /usr/bin/python3 tests/bindings/python_test.py "$rig" "$head" "$stream"
 }
 csharp() {
   mcs -unsafe -warnaserror -out:"$out/test.exe" bindings/csharp/Fascia.cs tests/bindings/CsharpTest.cs
-  mono "$out/test.exe" "$rig"
+  mono "$out/test.exe" "$rig" "$head" "$stream"
 }
 web() {
   scripts/web.sh

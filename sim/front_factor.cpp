@@ -141,8 +141,12 @@ Eigen::MatrixXd FrontFactor::solve(const Eigen::MatrixXd& right) const {
 void FrontFactor::solve_some(const Eigen::Ref<const Eigen::MatrixXd>& right,
                              Eigen::Ref<Eigen::MatrixXd> solution) const {
   const auto& order = dissection_->order();
-  // Transposed, so that all of a row lie together: rows are gathered and scattered.
-  Eigen::MatrixXd x(right.cols(), right.rows()), bottom;
+  // Transposed, so that all of a row lie together: rows are gathered and scattered. Of the largest front's
+  // size at once: Eigen 3.4 frees a matrix twice when memory runs out while it is made larger.
+  Eigen::Index most_below = 0;
+  for (const Front& front : fronts_)
+    most_below = std::max<Eigen::Index>(most_below, front.below);
+  Eigen::MatrixXd x(right.cols(), right.rows()), below(right.cols(), most_below);
   for (size_t k = 0; k < order.size(); ++k)
     x.middleCols<3>(static_cast<Eigen::Index>(3 * k)) =
         right.middleRows<3>(static_cast<Eigen::Index>(3 * order[k])).transpose();
@@ -156,6 +160,7 @@ void FrontFactor::solve_some(const Eigen::Ref<const Eigen::MatrixXd>& right,
         .transpose()
         .solveInPlace<Eigen::OnTheRight>(here);
     if (front.below == 0) continue;
+    auto bottom = below.leftCols(front.below);
     bottom.noalias() = here * panel.bottomRows(front.below).transpose();
     for (size_t r = 0; r < nodes.rows.size(); ++r)
       x.middleCols<3>(static_cast<Eigen::Index>(3 * nodes.rows[r])) -=
@@ -167,7 +172,7 @@ void FrontFactor::solve_some(const Eigen::Ref<const Eigen::MatrixXd>& right,
     const Panel panel(values_.data() + front.values, front.width + front.below, front.width);
     auto here = x.middleCols(static_cast<Eigen::Index>(3 * nodes.first), front.width);
     if (front.below > 0) {
-      bottom.resize(x.rows(), front.below);
+      auto bottom = below.leftCols(front.below);
       for (size_t r = 0; r < nodes.rows.size(); ++r)
         bottom.middleCols<3>(static_cast<Eigen::Index>(3 * r)) =
             x.middleCols<3>(static_cast<Eigen::Index>(3 * nodes.rows[r]));

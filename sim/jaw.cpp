@@ -8,13 +8,13 @@
 namespace fascia::sim {
 
 const char* jaw_fault(const Jaw& jaw) {
-  constexpr double farthest = 1000.0, longest_glide = 10.0, largest_angle = 1.6, slack = 0.01;
+  constexpr double farthest_place = 1000.0, longest_glide = 10.0, largest_angle = 1.6, slack = 0.01;
   for (const Vec3* axis : {&jaw.lateral, &jaw.forward, &jaw.up})
     if (!(std::abs(axis->norm() - 1.0) < slack)) return "an axis of the jaw's joint is not of length 1";
   if (!(std::abs(jaw.lateral.dot(jaw.up)) < slack && std::abs(jaw.lateral.dot(jaw.forward)) < slack &&
         std::abs(jaw.forward.dot(jaw.up)) < slack))
     return "the axes of the jaw's joint are not square to one another";
-  if (!(jaw.origin.cwiseAbs().array() <= farthest).all()) return "the jaw's joint is not near the head";
+  if (!(jaw.origin.cwiseAbs().array() <= farthest_place).all()) return "the jaw's joint is not near the head";
   if (!(std::abs(jaw.open_angle) <= largest_angle && std::abs(jaw.lateral_angle) <= largest_angle))
     return "the jaw turns by more than a right angle";
   if (!((jaw.open_glide.cwiseAbs().array() <= longest_glide).all() &&

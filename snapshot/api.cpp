@@ -5,6 +5,7 @@
 #include <new>
 #include <string_view>
 
+#include "geometry/arithmetic_mode.h"
 #include "geometry/error.h"
 #include "snapshot/compare.h"
 #include "snapshot/file.h"
@@ -65,6 +66,8 @@ fascia_result fascia_snapshot_check(const void* rig, size_t rig_size, const void
   if (chosen.curve_count > 0 && !chosen.curves) return fail(FASCIA_ERROR_ARGUMENT, "curves is null");
   for (size_t i = 0; i < chosen.curve_count; ++i)
     if (!chosen.curves[i].bytes) return fail(FASCIA_ERROR_ARGUMENT, "a file of curves is null");
+  // Worker threads take it over from this one.
+  const fascia::ArithmeticMode mode;
   try {
     *failed = check(bytes_of(rig, rig_size), {static_cast<const char*>(snapshot), snapshot_size}, chosen);
     return FASCIA_OK;
@@ -74,6 +77,8 @@ fascia_result fascia_snapshot_check(const void* rig, size_t rig_size, const void
     return fail(FASCIA_ERROR_FORMAT, error.what());
   } catch (const std::exception& error) {
     return fail(FASCIA_ERROR_INTERNAL, error.what());
+  } catch (...) {
+    return fail(FASCIA_ERROR_INTERNAL, "an unknown fault");
   }
 }
 

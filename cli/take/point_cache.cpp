@@ -6,7 +6,6 @@
 #include <map>
 #include <set>
 
-#include "formats/partial.h"
 #include "formats/scene.h"
 #include "geometry/error.h"
 #include "geometry/text.h"
@@ -18,6 +17,10 @@ namespace {
 
 uint32_t swapped(uint32_t word) {
   return word << 24 | (word & 0xFF00) << 8 | (word >> 8 & 0xFF00) | word >> 24;
+}
+
+std::span<const uint8_t> bytes_of(const void* data, size_t size) {
+  return {static_cast<const uint8_t*>(data), size};
 }
 
 /// A mesh's name as part of a file's.
@@ -77,55 +80,33 @@ PointCaches::PointCaches(const std::filesystem::path& path, CacheKind kind, std:
     : kind_(kind), frames_(times.size()) {
   std::set<std::string> words;
   for (size_t i = 0; i < objects.size(); ++i) {
-    File file;
-    file.path = path;
+    std::filesystem::path own = path;
     if (objects.size() > 1) {
       std::string word = file_word(objects[i].name, i);
       if (!words.insert(word).second) words.insert(word += "_" + std::to_string(i));
-      file.path.replace_extension("." + word + path.extension().string());
+      own.replace_extension("." + word + path.extension().string());
     }
-    file.part = file.path;
-    file.part += ".part";
-    file.object = std::move(objects[i]);
-    files_.push_back(std::move(file));
+    files_.push_back({own, std::move(objects[i]), formats::NewFile(own)});
   }
   for (File& file : files_) {
-    formats::remember_partial(file.part);
-    file.stream = std::fopen(file.part.c_str(), "wb");
     const auto points = static_cast<uint32_t>(file.object.points.size());
     const auto frames = static_cast<uint32_t>(frames_);
     if (kind_ == CacheKind::pc2) {
       const uint32_t version = 1;
       const float start = 0.0F, step = 1.0F;
-      write(file, "POINTCACHE2", 12);
-      write(file, &version, 4);
-      write(file, &points, 4);
-      write(file, &start, 4);
-      write(file, &step, 4);
-      write(file, &frames, 4);
+      file.stream.write(bytes_of("POINTCACHE2", 12));
+      file.stream.write(bytes_of(&version, 4));
+      file.stream.write(bytes_of(&points, 4));
+      file.stream.write(bytes_of(&start, 4));
+      file.stream.write(bytes_of(&step, 4));
+      file.stream.write(bytes_of(&frames, 4));
     } else {
       std::vector<uint32_t> head = {swapped(frames), swapped(points)};
       for (const float time : times)
         head.push_back(swapped(std::bit_cast<uint32_t>(time)));
-      write(file, head.data(), 4 * head.size());
+      file.stream.write(bytes_of(head.data(), 4 * head.size()));
     }
   }
-}
-
-PointCaches::~PointCaches() {
-  for (File& file : files_) {
-    if (file.stream == nullptr) continue;
-    std::fclose(file.stream);
-    std::error_code ignored;
-    std::filesystem::remove(file.part, ignored);
-    formats::forget_partial(file.part);
-  }
-}
-
-void PointCaches::write(File& file, const void* data, size_t size) {
-  if (file.stream == nullptr || std::fwrite(data, 1, size, file.stream) != size)
-    throw Error("'" + file.path.string() +
-                "' cannot be written: check the folder, its permissions and free space");
 }
 
 void PointCaches::add(const Face& face) {
@@ -141,7 +122,7 @@ void PointCaches::add(const Face& face) {
             kind_ == CacheKind::pc2 ? value : std::bit_cast<float>(swapped(std::bit_cast<uint32_t>(value))));
       }
     }
-    write(file, points_.data(), 4 * points_.size());
+    file.stream.write(bytes_of(points_.data(), 4 * points_.size()));
   }
   ++written_;
 }
@@ -150,16 +131,7 @@ std::vector<std::filesystem::path> PointCaches::finish() {
   if (written_ != frames_) throw Error("the cache lacks frames");
   std::vector<std::filesystem::path> paths;
   for (File& file : files_) {
-    const bool is_whole = std::fclose(file.stream) == 0;
-    file.stream = nullptr;
-    std::error_code status;
-    if (is_whole) std::filesystem::rename(file.part, file.path, status);
-    formats::forget_partial(file.part);
-    if (!is_whole || status) {
-      std::error_code ignored;
-      std::filesystem::remove(file.part, ignored);
-      throw Error("'" + file.path.string() + "' cannot be written: check the folder and free space");
-    }
+    file.stream.put_in_place();
     paths.push_back(file.path);
   }
   return paths;

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "cli/posing.h"
+#include "formats/new_file.h"
 
 namespace fascia::cli {
 
@@ -35,7 +35,6 @@ class PointCaches {
   /// `times` of all frames, seconds. Throws fascia::Error when a file cannot be made.
   PointCaches(const std::filesystem::path& path, CacheKind kind, std::vector<CachedObject> objects,
               const std::vector<float>& times);
-  ~PointCaches();
   PointCaches(const PointCaches&) = delete;
   PointCaches& operator=(const PointCaches&) = delete;
 
@@ -48,11 +47,10 @@ class PointCaches {
 
  private:
   struct File {
-    std::filesystem::path path, part;
+    std::filesystem::path path;
     CachedObject object;
-    std::FILE* stream = nullptr;
+    formats::NewFile stream;
   };
-  void write(File& file, const void* data, size_t size);
 
   CacheKind kind_;
   size_t frames_ = 0, written_ = 0;

@@ -33,7 +33,7 @@ void LandmarkJacobian::gather(const Eigen::MatrixXd& columns, Eigen::Index first
     auto rows = making_.block(static_cast<Eigen::Index>(3 * l), first, 3, columns.cols());
     rows.setZero();
     for (const auto& [node, weight] : landmarks_[l].influences)
-      rows += weight * columns.middleRows<3>(3 * Eigen::Index{node});
+      rows += weight * columns.middleRows<3>(3 * static_cast<Eigen::Index>(node));
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,10 +18,11 @@ struct LandmarkSet {
   std::vector<Entry> entries;
 };
 
-/// All that are known (anatomy/data/landmark_sets.json, compiled in).
-const std::vector<LandmarkSet>& landmark_sets();
+/// All that are known (anatomy/data/landmark_sets.json, compiled in), read anew: nothing of it stays in
+/// memory that may be a host's.
+std::vector<LandmarkSet> landmark_sets();
 
-/// The one of a name, or null.
-const LandmarkSet* find_landmark_set(std::string_view name);
+/// The one of a name, if there is one.
+std::optional<LandmarkSet> find_landmark_set(std::string_view name);
 
 }  // namespace fascia::fit

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <map>
+#include <memory>
+#include <new>
 #include <nlohmann/json.hpp>
 
+#include "runtime/allocator.h"
 #include "runtime/drivers/alias_table.h"
 #include "runtime/drivers/text.h"
 
@@ -51,7 +54,11 @@ struct Book {
 };
 
 const Book& book() {
-  static const Book* const made = new Book;  // kept for good: see fascia_set_allocator
+  static const Book* const made = [] {  // kept for good: see fascia_set_allocator
+    auto read = std::make_unique<Book>();
+    if (has_run_out()) throw std::bad_alloc();  // it is the reserve's
+    return read.release();
+  }();
   return *made;
 }
 

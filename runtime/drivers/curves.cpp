@@ -1,6 +1,7 @@
 #include "runtime/drivers/curves.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "geometry/error.h"
 #include "gltf/read/container.h"
@@ -24,6 +25,17 @@ float hermite(const Curve& curve, std::size_t i, double share) {
                             (s3 - 2 * s2 + s) * span * slope(curve, i, curve.tangents_out) +
                             (3 * s2 - 2 * s3) * curve.values[i + 1] +
                             (s3 - s2) * span * slope(curve, i + 1, curve.tangents_in));
+}
+
+/// Numbers in files are double; what drives a face is float, and beyond any use long before its end.
+void refuse_absurd_values(const Curves& curves) {
+  constexpr float most = 1e9F;
+  for (const Curve& curve : curves.curves)
+    for (const auto* list : {&curve.values, &curve.tangents_in, &curve.tangents_out})
+      for (const float value : *list)
+        if (!(std::abs(value) <= most))
+          throw Error("curves: a value of " + curve.name +
+                      " is beyond a thousand million: is the column another thing's?");
 }
 
 }  // namespace
@@ -50,6 +62,7 @@ double Curves::duration() const {
 Curves read_curves(std::span<const uint8_t> bytes, const ReadOptions& options) {
   if (gltf::is_glb(bytes)) {
     Curves curves = read_gltf_curves(bytes);
+    refuse_absurd_values(curves);
     settle(curves);
     return curves;
   }
@@ -60,6 +73,7 @@ Curves read_curves(std::span<const uint8_t> bytes, const ReadOptions& options) {
     throw Error("curves: neither text nor a .glb file: export the take as CSV, JSON or GLB");
   const bool is_json = text[first] == '{' || text[first] == '[';
   Curves curves = is_json ? read_json_curves(text, options) : read_csv_curves(text, options);
+  refuse_absurd_values(curves);
   settle(curves);
   return curves;
 }

@@ -35,6 +35,28 @@ static int fail(const char* what, const char* message) {
   return 1;
 }
 
+/* The curves are written beside their place, PATH.part, and take it once they are whole: what was there
+ * before stays when the stream breaks off. NULL when there is no memory. */
+static char* part_of(const char* path) {
+  char* part = malloc(strlen(path) + sizeof ".part");
+  if (part != NULL) strcat(strcpy(part, path), ".part");
+  return part;
+}
+
+/* Ends the file of curves: in its place when `status` is 0 and all of it is written, gone otherwise. */
+static int put_in_place(FILE* file, const char* part, const char* path, int status) {
+  const int is_whole = fflush(file) == 0 && ferror(file) == 0;
+  const int is_closed = fclose(file) == 0;
+  if (status == 0 && is_whole && is_closed) {
+#ifdef _WIN32
+    remove(path); /* where a rename replaces nothing */
+#endif
+    if (rename(part, path) == 0) return 0;
+  }
+  remove(part);
+  return status != 0 ? status : fail(path, "cannot be written");
+}
+
 static double now_ms(void) {
   struct timespec time;
   clock_gettime(CLOCK_MONOTONIC, &time);
@@ -98,6 +120,7 @@ static int play(FILE* stream, const char* name, fascia_fit* fit, const fascia_ch
 
 int main(int argc, char** argv) {
   const char *rig = NULL, *stream_path = NULL, *curves_path = NULL;
+  char* part = NULL;
   fascia_asset* asset = NULL;
   fascia_fit* fit = NULL;
   fascia_fit_landmarks landmarks = {0};
@@ -135,7 +158,7 @@ int main(int argc, char** argv) {
 
   stream = strcmp(stream_path, "-") == 0 ? stdin : fopen(stream_path, "r");
   if (stream == NULL) return fail(stream_path, "cannot be read");
-  if (curves_path != NULL && (curves = fopen(curves_path, "w")) == NULL)
+  if (curves_path != NULL && ((part = part_of(curves_path)) == NULL || (curves = fopen(part, "w")) == NULL))
     return fail(curves_path, "cannot be written");
   if (curves != NULL) {
     fprintf(curves, "time");
@@ -146,7 +169,8 @@ int main(int argc, char** argv) {
   status = play(stream, stream_path, fit, &channels, curves, has_neutral);
 
   if (stream != stdin) fclose(stream);
-  if (curves != NULL && fclose(curves) != 0) status = fail(curves_path, "cannot be written");
+  if (curves != NULL) status = put_in_place(curves, part, curves_path, status);
+  free(part);
   fascia_fit_release(fit);
   fascia_asset_release(asset);
   return status;

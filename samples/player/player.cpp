@@ -83,7 +83,11 @@ void write_obj(const fascia_asset* asset, fascia_face* face, uint32_t meshes, co
                    first + mesh.triangles[3 * t + 2]);
     first += positions.count;
   }
-  std::fclose(file);
+  const bool is_whole = std::fflush(file) == 0 && std::ferror(file) == 0;
+  if (std::fclose(file) != 0 || !is_whole) {
+    std::remove(path.c_str());
+    throw std::runtime_error("cannot write " + path);
+  }
 }
 
 /// Warns of curves that move nothing, with their names.

@@ -1,4 +1,4 @@
-// The C# binding on a rig: mono CsharpTest.exe RIG.glb
+// The C# binding on a rig: mono CsharpTest.exe RIG.glb [HEAD.glb STREAM.csv], see python_test.py
 using System;
 using System.IO;
 using System.Text;
@@ -10,8 +10,49 @@ static class CsharpTest
         if (!condition) throw new Exception("failed: " + what);
     }
 
+    static float[] Points(string line)
+    {
+        string[] fields = line.Split(',');
+        var points = new float[fields.Length - 1];
+        for (int i = 0; i < points.Length; ++i)
+            points[i] = fields[i + 1] == "" ? float.NaN : float.Parse(fields[i + 1], System.Globalization.CultureInfo.InvariantCulture);
+        return points;
+    }
+
+    static unsafe void Follow(string rig, string stream)
+    {
+        string[] lines = File.ReadAllLines(stream);
+        using (var head = Fascia.Asset.Load(File.ReadAllBytes(rig)))
+        using (var face = new Fascia.Face(head))
+        using (var fit = new Fascia.Fit(head))
+        {
+            Expect(fit.PointCount == 68 && fit.Dimensions == 3 && fit.LandmarkCount > 20, "68 points");
+            fit.SetNeutral(Points(lines[1]));
+            int seen = 0;
+            int jaw = Array.FindIndex(head.Channels, channel => channel.Name == "jaw_open");
+            float most = 0;
+            for (int i = 1; i <= 20; ++i)
+            {
+                seen = fit.Push(Points(lines[i]));
+                most = Math.Max(most, fit.Values[jaw]);
+            }
+            Expect(seen > 20 && fit.Residual < 5e-4f, "the face follows the points");
+            Expect(fit.Scale > 900 && fit.Scale < 1100 && fit.Head[15] == 1, "the stream is in millimetres");
+            Expect(most > 0.1f, "the jaw opens");
+            for (int i = 0; i < head.Channels.Length; ++i) face.Values[i] = fit.Values[i];
+            Expect(face.Step(1f / 60), "a step of what was found");
+            try
+            {
+                fit.Push(new float[3]);
+                Expect(false, "a short frame is refused");
+            }
+            catch (ArgumentException) { }
+        }
+    }
+
     static unsafe int Main(string[] arguments)
     {
+        if (arguments.Length > 2) Follow(arguments[1], arguments[2]);
         byte[] bytes = File.ReadAllBytes(arguments[0]);
         using (var asset = Fascia.Asset.Load(bytes))
         using (var face = new Fascia.Face(asset, Fascia.Space.Metres))

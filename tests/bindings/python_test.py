@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""The Python module on a rig: python_test.py RIG.glb, with the module on PYTHONPATH. Exits 1 at the first failure."""
+"""The Python module on a rig: python_test.py RIG.glb [HEAD.glb STREAM.csv], with the module on PYTHONPATH. HEAD.glb has a whole
+face, STREAM.csv landmarks of it (samples/capture). Exits 1 at the first failure."""
 import gc
 import sys
 
@@ -78,4 +79,39 @@ for wrong in (lambda: fascia.load(b"nothing"), lambda: face.set("no such thing",
         assert str(error)
     else:
         raise AssertionError("no error")
+try:
+    fascia.Fit(asset, "ibug68")
+except fascia.Error as error:
+    assert "landmarks" in str(error)
+else:
+    raise AssertionError("a patch of skin has no 68 landmarks")
+
+if len(sys.argv) > 3:
+    head = fascia.load(sys.argv[2])
+    stream = np.genfromtxt(sys.argv[3], delimiter=",", skip_header=1)[:20, 1:].reshape(-1, 68, 3)
+    fit = fascia.Fit(head, "ibug68")
+    assert fit.point_count == 68 and fit.dimensions == 3 and "pronasale" in fit.names
+    fit.set_neutral(stream[0])
+    opened = [channel["name"] for channel in head.channels].index("jaw_open")
+    most = 0.0
+    for points in stream:
+        found = fit.push(points)
+        most = max(most, found["values"][opened])
+    assert found["seen"] > 20 and found["residual"] < 5e-4 and found["landmarks"].shape == (len(fit.names), 3)
+    assert found["head"].shape == (4, 4) and 900 < found["scale"] < 1100  # the stream is in millimetres
+    live = fascia.Face(head)
+    live.values[:] = found["values"]
+    assert live.step(1 / 60) and most > 0.1
+    named = fascia.Fit(head, [None if name == "pronasale" else name for name in fit.names])
+    assert len(named.names) == len(fit.names) - 1 and named.point_count == len(fit.names)
+    skin = next(i for i, mesh in enumerate(head.meshes) if mesh["part"] == "skin")
+    placed = fascia.Fit(head, [(skin, tuple(corners), (1.0, 0.0, 0.0)) for corners in head.meshes[skin]["triangles"][::200]])
+    assert placed.point_count == len(head.meshes[skin]["triangles"][::200])
+    for wrong in (lambda: fit.push(stream[0][:5]), lambda: fascia.Fit(head, ["no such landmark"]), lambda: fascia.Fit(head, "nobody's")):
+        try:
+            wrong()
+        except fascia.Error as error:
+            assert str(error)
+        else:
+            raise AssertionError("no error")
 print(f"python: fascia {fascia.version()}, {len(names)} channels, all passed")

@@ -53,6 +53,31 @@ TEST(Docs, TheIndexListsEveryPage) {
     }
 }
 
+/// The tests that the table of complaints names, whole suites among them, are there.
+TEST(Docs, EveryTestThatAnswersAComplaintExists) {
+  std::string sources;
+  for (const auto& entry : fs::recursive_directory_iterator(project() / "tests"))
+    if (entry.path().extension() == ".cpp" || entry.path().filename() == "CMakeLists.txt")
+      sources += text_of(entry.path());
+  std::istringstream page(text_of(project() / "docs/integration.md"));
+  const std::regex row(R"(^\| (\d+)\. .*\|(.*)\|$)"), name(R"(`(\w+)(\.(\w+))?`)");
+  std::set<int> answered;
+  for (std::string line; std::getline(page, line);) {
+    std::smatch cells;
+    if (!std::regex_match(line, cells, row)) continue;
+    const std::string tests = cells[2];
+    for (std::sregex_iterator at(tests.begin(), tests.end(), name), end; at != end; ++at) {
+      const std::string suite = (*at)[1], test = (*at)[3];
+      const std::regex cases("TEST(_F|_P)?\\(" + suite + ", " + (test.empty() ? "" : test + "\\)"));
+      const bool is_there = std::regex_search(sources, cases) ||
+                            sources.find("NAME " + suite + "." + test + " ") != std::string::npos;
+      EXPECT_TRUE(is_there) << line << "\n" << (*at).str();
+      if (is_there) answered.insert(std::stoi(cells[1]));
+    }
+  }
+  EXPECT_EQ(answered.size(), 17U);
+}
+
 /// What `fascia COMMAND --help` prints, asked for once.
 const std::string& help_of(const std::string& command) {
   static std::map<std::string, std::string> known;

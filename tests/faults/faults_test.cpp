@@ -57,10 +57,7 @@ TEST_F(Faults, EveryCallThatWritesMayFail) {
       long calls = 0;
       const Outcome outcome = run_with_fault(job.words + at(job.output), kind, 0, &calls);
       ASSERT_EQ(outcome.code, 0) << job.words << outcome.err;
-      // Streams of the C library write and close without a call that could be caught here.
-      const bool is_stream =
-          job.output == "play.pc2" && std::string(kind) != "open" && std::string(kind) != "rename";
-      EXPECT_TRUE(is_stream || calls > 0) << job.words << kind;
+      EXPECT_GT(calls, 0) << job.words << kind;
       std::filesystem::remove(at(job.output));
       // Many writes of one stream are alike: the first, the last and some between.
       const long step = std::max(1L, calls / 6);
@@ -92,6 +89,7 @@ TEST_F(Faults, AFullStandardOutputIsSaid) {
 
 TEST_F(Faults, AFileThatMayNotGrowIsSaid) {
   for (const Job& job : jobs()) {
+    if (job.output == "found.json") continue;  // a few hundred bytes
     const std::set<std::string> before = names();
     const int status = std::system(
         ("ulimit -f 1; " + test::tool().string() + " " + job.words + at(job.output) + " --quiet 2>/dev/null")

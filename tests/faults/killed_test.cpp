@@ -4,7 +4,9 @@
 #include <sys/wait.h>
 
 #include <chrono>
+#include <iterator>
 #include <random>
+#include <sstream>
 #include <thread>
 
 #include "cli/demo_curves.h"
@@ -31,6 +33,14 @@ class Killed : public Workplace {
     arguments.push_back(nullptr);
     execv(tool.c_str(), arguments.data());
     _exit(127);
+  }
+  std::vector<std::string> words_of(const Job& job) const {
+    std::istringstream text(job.words);
+    std::vector<std::string> words{std::istream_iterator<std::string>(text), {}};
+    words.push_back(at(job.output));
+    words.push_back("--threads");
+    words.push_back("1");
+    return words;
   }
   static int wait(pid_t child) {
     int status = 0;
@@ -75,6 +85,34 @@ TEST_F(Killed, AtAnyMomentNothingIsHalfWritten) {
   }
 }
 
+/// The same of what is written on a rig: the words of a command and its output.
+TEST_F(Killed, WhatIsMadeOfARigIsWholeOrNotThere) {
+  std::mt19937 random(11);
+  for (const Job& job : jobs()) {
+    const std::vector<std::string> words = words_of(job);
+    const auto begun = std::chrono::steady_clock::now();
+    ASSERT_EQ(wait(start(words)), 0) << job.words;
+    const double whole = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+    const std::string good = text_of(at(job.output));
+    const std::set<std::string> usual = names();
+    for (const int signal : {SIGKILL, SIGTERM, SIGKILL, SIGINT}) {
+      const pid_t child = start(words);
+      // Writing is what comes last.
+      std::this_thread::sleep_for(
+          std::chrono::duration<double>(whole * (0.5 + 0.6 * (random() % 1000) / 1000.0)));
+      kill(child, signal);
+      wait(child);
+      EXPECT_EQ(text_of(at(job.output)), good) << job.words;
+      for (const std::string& name : names())
+        if (!usual.count(name)) {
+          EXPECT_EQ(signal, SIGKILL) << job.words << name;
+          EXPECT_NE(name.find(".part"), std::string::npos) << job.words << name;
+          std::filesystem::remove_all(at(name));
+        }
+    }
+  }
+}
+
 /// ffmpeg outlives the tool for a moment and ends what it was writing.
 TEST_F(Killed, AFilmIsWholeOrNotThere) {
   if (std::system("command -v ffmpeg >/dev/null 2>&1") != 0) GTEST_SKIP() << "ffmpeg is not installed";
@@ -111,7 +149,28 @@ TEST_F(Killed, TwoOnOneOutputLeaveOneWhole) {
     const std::string now = text_of(at("out.glb"));
     EXPECT_TRUE(now == first || now == second) << k;
   }
-  EXPECT_EQ(names(), (std::set<std::string>{"rig.glb", "curves.csv", "out.glb"}));
+  EXPECT_EQ(names(), (std::set<std::string>{"rig.glb", "curves.csv", "out.glb", "smile.ply"}));
+}
+
+TEST_F(Killed, TwoOfOneCommandOnOneOutputLeaveItWhole) {
+  for (const Job& job : jobs()) {
+    const std::vector<std::string> words = words_of(job);
+    ASSERT_EQ(wait(start(words)), 0) << job.words;
+    const std::string good = text_of(at(job.output));
+    const std::set<std::string> usual = names();
+    // A snapshot that is there is renewed with a reason only: the slower of two is refused.
+    const bool is_snapshot = job.output == "snapshot.json";
+    std::ofstream(at(job.output)) << "what was there before";
+    for (int k = 0; k < 2; ++k) {
+      if (is_snapshot) std::filesystem::remove(at(job.output));
+      const pid_t a = start(words), b = start(words);
+      const int first = wait(a), second = wait(b);
+      EXPECT_TRUE(first == 0 || second == 0) << job.words;
+      EXPECT_TRUE(is_snapshot || (first == 0 && second == 0)) << job.words;
+      EXPECT_EQ(text_of(at(job.output)), good) << job.words;
+      EXPECT_EQ(names(), usual) << job.words;
+    }
+  }
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <unistd.h>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <set>
@@ -20,14 +21,25 @@ class Workplace : public ::testing::Test {
     folder = std::filesystem::temp_directory_path() / ("fascia_faults_" + std::to_string(getpid()));
     std::filesystem::remove_all(folder);
     std::filesystem::create_directories(folder);
-    const std::vector<uint8_t> rig = test::tiny_rig_file();
+    rig::Rig whole = test::tiny_rig();
+    for (const char* name : {"jaw_forward", "jaw_lateral"})  // which fits ask for
+      whole.actuation.channels.push_back({name, "jaw", -1.0F, 1.0F, 0.0F, -1, "1"});
+    const std::vector<uint8_t> rig = rig::write(test::tiny_head(), whole);
     std::ofstream(folder / "rig.glb", std::ios::binary)
         .write(reinterpret_cast<const char*>(rig.data()), static_cast<std::streamsize>(rig.size()));
     std::ofstream(folder / "curves.csv") << "time,zygomaticus_major_left\n0,0\n0.2,1\n";
+    write_target();
   }
   void TearDown() override { std::filesystem::remove_all(folder); }
 
   std::string at(const std::string& name) const { return (folder / name).string(); }
+
+  /// A mesh to fit.
+  void write_target() const {
+    const std::string words =
+        "pose " + at("rig.glb") + " --set zygomaticus_major_left=0.7 --quiet -o " + at("smile.ply");
+    ASSERT_EQ(std::system((test::tool().string() + " " + words).c_str()), 0);
+  }
 
   /// What a command writes: its words but for the output, and the output's name.
   struct Job {
@@ -40,7 +52,8 @@ class Workplace : public ::testing::Test {
             {"play " + at("rig.glb") + " --curves " + at("curves.csv") + " --fps 20 -o ", "play.glb"},
             {"play " + at("rig.glb") + " --curves " + at("curves.csv") + " --fps 20 -o ", "play.pc2"},
             {"bake " + at("rig.glb") + " --shapes arkit -o ", "bake.glb"},
-            {"snapshot record " + at("rig.glb") + " -o ", "snapshot.json"}};
+            {"snapshot record " + at("rig.glb") + " -o ", "snapshot.json"},
+            {"fit " + at("rig.glb") + " --target " + at("smile.ply") + " -o ", "found.json"}};
   }
 
   /// Names in the folder.

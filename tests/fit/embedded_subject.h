@@ -38,14 +38,23 @@ class EmbeddedSubject : public ::testing::Test {
   static std::string at(const std::string& name) { return (*folder / name).string(); }
   static cli::Outcome run(const std::string& arguments) { return cli::run_tool(*folder, arguments); }
 
-  /// Every channel at rest but for those in `set`.
+  /// Every channel at rest but for those in `set`. A name that is no channel fails the test.
   static std::vector<float> values_of(const std::map<std::string, float>& set) {
     std::vector<float> values;
+    size_t known = 0;
     for (const rig::Channel& channel : subject->channels()) {
       const auto entry = set.find(channel.name);
       values.push_back(entry == set.end() ? channel.rest : entry->second);
+      known += entry != set.end();
     }
+    for (const auto& [name, value] : set)
+      EXPECT_TRUE(known == set.size() || has_channel(name)) << "the rig has no channel " << name;
     return values;
+  }
+  static bool has_channel(const std::string& name) {
+    for (const rig::Channel& channel : subject->channels())
+      if (channel.name == name) return true;
+    return false;
   }
 
   inline static std::filesystem::path* folder = nullptr;

@@ -31,7 +31,8 @@ class Live : public EmbeddedSubject {
     EmbeddedSubject::SetUpTestSuite();
     const std::vector<uint8_t> bytes = formats::read_bytes(at("rig.glb"));
     ASSERT_EQ(fascia_asset_load(bytes.data(), bytes.size(), &asset), FASCIA_OK) << fascia_last_message();
-    for (const LandmarkSet::Entry& entry : find_landmark_set("ibug68")->entries)
+    const LandmarkSet set = find_landmark_set("ibug68").value();
+    for (const LandmarkSet::Entry& entry : set.entries)
       if (const auto place = place_of_landmark(subject->file(), 0, entry.landmark))
         landmarks.push_back({entry, landmark_at(subject->file(), 0, *place)});
     ASSERT_EQ(landmarks.size(), 35U);
@@ -346,7 +347,7 @@ TEST_F(Live, ByNamesInCpp) {
 TEST_F(Live, ToolFitsPointsOfDetectors) {
   const std::vector<Vec3> standing = places_of(values_of({{"jaw_open", 0.35F}}), false);
   const Mat4 to_file = subject->file().rig.input_to_metres.cast<double>().inverse();
-  const LandmarkSet& set = *find_landmark_set("mediapipe478");
+  const LandmarkSet set = find_landmark_set("mediapipe478").value();
   nlohmann::json list(set.points, nullptr);
   for (const LandmarkSet::Entry& entry : set.entries)
     for (size_t l = 0; l < landmarks.size(); ++l)

@@ -45,7 +45,7 @@ bool is_of_mouth(const std::string& name) {
 void write_stream(fit::Subject& subject, const std::filesystem::path& path) {
   constexpr int frames = 60;
   constexpr double rate = 24.0, noise_metres = 3e-4;
-  const fit::LandmarkSet& set = *fit::find_landmark_set("ibug68");
+  const fit::LandmarkSet set = fit::find_landmark_set("ibug68").value();
   std::ofstream file(path);
   file << "time";
   for (size_t p = 0; p < set.points; ++p)

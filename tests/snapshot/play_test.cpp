@@ -2,6 +2,8 @@
 #include <fascia/snapshot.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cfenv>
 #include <cstdlib>
 #include <functional>
 
@@ -176,6 +178,51 @@ TEST(CInterface, ChecksAndSaysWhatIsWrong) {
   EXPECT_EQ(fascia_snapshot_check(rig.data(), rig.size(), text.data(), text.size(), &options, &failed),
             FASCIA_ERROR_ARGUMENT);
   EXPECT_EQ(failed, 99U);
+}
+
+/// A host that rounds upwards, and traps what the library's arithmetic may raise, hears the same numbers and
+/// has its mode back.
+TEST(CInterface, AHostsArithmeticChangesNothing) {
+  const std::vector<uint8_t> rig = test::tiny_rig_file();
+  Snapshot then = record(rig, "tiny", request());
+  for (int32_t& quantum : then.states[1].quanta)
+    quantum += 3;  // numbers to hear
+  const std::string text = to_text(then);
+  const fascia_snapshot_file curves = {smile_curves.data(), smile_curves.size()};
+  const auto heard = [&] {
+    std::vector<double> numbers;
+    fascia_snapshot_options options = {};
+    options.struct_size = sizeof options;
+    options.threads = 2;
+    options.curves = &curves;
+    options.curve_count = 1;
+    options.user = &numbers;
+    options.difference = [](void* user, const fascia_snapshot_difference* difference) {
+      static_cast<std::vector<double>*>(user)->push_back(difference->mean_mm);
+      static_cast<std::vector<double>*>(user)->push_back(difference->largest_mm);
+    };
+    uint32_t failed = 0;
+    EXPECT_EQ(fascia_snapshot_check(rig.data(), rig.size(), text.data(), text.size(), &options, &failed),
+              FASCIA_OK)
+        << fascia_snapshot_message();
+    return numbers;
+  };
+  const std::vector<double> usual = heard();
+  EXPECT_GT(*std::max_element(usual.begin(), usual.end()), 0.0);
+  std::fesetround(FE_UPWARD);
+#if defined(__GLIBC__)
+  std::feclearexcept(FE_ALL_EXCEPT);
+  feenableexcept(FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW | FE_INEXACT);
+#endif
+  const std::vector<double> other = heard();
+  const int mode = std::fegetround();
+#if defined(__GLIBC__)
+  EXPECT_EQ(fegetexcept(), FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW | FE_INEXACT);
+  fedisableexcept(FE_ALL_EXCEPT);
+#endif
+  std::fesetround(FE_TONEAREST);
+  EXPECT_EQ(mode, FE_UPWARD);
+  EXPECT_EQ(usual, other);
 }
 
 }  // namespace

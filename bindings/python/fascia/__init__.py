@@ -8,6 +8,9 @@
     face.pose()
     positions = face.positions(0)                     # a view of n x 3 floats, in the file's axes and units
 
+    live = fascia.Fit(asset, "ibug68")                # muscles from a stream of 68 landmarks
+    face.values[:] = live.push(points)["values"]
+
 Arrays that are views belong to the face or asset, which they keep alive; they change with each pose or step.
 Functions that can fail raise fascia.Error.
 """
@@ -16,9 +19,9 @@ import os
 import shutil
 import subprocess
 
-from ._runtime import Asset, Curves, Error, Face, version
+from ._runtime import Asset, Curves, Error, Face, Fit, version
 
-__all__ = ["Asset", "Curves", "Error", "Face", "build", "fit", "load", "load_curves", "run", "version"]
+__all__ = ["Asset", "Curves", "Error", "Face", "Fit", "build", "fit", "load", "load_curves", "run", "version"]
 __version__ = version()
 
 

@@ -260,6 +260,15 @@ class Fit {
     make(asset, landmarks, options);
   }
 
+  // Places on the skin, one a point.
+  Fit(const Asset& asset, std::span<const fascia_fit_place> places,
+      const fascia_fit_options& options = fascia_default_fit_options()) {
+    auto landmarks = sized<fascia_fit_landmarks>();
+    landmarks.places = places.data();
+    landmarks.count = static_cast<std::uint32_t>(places.size());
+    make(asset, landmarks, options);
+  }
+
   fascia_fit_info info() const {
     auto info = sized<fascia_fit_info>();
     check(fascia_fit_get_info(handle(), &info));

@@ -6,7 +6,7 @@
 #include <cfenv>
 #endif
 
-namespace fascia::runtime {
+namespace fascia {
 
 /// While it lives, this thread's arithmetic is as IEEE 754 has it by default: rounded to nearest, subnormal
 /// numbers kept, no traps; afterwards it is the host's again, with the exceptions it had raised and no other.
@@ -53,4 +53,4 @@ class ArithmeticMode {
   ArithmeticMode& operator=(const ArithmeticMode&) = delete;
 };
 
-}  // namespace fascia::runtime
+}  // namespace fascia
