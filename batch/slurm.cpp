@@ -1,5 +1,9 @@
 #include "batch/slurm.h"
 
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
 #include "geometry/error.h"
 
 namespace fascia::batch {
@@ -9,6 +13,13 @@ std::string shell_word(const std::string& text) {
   for (const char c : text)
     word += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return word + "'";
+}
+
+std::string slurm_time(double most_seconds) {
+  const int minutes = static_cast<int>(std::ceil(std::clamp(most_seconds / 60.0, 10.0, 240.0)));
+  char text[32];
+  std::snprintf(text, sizeof text, "%02d:%02d:00", minutes / 60, minutes % 60);
+  return text;
 }
 
 std::string slurm_script(const SlurmJob& job) {

@@ -18,6 +18,10 @@ struct SlurmJob {
   std::vector<std::string> options;            ///< more of `fascia batch`
 };
 
+/// A task's time limit as Slurm writes it: what its work may take at most, in seconds, but from 10 minutes to
+/// 4 hours. A longer one than the partition allows would keep the job waiting for ever, without a word.
+std::string slurm_time(double most_seconds);
+
 /// The script for `sbatch`: one task a share of the heads; a task that is killed is queued again and takes up
 /// where it was.
 std::string slurm_script(const SlurmJob& job);

@@ -37,7 +37,7 @@ struct BatchRequest {
   int task_index = -1;
   size_t task_count = 0;
   bool has_checks = true, has_thumbnails = true, retries_failed = false, is_dry = false;
-  std::string time = "04:00:00", partition;
+  std::string time, partition;
 };
 
 std::atomic<bool> is_stopped = false;
@@ -162,7 +162,12 @@ void submit(const Common& common, const BatchRequest& request) {
   job.most_at_once = request.at_once;
   job.jobs = std::max<size_t>(request.jobs, 1);
   job.megabytes = request.megabytes;
-  job.time = request.time;
+  const size_t heads_of_one = (heads + job.tasks - 1) / job.tasks,
+               turns = (heads_of_one + job.jobs - 1) / job.jobs;
+  const int steps = 1 + (request.has_checks ? 1 : 0) + (request.has_thumbnails ? 1 : 0);
+  job.time = !request.time.empty()
+                 ? request.time
+                 : batch::slurm_time(static_cast<double>(turns * request.attempts) * steps * request.seconds);
   job.partition = request.partition;
   char seconds[32];
   std::snprintf(seconds, sizeof seconds, "%g", request.seconds);
@@ -253,7 +258,8 @@ void add_batch(const Command& tool, Common& common) {
       .default_text("as Slurm or AWS Batch say, else 1; for submit one for every 100 heads");
   command.option("--at-once", &request->at_once, "submit: tasks at a time at most; 0: any").range(0, 1e6);
   command.option("--slurm-time", &request->time, "submit: time limit of a task, as Slurm writes it")
-      .value("TIME");
+      .value("TIME")
+      .default_text("what its heads may take at most, 10 minutes to 4 hours");
   command.option("--partition", &request->partition, "submit: Slurm's partition")
       .default_text("the cluster's own");
   command.flag("--dry-run", request->is_dry, "submit: write the script only");

@@ -178,6 +178,9 @@ TEST(Slurm, QuotesWhatAShellWouldTakeApart) {
   job.most_at_once = 3;
   job.jobs = 2;
   job.megabytes = 1000;
+  EXPECT_EQ(slurm_time(1.0), "00:10:00");
+  EXPECT_EQ(slurm_time(2400.5), "00:41:00");
+  EXPECT_EQ(slurm_time(1e9), "04:00:00");
   const std::string script = slurm_script(job);
   EXPECT_NE(script.find("#SBATCH --array=0-6%3\n"), std::string::npos) << script;
   EXPECT_NE(script.find("#SBATCH --mem=2000M\n"), std::string::npos);

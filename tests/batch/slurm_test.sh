@@ -70,8 +70,9 @@ sinfo -N
 # Six good heads, one that is no mesh, and one that is far larger than the memory it may use (a sparse file).
 mkdir "$place/heads" "$place/out"
 for k in 1 2 3 4 5 6; do
-  cp "$head" "$place/heads/good$k.obj"
-  echo "{\"head\": \"heads/good$k.obj\", \"landmarks\": \"$landmarks\", \"detail\": \"low\", \"id\": \"good$k\"}"
+  mkdir "$place/heads/$k"  # of one name, for a rig bears it
+  cp "$head" "$place/heads/$k/head.obj"
+  echo "{\"head\": \"heads/$k/head.obj\", \"landmarks\": \"$landmarks\", \"detail\": \"low\", \"id\": \"good$k\"}"
 done >"$place/heads.jsonl"
 echo "no mesh" >"$place/heads/poisoned.obj"
 truncate -s 2G "$place/heads/large.stl"

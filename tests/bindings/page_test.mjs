@@ -32,7 +32,7 @@ try {
     answers.get(message.id)?.(message);
     if (message.method === 'Runtime.exceptionThrown') complaints.push(message.params.exceptionDetails.exception?.description ?? 'exception');
     if (message.method === 'Log.entryAdded' && message.params.entry.level !== 'info' && !/GPU stall|GL Driver/.test(message.params.entry.text))
-      complaints.push(message.params.entry.text);
+      complaints.push(`${message.params.entry.text} ${message.params.entry.url ?? ""}`.trim());
     if (message.method === 'Runtime.consoleAPICalled' && ['error', 'warning', 'assert'].includes(message.params.type))
       complaints.push(message.params.args.map(({value}) => value).join(' '));
   });
@@ -46,7 +46,7 @@ try {
     return result.result.value;
   };
   const until = async (expression) => {
-    for (let i = 0; i < 240; ++i) {
+    for (let i = 0; i < 720; ++i) {
       if (await ask(expression)) return;
       await new Promise((later) => setTimeout(later, 250));
     }

@@ -112,6 +112,12 @@ TEST(Tables, BridgeWhatIsMissingAndRefuseWhatIsBroken) {
   EXPECT_NE(message_of("time,mouthSmile_L,mouthSmileLeft\n0,0,0\n").find("are the same"), std::string::npos);
 }
 
+TEST(Tables, ValuesBeyondAllRangeAreRefused) {
+  EXPECT_NE(message_of("time,head yaw\n0,1\n0.5,-1e308\n").find("head yaw"), std::string::npos);
+  EXPECT_NE(message_of(R"({"fps":30,"channels":{"jaw_open":[0,3e38]}})").find("jaw_open"), std::string::npos);
+  EXPECT_EQ(read("time,jaw_open\n0,0\n1,12345678\n").curves.size(), 1U);
+}
+
 TEST(Tables, TimeCountsFromTheFirstKey) {
   for (const double start : {0.0, -0.5, 600.0, 36000.0, 1732780800.25}) {
     char text[200];
