@@ -14,8 +14,9 @@ namespace fascia::check {
 
 /// One piece of the user's head at rest: a primitive of the file, or what of a primitive is an eyeball.
 struct Part {
-  std::string name;   ///< skin, eye_left, teeth_lower, hair, ... as rig::Binding::part
-  TriangleMesh mesh;  ///< metres, rig frame, in the file's order of vertices
+  std::string name;                 ///< skin, eye_left, teeth_lower, hair, ... as rig::Binding::part
+  TriangleMesh mesh;                ///< metres, rig frame, in the file's order of vertices
+  std::vector<bool> is_still = {};  ///< #vertices: nothing moves it, as the eye of a scan; empty: not known
 };
 
 /// An eyeball as the rig has it.

@@ -53,7 +53,8 @@ LidLook::LidLook(const Head& head, const Skin& skin, const Eye& eye, const Seam&
       eye_(eye),
       frame_(head.landmarks.at(left ? "exocanthion_left" : "exocanthion_right"),
              head.landmarks.at(left ? "endocanthion_left" : "endocanthion_right"), eye, left),
-      lids_(patch_about(skin.rest(), eye.centre, (outside + 0.1) * eye.radius)) {
+      lids_(moving_patch_about(skin, eye.centre, (outside + 0.1) * eye.radius)),
+      face_(skin.rest()) {
   for (size_t p = 0; p < head.parts.size(); ++p)
     if (head.parts[p].name == (left ? "eye_left" : "eye_right")) eyeball_.push_back(p);
   constexpr double more = 0.1;  // radians beyond the edges at rest
@@ -62,6 +63,12 @@ LidLook::LidLook(const Head& head, const Skin& skin, const Eye& eye, const Seam&
     ranges_.push_back({t, frame_.elevation(position(skin.rest(), seam.lower_edge[s]), t) - more,
                        frame_.elevation(position(skin.rest(), seam.upper_edge[s]), t) + more});
   }
+}
+
+bool LidLook::is_sight(const Vec3& ray) const {
+  constexpr double far = 12.0;  // of the globe's radius
+  const auto hit = face_.first_hit(eye_.centre + outside * eye_.radius * ray, ray, far * eye_.radius);
+  return !hit || hit->from_outside;
 }
 
 LidState LidLook::look(const std::vector<Vec3>& skin, const Shape& shape) const {
@@ -74,7 +81,8 @@ LidState LidLook::look(const std::vector<Vec3>& skin, const Shape& shape) const 
     double open = 0.0, sum = 0.0;
     for (double angle = low; angle < high; angle += step) {
       const Vec3 ray = frame_.direction(t, angle);
-      if (lids.blocked(eye_.centre + outside * eye_.radius * ray, -ray, (outside - nearest) * eye_.radius))
+      if (lids.blocked(eye_.centre + outside * eye_.radius * ray, -ray, (outside - nearest) * eye_.radius) ||
+          !is_sight(ray))
         continue;
       open += step * eye_.radius;
       sum += angle * step * eye_.radius;

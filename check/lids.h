@@ -39,6 +39,8 @@ class LidLook {
   LidLook(const Head& head, const Skin& skin, const Eye& eye, const Seam& seam, bool left);
 
   LidState look(const std::vector<Vec3>& skin, const Shape& shape) const;
+  /// Whether one looks along `ray` from outside the head: not through the nose, say, from behind its skin.
+  bool is_sight(const Vec3& ray) const;
   bool sees() const { return !lids_.triangles.empty(); }
 
  private:
@@ -50,6 +52,7 @@ class LidLook {
   };
   std::vector<Range> ranges_;
   Patch lids_;
+  spatial::SurfaceQuery face_;   // at rest
   std::vector<size_t> eyeball_;  // parts of the head
 };
 

@@ -21,9 +21,9 @@ std::vector<Vec3> places_of(const TriangleMesh& skin, const std::map<std::string
   return places;
 }
 
-}  // namespace
-
-void MirrorPoints::find_plane(const std::map<std::string, Vec3>& landmarks) {
+/// The plane between the landmarks of both sides.
+spatial::MirrorPlane between(const std::map<std::string, Vec3>& landmarks) {
+  spatial::MirrorPlane plane;
   Vec3 across = Vec3::Zero();
   int pairs = 0;
   for (const auto& [name, p] : landmarks) {
@@ -31,45 +31,28 @@ void MirrorPoints::find_plane(const std::map<std::string, Vec3>& landmarks) {
     const auto other = landmarks.find(name.substr(0, name.size() - 5) + "_right");
     if (other == landmarks.end()) continue;
     across += p - other->second;
-    on_plane_ += 0.5 * (p + other->second);
+    plane.point += 0.5 * (p + other->second);
     ++pairs;
   }
-  if (pairs == 0) return;
-  on_plane_ /= pairs;
-  if (across.norm() > 0.0) normal_ = across.normalized();
+  if (pairs == 0) return plane;
+  plane.point /= pairs;
+  if (across.norm() > 0.0) plane.normal = across.normalized();
+  return plane;
 }
 
-void MirrorPoints::fit_plane(const spatial::SurfaceQuery& query, const std::vector<Vec3>& places,
-                             double within) {
-  for (int round = 0; round < 12; ++round) {
-    Vec3 across = Vec3::Zero(), middle = Vec3::Zero();
-    int pairs = 0;
-    for (const Vec3& p : places) {
-      const spatial::ClosestPoint there = query.nearest_place(image(p), within);
-      if (!there.found()) continue;
-      const Vec3 apart = p - there.position;
-      across += apart.dot(normal_) > 0.0 ? apart : Vec3(-apart);
-      middle += 0.5 * (p + there.position);
-      ++pairs;
-    }
-    if (pairs < 8 || !(across.norm() > 0.0)) return;
-    normal_ = across.normalized();
-    on_plane_ = middle / pairs;
-  }
-}
+}  // namespace
 
 MirrorPoints::MirrorPoints(const Skin& skin, const std::map<std::string, Vec3>& landmarks, double size)
     : skin_(skin) {
   const spatial::SurfaceQuery query(skin.rest());
   const std::vector<Vec3> places = places_of(skin.rest(), landmarks);
-  find_plane(landmarks);
-  fit_plane(query, places, 0.008 * size);
+  plane_ = spatial::fit_mirror_plane(query, places, between(landmarks), 0.008 * size).plane;
   for (const Vec3& p : places) {
     const spatial::ClosestPoint here = query.nearest_place(p, 0.01 * size);
     if (!here.found()) continue;
-    const spatial::ClosestPoint there = query.nearest_place(image(here.position), 0.0025 * size);
+    const spatial::ClosestPoint there = query.nearest_place(plane_.image(here.position), 0.0025 * size);
     if (!there.found()) continue;
-    const Vec3 facing = mirrored(triangle_normal(skin.rest(), here.surface.triangle));
+    const Vec3 facing = plane_.turned(triangle_normal(skin.rest(), here.surface.triangle));
     if (facing.dot(triangle_normal(skin.rest(), there.surface.triangle)) < 0.3) continue;
     pairs_.push_back({here.surface, there.surface});
   }
@@ -81,7 +64,7 @@ double MirrorPoints::asymmetry(const std::vector<Vec3>& skin, Vec3& worst_place)
   };
   std::vector<std::pair<double, size_t>> off;
   for (size_t k = 0; k < pairs_.size(); ++k)
-    off.emplace_back((moved(pairs_[k].here) - mirrored(moved(pairs_[k].there))).norm(), k);
+    off.emplace_back((moved(pairs_[k].here) - plane_.turned(moved(pairs_[k].there))).norm(), k);
   if (off.empty()) return 0.0;
   const auto at = off.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(off.size() - 1));
   std::nth_element(off.begin(), at, off.end());

@@ -54,8 +54,8 @@ struct RigHead::State {
   /// The triangles of a primitive whose vertices all satisfy `belongs`, as a part of their own.
   template <class Belongs>
   void add_part(const std::string& part_name, uint32_t mesh, const std::vector<Vec3>& rest,
-                const fascia_mesh_info& info, Belongs belongs) {
-    Part part{part_name, {}};
+                const fascia_mesh_info& info, Belongs belongs, const std::vector<bool>& still) {
+    Part part{part_name, {}, {}};
     Source source{mesh, {}};
     std::vector<int> map(rest.size(), -1);
     for (uint32_t t = 0; t < info.triangle_count; ++t) {
@@ -74,6 +74,8 @@ struct RigHead::State {
       part.mesh.triangles.push_back(now);
     }
     if (part.mesh.triangles.empty()) return;
+    for (const uint32_t v : source.vertices)
+      part.is_still.push_back(still[v]);
     head.parts.push_back(std::move(part));
     sources.push_back(std::move(source));
   }
@@ -86,11 +88,20 @@ struct RigHead::State {
     const auto& bindings = file.rig.tissue.bindings[static_cast<size_t>(level)];
     for (const rig::Binding& one : bindings)
       if (one.mesh == info.mesh && one.primitive == info.primitive) binding = &one;
+    std::vector<bool> still(rest.size(), true);
+    for (size_t v = 0; binding && v < still.size() && v < binding->vertex_count; ++v)
+      still[v] =
+          binding->eye[v] == 0 && binding->jaw_weights[v] == 0.0F &&
+          std::all_of(binding->weights.begin() + static_cast<std::ptrdiff_t>(v * binding->influences),
+                      binding->weights.begin() + static_cast<std::ptrdiff_t>((v + 1) * binding->influences),
+                      [](float weight) { return weight == 0.0F; });
     const auto eye = [&](uint32_t v) { return binding ? binding->eye[v] : uint8_t{0}; };
     for (const uint8_t side : {uint8_t{1}, uint8_t{2}})
-      add_part(side == 1 ? "eye_left" : "eye_right", index, rest, info,
-               [&](uint32_t v) { return eye(v) == side; });
-    add_part(info.part, index, rest, info, [&](uint32_t v) { return eye(v) == 0; });
+      add_part(
+          side == 1 ? "eye_left" : "eye_right", index, rest, info, [&](uint32_t v) { return eye(v) == side; },
+          still);
+    add_part(
+        info.part, index, rest, info, [&](uint32_t v) { return eye(v) == 0; }, still);
   }
 };
 

@@ -66,7 +66,7 @@ std::vector<uint8_t> sides_of_opening(const Skin& skin, const Vec3& upper, const
   const std::vector<Vec3>& vertices = skin.rest().vertices;
   std::vector<bool> within(vertices.size());
   for (size_t v = 0; v < within.size(); ++v)
-    within[v] = (vertices[v] - centre).norm() < reach;
+    within[v] = (vertices[v] - centre).norm() < reach && !skin.is_still()[v];
   const std::vector<double> to_upper = ways(skin, upper, within), to_lower = ways(skin, lower, within);
   std::vector<uint8_t> sides(vertices.size(), Seam::none);
   for (size_t v = 0; v < sides.size(); ++v)
@@ -108,15 +108,22 @@ bool find_edges(const spatial::SurfaceQuery& query, const TriangleMesh& mesh,
     return std::abs(seen[a].distance - seen[b].distance) > look.jump;
   };
   size_t up = cut, down = cut;  // up: one after the last upper place
+  // Where one looks past everything it is the opening for certain; folds of the lid only jump.
+  const auto is_hole = [&](size_t i) { return seen[i].distance == infinite; };
+  bool any_above = false, any_below = false;
   for (size_t i = 0; i + 1 < cut; ++i)
-    if (seen[i].side == Seam::upper && (seen[i + 1].distance == infinite || apart(i, i + 1))) {
+    any_above = any_above || (seen[i].side == Seam::upper && is_hole(i + 1));
+  for (size_t i = count; i-- > cut + 1;)
+    any_below = any_below || (seen[i].side == Seam::lower && is_hole(i - 1));
+  for (size_t i = 0; i + 1 < cut; ++i)
+    if (seen[i].side == Seam::upper && (is_hole(i + 1) || (!any_above && apart(i, i + 1)))) {
       // A jump that leads back to nearer places is a fold, not the opening.
       if (seen[i + 1].distance < seen[i].distance) continue;
       up = i + 1;
       break;
     }
   for (size_t i = count; i-- > cut + 1;)
-    if (seen[i].side == Seam::lower && (seen[i - 1].distance == infinite || apart(i, i - 1))) {
+    if (seen[i].side == Seam::lower && (is_hole(i - 1) || (!any_below && apart(i, i - 1)))) {
       if (seen[i - 1].distance < seen[i].distance) continue;
       down = i;
       break;
@@ -182,7 +189,7 @@ Seam lid_seam(const Skin& skin, const std::map<std::string, Vec3>& landmarks, co
   const LidFrame frame(landmarks.at("exocanthion" + side), landmarks.at("endocanthion" + side), eye, left);
   const double width = (frame.at_left - frame.at_right).norm();
   seam.sides = sides_of_opening(skin, top, bottom, 0.5 * (frame.at_left + frame.at_right), 0.9 * width);
-  const Patch lids = patch_about(skin.rest(), eye.centre, 1.7 * eye.radius);
+  const Patch lids = moving_patch_about(skin, eye.centre, 1.7 * eye.radius);
   if (lids.triangles.empty()) return seam;
   const TriangleMesh mesh = lids.mesh(skin.rest().vertices);
   std::vector<uint8_t> sides;

@@ -1,5 +1,6 @@
 #include "check/skin.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <tuple>
@@ -67,6 +68,8 @@ Skin::Skin(const Head& head, const Vec3& centre, double reach) {
         index[v] = rest_.vertex_count();
         rest_.vertices.push_back(all.vertices[v]);
         source_.push_back(source[v]);
+        const std::vector<bool>& still = head.parts[source[v].first].is_still;
+        is_still_.push_back(!still.empty() && still[source[v].second]);
       }
       now[k] = index[v];
     }
@@ -132,6 +135,15 @@ Patch patch_about(const TriangleMesh& skin, const Vec3& centre, double radius) {
   return patch_where(skin, [&](const Triangle& t) {
     return near[static_cast<size_t>(t[0])] || near[static_cast<size_t>(t[1])] ||
            near[static_cast<size_t>(t[2])];
+  });
+}
+
+Patch moving_patch_about(const Skin& skin, const Vec3& centre, double radius) {
+  const std::vector<Vec3>& vertices = skin.rest().vertices;
+  const auto is_near = [&](int v) { return (vertices[static_cast<size_t>(v)] - centre).norm() < radius; };
+  const auto moves = [&](int v) { return !skin.is_still()[static_cast<size_t>(v)]; };
+  return patch_where(skin.rest(), [&](const Triangle& t) {
+    return std::any_of(t.begin(), t.end(), is_near) && std::any_of(t.begin(), t.end(), moves);
   });
 }
 

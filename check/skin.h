@@ -17,6 +17,8 @@ class Skin {
 
   const TriangleMesh& rest() const { return rest_; }
   const Connectivity& links() const { return links_; }
+  /// #vertices: nothing moves it, as the eyes of scans, which are one surface with their lids.
+  const std::vector<bool>& is_still() const { return is_still_; }
 
   /// Its vertices as they stand in `shape`.
   std::vector<Vec3> vertices(const Shape& shape) const;
@@ -24,6 +26,7 @@ class Skin {
  private:
   TriangleMesh rest_;
   Connectivity links_;
+  std::vector<bool> is_still_;
   std::vector<std::pair<size_t, size_t>> source_;  // part and vertex of each vertex
 };
 
@@ -40,6 +43,9 @@ Patch patch(const TriangleMesh& skin, const std::vector<bool>& keep);
 
 /// The triangles that have a corner within `radius` metres of `centre`.
 Patch patch_about(const TriangleMesh& skin, const Vec3& centre, double radius);
+
+/// The same without those that nothing moves: lids, but not what they close over.
+Patch moving_patch_about(const Skin& skin, const Vec3& centre, double radius);
 
 /// The place of `point` when the mesh's vertices stand at `vertices`.
 Vec3 place(const TriangleMesh& mesh, const std::vector<Vec3>& vertices, const SurfacePoint& point);

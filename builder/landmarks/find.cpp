@@ -77,30 +77,82 @@ std::vector<Anchor> eye_anchors(const GenericFace& face, const Registration& fit
 
 /// An eye of a head by its corners' places; `up` and `forward` are the head's.
 EyeRegion eye_region(const Vec3& outer, const Vec3& inner, const Ball& ball, const Placement& placement) {
-  return {outer, inner, placement.rotation * Vec3::UnitZ(), placement.rotation * Vec3::UnitY(), ball};
+  return {outer, inner, placement.rotation * Vec3::UnitZ(), placement.rotation * Vec3::UnitY(), ball, 0.035};
+}
+
+/// One eye as the fit has it on this head.
+EyeRegion fitted_eye(const GenericFace& face, const anatomy::GenericAnatomy& anatomy, const Registration& fit,
+                     bool left, const std::optional<Ball>& known) {
+  const std::string side = left ? "left" : "right";
+  const auto generic = [&](const char* name) { return *anatomy.landmark(name + side)->skin; };
+  const Ball& ball = left ? face.eye_left : face.eye_right;
+  const Ball carried = known ? *known : Ball{fit(ball.centre), ball.radius * fit.placement.scale};
+  return eye_region(fit(generic("exocanthion_")), fit(generic("endocanthion_")), carried, fit.placement);
+}
+
+/// The openings of both eyes' lids, where they are seen.
+struct Openings {
+  std::optional<LidOpening> left, right;
+  bool are_far = false;  ///< from where the fit has the eyes
+};
+
+/// `eye` moved by shares of its width, outward and up, and grown about its middle.
+EyeRegion moved_eye(EyeRegion eye, double outward, double upward, double growth) {
+  const double width = (eye.outer - eye.inner).norm();
+  const Vec3 middle = 0.5 * (eye.outer + eye.inner);
+  const Vec3 way = outward * (eye.outer - eye.inner) + upward * width * eye.up;
+  for (Vec3* p : {&eye.outer, &eye.inner, &eye.ball.centre})
+    *p = middle + growth * (*p - middle) + way;
+  eye.ball.radius *= growth;
+  eye.depth = 0.25;  // a ball put somewhere may stand before closed lids
+  return eye;
+}
+
+/// Whether two openings are the two eyes of one face: as wide and as high, and at one height.
+bool are_a_pair(const LidOpening& a, const LidOpening& b, const Vec3& up) {
+  constexpr double alike = 0.25, level = 0.2;  // of the width
+  const double wide_a = (a.outer - a.inner).norm(), wide_b = (b.outer - b.inner).norm(),
+               width = std::max(wide_a, wide_b), high_a = (a.upper - a.lower).norm(),
+               high_b = (b.upper - b.lower).norm();
+  return std::abs(wide_a - wide_b) < alike * width && std::abs(high_a - high_b) < alike * width &&
+         std::abs((a.upper + a.lower - b.upper - b.lower).dot(up)) < 2.0 * level * width;
+}
+
+/// Both eyes' openings: each where the fit has the eye, or, where neither is seen there, as in faces with
+/// eyes larger or lower than people's, a pair of them about there.
+Openings eye_openings(const spatial::SurfaceQuery& skin, const EyeRegion& left, const EyeRegion& right,
+                      bool are_known) {
+  Openings seen{lid_opening(skin, left), lid_opening(skin, right)};
+  if (seen.left || seen.right || are_known) return seen;
+  for (const double growth : {1.0, 1.4, 1.8})
+    for (const double upward : {-0.3, 0.3, -0.6})
+      for (const double outward : {0.0, 0.25}) {
+        seen = {lid_opening(skin, moved_eye(left, outward, upward, growth)),
+                lid_opening(skin, moved_eye(right, outward, upward, growth)), true};
+        if (seen.left && seen.right && are_a_pair(*seen.left, *seen.right, left.up)) return seen;
+      }
+  return {};
 }
 
 /// Corners and margins of the lids of one side, put where this head's lids open: the generic head's own
 /// opening, looked at the same way, tells how the landmarks lie beside what is seen.
 std::vector<std::pair<std::string, Vec3>> lid_landmarks(const GenericFace& face,
                                                         const anatomy::GenericAnatomy& anatomy,
-                                                        const spatial::SurfaceQuery& skin,
-                                                        const Registration& fit, const std::string& side,
-                                                        const std::optional<Ball>& known) {
+                                                        const Registration& fit, bool left,
+                                                        const std::optional<LidOpening>& here, bool is_far) {
+  const std::string side = left ? "left" : "right";
   const auto generic = [&](const char* name) { return *anatomy.landmark(name + side)->skin; };
   const Vec3 outer = generic("exocanthion_"), inner = generic("endocanthion_");
-  const Ball& ball = side == "left" ? face.eye_left : face.eye_right;
-  const double scale = fit.placement.scale;
-  const Ball carried = known ? *known : Ball{fit(ball.centre), ball.radius * scale};
-  const auto here = lid_opening(skin, eye_region(fit(outer), fit(inner), carried, fit.placement));
   const auto there =
-      lid_opening(spatial::SurfaceQuery(face.skin), eye_region(outer, inner, ball, Placement{}));
+      lid_opening(spatial::SurfaceQuery(face.skin),
+                  eye_region(outer, inner, left ? face.eye_left : face.eye_right, Placement{}));
   if (!here || !there) return {};
+  const double scale = fit.placement.scale;
   const auto moved = [&](const Vec3& at, const Vec3& seen_here, const Vec3& seen_there) {
     return Vec3(seen_here + scale * (fit.placement.rotation * (at - seen_there)));
   };
   // A corner far from where the fit has it is a hole in the mesh or a fold, not the corner.
-  const double most = 0.2 * scale * (outer - inner).norm();
+  const double most = is_far ? scale : 0.2 * scale * (outer - inner).norm();
   std::vector<std::pair<std::string, Vec3>> found;
   const auto add = [&](const std::string& name, const Vec3& seen_here, const Vec3& seen_there) {
     const Vec3& at = *anatomy.landmark(name + side)->skin;
@@ -161,12 +213,18 @@ FoundFace find(const GenericFace& face, const anatomy::GenericAnatomy& anatomy,
     anchors.insert(anchors.end(), of_eyes.begin(), of_eyes.end());
     found.fit = register_face(face, samples, placement, anchors, first);
   }
+  const bool has_eyes_by_hand = known.count("exocanthion_left") || known.count("exocanthion_right");
+  const Openings lids =
+      eye_openings(skin, fitted_eye(face, anatomy, found.fit, true, eyes.left),
+                   fitted_eye(face, anatomy, found.fit, false, eyes.right), has_eyes_by_hand);
   std::map<std::string, Vec3> seen;
-  for (const auto& [side, ball] : {std::pair("left", eyes.left), std::pair("right", eyes.right)})
-    for (const auto& [name, p] : lid_landmarks(face, anatomy, skin, found.fit, side, ball))
+  for (const bool left : {true, false})
+    for (const auto& [name, p] :
+         lid_landmarks(face, anatomy, found.fit, left, left ? lids.left : lids.right, lids.are_far))
       if (!known.count(name)) seen[name] = p;
   for (const Anchor& anchor : anchors_of(seen, anatomy, 20.0))
     anchors.push_back(anchor);
+  if (lids.are_far) found.fit = register_face(face, samples, placement, anchors, first);
   RegistrationOptions second;
   second.stages = {{0.03, 2, 1}, {0.01, 1, 1}, {0.004, 1, 1}};
   second.reach = 0.01;

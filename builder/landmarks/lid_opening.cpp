@@ -39,7 +39,7 @@ std::vector<bool> open_cells(const spatial::SurfaceQuery& skin, const EyeRegion&
                r = eye.ball.radius;
   // The ball alone does not reach the corners; the tissue there goes on about as it does.
   const double stretch = std::max(r, 0.66 * sight.width);
-  const double reach = 0.8 * sight.width, behind = 0.035 * sight.width;
+  const double reach = 0.8 * sight.width, behind = eye.depth * sight.width;
   std::vector<bool> open(static_cast<size_t>(columns * rows), false);
   for (int row = 0; row < rows; ++row)
     for (int column = 0; column < columns; ++column) {

@@ -11,6 +11,7 @@ struct EyeRegion {
   Vec3 outer, inner;  ///< corners of the palpebral fissure
   Vec3 forward, up;   ///< of the head
   Ball ball;
+  double depth = 0.035;  ///< of the distance between the corners: skin so far behind the ball is an opening
 };
 
 /// The opening between the lids: its extreme points, on the margins.

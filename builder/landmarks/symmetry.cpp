@@ -49,7 +49,6 @@ double unit_of(const std::map<std::string, SkinLandmark>& landmarks) {
 
 std::optional<MirrorPlane> mirror_plane(const std::map<std::string, SkinLandmark>& landmarks,
                                         const spatial::SurfaceQuery& skin) {
-  constexpr int rounds = 12;
   constexpr double within = 8.0, alike = 0.35;  // millimetres of an adult's face
   MirrorPlane plane;
   Vec3 across = Vec3::Zero(), middle = Vec3::Zero();
@@ -64,29 +63,10 @@ std::optional<MirrorPlane> mirror_plane(const std::map<std::string, SkinLandmark
   plane.point = middle / pairs;
   const double unit = unit_of(landmarks);
   const std::vector<Vec3> places = places_of(landmarks, skin);
-  std::vector<double> apart;
-  for (int round = 0; round < rounds; ++round) {
-    Vec3 sum = Vec3::Zero(), middles = Vec3::Zero();
-    double found = 0.0;
-    apart.clear();
-    for (const Vec3& p : places) {
-      const Vec3 image = plane.image(p);
-      const auto hit = skin.closest(image, within * unit);
-      if (!hit.found()) continue;
-      const Vec3 way = p - hit.position;
-      sum += way.dot(plane.normal) > 0.0 ? way : Vec3(-way);
-      middles += 0.5 * (p + hit.position);
-      found += 1.0;
-      apart.push_back(hit.distance);
-    }
-    if (found < 0.8 * static_cast<double>(places.size()) || found < 12.0) return {};
-    plane.normal = sum.normalized();
-    plane.point = middles / found;
-  }
-  const auto most = apart.begin() + static_cast<std::ptrdiff_t>(9 * apart.size() / 10);
-  std::nth_element(apart.begin(), most, apart.end());
-  if (*most > alike * unit) return {};
-  return plane;
+  const spatial::MirrorFit fit = spatial::fit_mirror_plane(skin, places, plane, within * unit);
+  if (fit.apart.size() < 12 || 5 * fit.apart.size() < 4 * places.size()) return {};
+  if (fit.most_apart() > alike * unit) return {};
+  return fit.plane;
 }
 
 int make_symmetric(const MirrorPlane& plane, const spatial::SurfaceQuery& skin,
@@ -104,8 +84,11 @@ int make_symmetric(const MirrorPlane& plane, const spatial::SurfaceQuery& skin,
   for_each_pair(landmarks, [&](SkinLandmark& left, SkinLandmark& right) {
     if (left.is_given || right.is_given) return;
     const Vec3 image = plane.image(right.position);
-    if ((left.position - image).norm() > far) return;
-    const Vec3 mean = 0.5 * (left.position + image);
+    // Found apart, one of them was found wrong: the surer one counts.
+    const bool is_apart = (left.position - image).norm() > far;
+    const Vec3 mean = !is_apart                             ? Vec3(0.5 * (left.position + image))
+                      : left.confidence >= right.confidence ? left.position
+                                                            : image;
     const auto here = settled(mean, left), there = settled(plane.image(mean), right);
     if (!here || !there) return;
     left.position = *here;
@@ -115,7 +98,6 @@ int make_symmetric(const MirrorPlane& plane, const spatial::SurfaceQuery& skin,
   for (auto& [name, landmark] : landmarks) {
     if (name.ends_with("_left") || name.ends_with("_right") || landmark.is_given) continue;
     const Vec3 p = 0.5 * (landmark.position + plane.image(landmark.position));
-    if ((p - landmark.position).norm() > far) continue;
     if (const auto here = settled(p, landmark)) {
       landmark.position = *here;
       ++moved;

@@ -5,17 +5,14 @@
 #include <string>
 
 #include "builder/landmarks/skin_landmark.h"
+#include "builder/spatial/mirror_plane.h"
 
 namespace fascia::landmarks {
 
-/// The plane that a face is the same on both sides of.
-struct MirrorPlane {
-  Vec3 point = Vec3::Zero(), normal = Vec3::UnitX();  ///< normal: unit, to the left
-  Vec3 image(const Vec3& p) const { return p - 2.0 * normal.dot(p - point) * normal; }
-};
+using spatial::MirrorPlane;
 
 /// The mirror plane of a face whose two sides are alike, as modelled heads have it: drawn onto the skin about
-/// the landmarks by iterative closest points between it and its mirror image. Nothing when a tenth of the
+/// the landmarks between it and its mirror image. Nothing when a tenth of the
 /// places tried are farther from their image than people's own asymmetry leaves them.
 std::optional<MirrorPlane> mirror_plane(const std::map<std::string, SkinLandmark>& landmarks,
                                         const spatial::SurfaceQuery& skin);

@@ -307,6 +307,51 @@ std::optional<Lids> lids_of(const std::map<std::string, Vec3>& landmarks, bool i
   return Lids{0.5 * (*outer + *inner), (*outer - *inner).norm()};
 }
 
+/// Where what is called an eye lies on one side, within reach of the rough lids; empty when nothing does.
+Bounds named_eye(const std::vector<Component>& components, const std::vector<NamedPart>& names,
+                 const Lids& rough, double middle, bool is_left, int skin) {
+  constexpr double reach = 1.5;  // widths of the fissure
+  Bounds all;
+  for (size_t c = 0; c < components.size(); ++c) {
+    const Bounds& box = components[c].box;
+    const Vec3 off = box.centre() - rough.middle;
+    if (static_cast<int>(c) != skin && names[c].says_eye && (box.centre().x() > middle) == is_left &&
+        off.norm() < reach * rough.width && box.size().x() < 2.0 * rough.width) {
+      all.lower = all.lower.cwiseMin(box.lower);
+      all.upper = all.upper.cwiseMax(box.upper);
+    }
+  }
+  return all;
+}
+
+/// Both sides' fissures. Rough landmarks have the eyes of drawn faces, large and low, near the brows: where a
+/// pair of meshes that are called eyes lies off them, the fissures are before these.
+std::array<std::optional<Lids>, 2> fissures(const std::vector<Component>& components,
+                                            const std::vector<NamedPart>& names,
+                                            const std::map<std::string, Vec3>& landmarks, int skin) {
+  constexpr double off = 0.25, level = 0.25;  // of the fissure's width
+  std::array<std::optional<Lids>, 2> lids = {lids_of(landmarks, true), lids_of(landmarks, false)};
+  if (!lids[0] || !lids[1]) return lids;
+  const double middle = middle_of_face(landmarks);
+  const Bounds left = named_eye(components, names, *lids[0], middle, true, skin),
+               right = named_eye(components, names, *lids[1], middle, false, skin);
+  if (!(left.size().x() > 0.0) || !(right.size().x() > 0.0)) return lids;
+  const double width = 0.5 * (lids[0]->width + lids[1]->width);
+  const bool is_pair = std::abs(left.centre().y() - right.centre().y()) < level * width &&
+                       std::abs(left.size().x() - right.size().x()) < level * width;
+  const auto beside = [&](const Bounds& eye, const Lids& rough) {
+    return (eye.centre() - rough.middle).head<2>().norm();
+  };
+  if (!is_pair || std::max(beside(left, *lids[0]), beside(right, *lids[1])) < off * width) return lids;
+  for (const bool is_left : {true, false}) {
+    const Bounds& eye = is_left ? left : right;
+    Lids& side = *lids[is_left ? 0 : 1];
+    side.middle = Vec3(eye.centre().x(), eye.centre().y(), eye.upper.z());
+    side.width = std::max(side.width, eye.size().x());
+  }
+  return lids;
+}
+
 /// The triangles of one component, with its own vertices.
 TriangleMesh component_mesh(const WeldedScene& welded, size_t component) {
   std::vector<bool> is_kept(welded.surface.triangles.size());
@@ -340,9 +385,8 @@ std::optional<Eyeball> find_flat_eye(const std::vector<Component>& components,
 /// the most directions.
 std::optional<Eyeball> find_eye(const WeldedScene& welded, const std::vector<Component>& components,
                                 const std::vector<NamedPart>& names,
-                                const std::map<std::string, Vec3>& landmarks, bool is_left, int skin,
-                                std::vector<std::optional<Part>>& known) {
-  const auto lids = lids_of(landmarks, is_left);
+                                const std::map<std::string, Vec3>& landmarks, const std::optional<Lids>& lids,
+                                bool is_left, int skin, std::vector<std::optional<Part>>& known) {
   std::vector<std::pair<size_t, RoundPart>> round;
   double most = 0.0;
   for (size_t c = 0; c < components.size(); ++c) {
@@ -387,8 +431,9 @@ Parts recognise_parts(const formats::Scene& scene, const WeldedScene& welded,
     names.push_back(part_by_name(names_of(scene, component)));
   std::vector<std::optional<Part>> known(components.size());
   known[static_cast<size_t>(skin)] = Part::skin;
-  parts.eye_left = find_eye(welded, components, names, landmarks, true, skin, known);
-  parts.eye_right = find_eye(welded, components, names, landmarks, false, skin, known);
+  const auto lids = fissures(components, names, landmarks, skin);
+  parts.eye_left = find_eye(welded, components, names, landmarks, lids[0], true, skin, known);
+  parts.eye_right = find_eye(welded, components, names, landmarks, lids[1], false, skin, known);
   for (size_t c = 0; c < components.size(); ++c)
     parts.component_parts[c] = known[c] ? *known[c] : part_of(components[c], names[c], landmarks);
   const RowHeights rows = tell_rows_apart(components, names, landmarks, parts.component_parts);

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <initializer_list>
 #include <set>
 
 #include "builder/rigging/shared_vertices.h"
@@ -102,6 +104,23 @@ std::vector<tissue::LevelOptions> levels_up_to(const std::string& detail) {
   throw Error("detail '" + detail + "' is unknown: use low, medium or high");
 }
 
+/// #channels: what members of a set play together; empty when one of them is not in it.
+std::vector<float> played(const rig::Actuation& actuation, const std::string& set_name,
+                          std::initializer_list<std::string> members) {
+  const auto set = std::find_if(actuation.sets.begin(), actuation.sets.end(),
+                                [&](const rig::NamedSet& one) { return one.name == set_name; });
+  if (set == actuation.sets.end()) return {};
+  std::vector<float> values(actuation.channels.size(), 0.0F);
+  for (const std::string& member : members) {
+    const auto at = std::find(set->members.begin(), set->members.end(), member);
+    if (at == set->members.end()) return {};
+    for (size_t i = 0; i < set->member_indices.size(); ++i)
+      if (static_cast<std::ptrdiff_t>(set->member_indices[i]) == at - set->members.begin())
+        values[set->channel_indices[i]] += set->weights[i];
+  }
+  return values;
+}
+
 }  // namespace
 
 tissue::TissueInputs tissue_inputs(const formats::Scene& scene, const prepare::PreparedHead& head,
@@ -122,6 +141,7 @@ tissue::TissueInputs tissue_inputs(const formats::Scene& scene, const prepare::P
   inputs.ligaments = rig.smas.ligaments;
   inputs.muscles = rig.muscles;
   inputs.channels = rig.actuation.channels;
+  inputs.blink = played(rig.actuation, "arkit", {"eyeBlinkLeft", "eyeBlinkRight"});
   for (const MeshPart& part : take_apart(scene, head))
     inputs.parts.push_back(part_mesh(head.meshes[part.mesh], part));
   return inputs;

@@ -26,6 +26,22 @@ double below_smas(double smas_depth) {
   return 1.3 * smas_depth + 2e-4;
 }
 
+/// The tip of the nose, where the septal cartilage stands beneath the skin and goes with the cranium as bone
+/// does (Gray's Anatomy, 41st ed.): a ball about the pronasale.
+class NoseTip {
+ public:
+  explicit NoseTip(const TissueInputs& inputs)
+      : tip_(landmark(inputs, "pronasale")), height_((tip_ - landmark(inputs, "subnasale")).norm()) {}
+  /// Skin that lies on the cartilage.
+  bool holds(const Vec3& p) const { return (p - tip_).norm() < 0.55 * height_; }
+  /// Skin of the nose, that no jaw moves.
+  bool is_nose(const Vec3& p) const { return (p - tip_).norm() < 0.9 * height_; }
+
+ private:
+  Vec3 tip_;
+  double height_ = 0.0;  ///< metres to the subnasale
+};
+
 /// Depths of the layers along the normals, and whether bone lies there.
 void find_depths(const TissueInputs& inputs, const FaceRegion& region, const Bones& bones, Beneath& beneath) {
   const spatial::SurfaceQuery skin(inputs.skin), cranium(bones.cranium), mandible(bones.mandible);
@@ -34,6 +50,7 @@ void find_depths(const TissueInputs& inputs, const FaceRegion& region, const Bon
   constexpr double skip = 3e-4;  // metres: past the skin a ray begins on
   const anatomy::mechanics::Depths& m = inputs.mechanics.depths;
   const double reach = m.bone_reach;
+  const NoseTip nose(inputs);
   constexpr double smas_range = 0.02, smas_skip = 2e-4;  // metres along a ray
   for (size_t v = 0; v < region.mesh.vertices.size(); ++v) {
     const Vec3 p = region.mesh.vertices[v], down = -beneath.normals[v];
@@ -57,7 +74,7 @@ void find_depths(const TissueInputs& inputs, const FaceRegion& region, const Bon
                                             : std::min(m.lining_smas_share * room, m.lining_smas_most));
     const double inner =
         outer ? std::min(room, smas_depth + m.behind_smas) : std::min(m.lining_share * room, m.lining_most);
-    beneath.bone[v] = on_bone ? 1.0 : 0.0;
+    beneath.bone[v] = on_bone || (outer && nose.holds(p)) ? 1.0 : 0.0;
     beneath.smas_depth[v] = smas_depth;
     beneath.inner_depth[v] = std::max(inner, below_smas(smas_depth));
   }
@@ -116,8 +133,12 @@ Beneath find_beneath(const TissueInputs& inputs, const FaceRegion& region, const
   }
   const std::vector<double>& lips = region.opening_distance[static_cast<size_t>(Opening::mouth)];
   beneath.lower_lip = lower_lip(inputs, region.mesh, region.outer, lips);
+  const NoseTip nose(inputs);
+  std::vector<bool> still = region.rim;
+  for (size_t v = 0; v < n; ++v)
+    still[v] = still[v] || nose.is_nose(region.mesh.vertices[v]);
   beneath.jaw_weight =
-      jaw_weights(region.mesh, region.rim, bones, {lips, beneath.lower_lip}, inputs.mechanics.jaw_influence);
+      jaw_weights(region.mesh, still, bones, {lips, beneath.lower_lip}, inputs.mechanics.jaw_influence);
   return beneath;
 }
 

@@ -37,9 +37,9 @@ std::vector<double> lower_lip(const TissueInputs& inputs, const TriangleMesh& me
                               const std::vector<bool>& outer, const std::vector<double>& distance);
 
 /// How much of the jaw's motion carries each vertex of `mesh`: 1 and 0 where mandible or cranium clearly lies
-/// nearer, 0 on the rim, and between a smooth field over the surface (screened Laplace equation), which does
-/// not cross from lip to lip.
-std::vector<double> jaw_weights(const TriangleMesh& mesh, const std::vector<bool>& rim, const Bones& bones,
+/// nearer, 0 where skin is `still`, on the rim and the nose, and between a smooth field over the surface
+/// (screened Laplace equation), which does not cross from lip to lip.
+std::vector<double> jaw_weights(const TriangleMesh& mesh, const std::vector<bool>& still, const Bones& bones,
                                 const Lips& lips, const anatomy::mechanics::JawInfluence& influence);
 
 }  // namespace fascia::tissue

@@ -5,6 +5,7 @@
 #include "builder/tissue/actuators.h"
 #include "builder/tissue/bind.h"
 #include "builder/tissue/elements.h"
+#include "builder/tissue/lids.h"
 #include "builder/tissue/mirror.h"
 #include "geometry/error.h"
 #include "sim/energies.h"
@@ -96,6 +97,7 @@ TissueResult build(const TissueInputs& given, const TissueOptions& options) {
     const Columns columns = make_columns(inputs, region, beneath, symmetry, wanted, options);
     rig::TissueLevel level = complete_level(inputs, region, beneath, wanted, options, columns);
     const std::vector<Follow> skin = follow_skin(inputs, region, columns);
+    settle_lids(inputs, region, columns, skin, symmetry && symmetry->is_exact, level);
     result.tissue.bindings[at] = bind_parts(inputs, region, columns, skin);
     result.figures[at] = figures_of(level);
     result.tissue.levels[at] = std::move(level);

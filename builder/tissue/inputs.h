@@ -35,6 +35,7 @@ struct TissueInputs {
   std::vector<rig::Muscle> muscles;
   std::vector<rig::Channel> channels;
   std::vector<PartMesh> parts;
+  std::vector<float> blink;          ///< #channels: what closes both eyes; empty: not known
   bool has_muscles_by_hand = false;  ///< of one side perhaps: they are no images of the other's
 };
 

@@ -33,7 +33,7 @@ std::vector<double> lower_lip(const TissueInputs& inputs, const TriangleMesh& me
   return lower;
 }
 
-std::vector<double> jaw_weights(const TriangleMesh& mesh, const std::vector<bool>& rim, const Bones& bones,
+std::vector<double> jaw_weights(const TriangleMesh& mesh, const std::vector<bool>& still, const Bones& bones,
                                 const Lips& lips, const anatomy::mechanics::JawInfluence& m) {
   constexpr double undecided = 0.002;  // least weight of a place no bone decides: keeps the field solvable
   const spatial::SurfaceQuery cranium(bones.cranium), mandible(bones.mandible);
@@ -55,7 +55,7 @@ std::vector<double> jaw_weights(const TriangleMesh& mesh, const std::vector<bool
     const double lip = share * m.lip_fade.fall(lips.distance[static_cast<size_t>(v)]);
     goal = (weight * goal + lip * m.lip_passage.rise(lips.lower[static_cast<size_t>(v)])) / (weight + lip);
     weight += lip;
-    if (rim[static_cast<size_t>(v)]) {
+    if (still[static_cast<size_t>(v)]) {
       weight = 1e3 * share + 1e-6;
       goal = 0.0;
     }
@@ -69,9 +69,9 @@ std::vector<double> jaw_weights(const TriangleMesh& mesh, const std::vector<bool
   std::vector<double> weights(static_cast<size_t>(n));
   for (int v = 0; v < n; ++v) {
     const double value = std::clamp(field[v], 0.0, 1.0);
-    weights[static_cast<size_t>(v)] = rim[static_cast<size_t>(v)] || value < 1e-4 ? 0.0
-                                      : value > 0.999                             ? 1.0
-                                                                                  : value;
+    weights[static_cast<size_t>(v)] = still[static_cast<size_t>(v)] || value < 1e-4 ? 0.0
+                                      : value > 0.999                               ? 1.0
+                                                                                    : value;
   }
   return weights;
 }

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "builder/tissue/actuators.h"
-#include "builder/tissue/fissure.h"
+#include "builder/tissue/lids.h"
 
 namespace fascia::tissue {
 namespace {
@@ -90,8 +90,7 @@ void add_eye(const TissueInputs& inputs, const FaceRegion& region, const Columns
     const double across = m.canthal_fade.rise(place) * m.canthal_fade.rise(1.0 - place);
     const double fade =
         (c.outer[v] ? (is_upper ? m.upper_plate : m.lower_plate).fall(distance) : 1.0) * across;
-    // Skin that the lid takes down unfolds from the crease, so that it goes less far than the edge.
-    const double unfolding = (c.outer[v] ? m.unfolding.fall(distance) : 1.0) * across;
+    const double unfolding = closing_share(inputs, c, f, v);
     const double held = std::max(fade, c.outer[v] && is_upper ? across * m.crease.fall(distance) : 0.0);
     const auto last = static_cast<uint32_t>(level.globe_centre.size() - 1);
     for (const size_t node : {v, n + v})
@@ -133,6 +132,16 @@ void add_eye(const TissueInputs& inputs, const FaceRegion& region, const Columns
 }
 
 }  // namespace
+
+double closing_share(const TissueInputs& inputs, const Columns& c, const Fissure& f, size_t v) {
+  const anatomy::mechanics::Lids& m = inputs.mechanics.lids;
+  const double place = f.place(c.mesh.vertices[v]);
+  const double distance = std::min(c.opening_distance[static_cast<size_t>(Opening::eye_left)][v],
+                                   c.opening_distance[static_cast<size_t>(Opening::eye_right)][v]);
+  // Skin that the lid takes down unfolds from the crease, so that it goes less far than the edge.
+  return (c.outer[v] ? m.unfolding.fall(distance) : 1.0) * m.canthal_fade.rise(place) *
+         m.canthal_fade.rise(1.0 - place);
+}
 
 void add_lids(const TissueInputs& inputs, const FaceRegion& region, const Columns& columns,
               rig::TissueLevel& level) {

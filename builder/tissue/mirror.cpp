@@ -100,9 +100,8 @@ double unit_of(const TissueInputs& inputs) {
 }  // namespace
 
 std::optional<Symmetry> symmetry_of(const TissueInputs& inputs, const FaceRegion& region) {
-  constexpr int rounds = 8;
   constexpr double within = 10.0, alike = 1.5, exact = 0.35;  // millimetres of an adult's face
-  Symmetry plane;
+  spatial::MirrorPlane plane;
   Vec3 across = Vec3::Zero(), middle = Vec3::Zero();
   double pairs = 0.0;
   for (const auto& [name, right] : inputs.landmarks)
@@ -123,28 +122,17 @@ std::optional<Symmetry> symmetry_of(const TissueInputs& inputs, const FaceRegion
       places.push_back(p);
   constexpr size_t most_places = 600;
   const size_t step = places.size() / most_places + 1;
-  const spatial::SurfaceQuery query(region.mesh);
-  std::vector<double> apart;
-  for (int round = 0; round < rounds; ++round) {
-    Vec3 ways = Vec3::Zero(), middles = Vec3::Zero();
-    apart.clear();
-    for (size_t i = 0; i < places.size(); i += step) {
-      const auto hit = query.nearest_place(plane.image(places[i]), within * unit);
-      if (!hit.found()) continue;
-      const Vec3 way = places[i] - hit.position;
-      ways += way.dot(plane.normal) > 0.0 ? way : Vec3(-way);
-      middles += 0.5 * (places[i] + hit.position);
-      apart.push_back(hit.distance);
-    }
-    if (apart.size() < 12 || 5 * step * apart.size() < 4 * places.size() || !(ways.norm() > 0.0)) return {};
-    plane.normal = ways.normalized();
-    plane.point = middles / static_cast<double>(apart.size());
-  }
-  const auto most = apart.begin() + static_cast<std::ptrdiff_t>(9 * apart.size() / 10);
-  std::nth_element(apart.begin(), most, apart.end());
-  if (*most > alike * unit) return {};
-  plane.is_exact = *most < exact * unit;
-  return plane;
+  std::vector<Vec3> tried;
+  for (size_t i = 0; i < places.size(); i += step)
+    tried.push_back(places[i]);
+  const spatial::MirrorFit fit =
+      spatial::fit_mirror_plane(spatial::SurfaceQuery(region.mesh), tried, plane, within * unit);
+  if (fit.apart.size() < 12 || 5 * fit.apart.size() < 4 * tried.size()) return {};
+  const double most = fit.most_apart();
+  if (most > alike * unit) return {};
+  Symmetry symmetry{fit.plane};
+  symmetry.is_exact = most < exact * unit;
+  return symmetry;
 }
 
 HalfRegion left_half(const TriangleMesh& mesh, const Symmetry& plane) {

@@ -4,24 +4,19 @@
 #include <optional>
 #include <vector>
 
+#include "builder/spatial/mirror_plane.h"
 #include "builder/tissue/region.h"
 #include "builder/tissue/remesh.h"
 
 namespace fascia::tissue {
 
 /// The plane that a face is more or less the same on both sides of.
-struct Symmetry {
-  Vec3 point = Vec3::Zero(), normal = Vec3::UnitX();  ///< normal: unit, to the left
+struct Symmetry : spatial::MirrorPlane {
   bool is_exact = false;  ///< as modelled heads are: what one side has is the other's image
-  double distance(const Vec3& p) const { return normal.dot(p - point); }
-  Vec3 foot(const Vec3& p) const { return p - distance(p) * normal; }
-  Vec3 image(const Vec3& p) const { return p - 2.0 * distance(p) * normal; }
-  Vec3 turned(const Vec3& way) const { return way - 2.0 * normal.dot(way) * normal; }  ///< of a direction
 };
 
-/// The symmetry of a region by its landmarks, drawn onto the skin by iterative closest points between it and
-/// its image. Nothing where a tenth of the skin is farther than a millimetre and a half from its image, as on
-/// lopsided faces.
+/// The symmetry of a region by its landmarks, drawn onto the skin between it and its image. Nothing where a
+/// tenth of the skin is farther than a millimetre and a half from its image, as on lopsided faces.
 std::optional<Symmetry> symmetry_of(const TissueInputs& inputs, const FaceRegion& region);
 
 /// What of a region lies on the left of the plane, cut along it.

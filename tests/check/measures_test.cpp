@@ -62,6 +62,20 @@ TEST(Lids, AnEyeballThatStandsOutIsMeasured) {
   EXPECT_NEAR(lids_of(open, posed).cornea_out, 7e-4, 1e-4);
 }
 
+TEST(Lids, AnEyeThatIsOneSurfaceWithThemIsWhatOneSeesBetweenThem) {
+  // The eyeball as a part of the skin that nothing moves, as in scans.
+  const auto scanned = [](Head head) {
+    head.parts[0].is_still.assign(head.parts[0].mesh.vertices.size(), false);
+    append(head.parts[0].mesh, head.parts[1].mesh);
+    head.parts[0].is_still.resize(head.parts[0].mesh.vertices.size(), true);
+    head.parts.pop_back();
+    return head;
+  };
+  const Head open = scanned(eye_with_lids(0.5, -0.3));
+  EXPECT_NEAR(lids_of(open, open).widest, 0.8 * 0.012, 1.5e-4);
+  EXPECT_EQ(lids_of(open, scanned(eye_with_lids(0.0, 0.0))).widest, 0.0);
+}
+
 TEST(Lids, SeamFollowsBothEdges) {
   const Head open = eye_with_lids(0.5, -0.3);
   const Skin skin(open, Vec3::Zero(), 0.1);

@@ -68,6 +68,25 @@ TEST(AnyHead, OfEveryProportion) {
   expect_found(made("creature", as_creature), 4.0, 10.0);
 }
 
+TEST(AnyHead, WithEyesDrawnLowAndLarge) {
+  // As toys and dolls have them: a fifth of the face lower than people's and half as large again, their
+  // sockets empty.
+  MadeHead doll = made("doll", [](const Vec3& p) {
+    Vec3 to = with_large_eyes(p);
+    for (const double side : {-1.0, 1.0})
+      to.y() -= 0.013 * std::exp(-(p - Vec3(side * 0.0315, 0.035, 0.075)).squaredNorm() / (0.03 * 0.03));
+    return to;
+  });
+  doll.scene.meshes.resize(1);
+  const rigging::FoundLandmarks found = rigging::find_landmarks(doll.scene, {}, anatomy_of_tests());
+  const Mat4 to_file = found.head.input_to_metres.inverse();
+  for (const char* name :
+       {"exocanthion_left", "exocanthion_right", "endocanthion_left", "endocanthion_right"})
+    EXPECT_LE(
+        1e3 * (transform_point(to_file, found.landmarks.at(name).position) - doll.truth.at(name)).norm(), 5.0)
+        << name;
+}
+
 TEST(AnyHead, DressedWhateverTheMeshesAreCalled) {
   expect_found(dressed(made("adult", as_it_is), {"Body", "Coat", "Hair"}), 2.0, 5.0);
   expect_found(dressed(made("adult", as_it_is), {"mesh_1", "mesh_2", "mesh_3"}), 2.0, 5.0);

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <vector>
+
+#include "builder/spatial/surface_query.h"
+
+namespace fascia::spatial {
+
+/// The plane that a surface is more or less the same on both sides of.
+struct MirrorPlane {
+  Vec3 point = Vec3::Zero(), normal = Vec3::UnitX();  ///< normal: unit, to the left
+  double distance(const Vec3& p) const { return normal.dot(p - point); }
+  Vec3 foot(const Vec3& p) const { return p - distance(p) * normal; }
+  Vec3 image(const Vec3& p) const { return p - 2.0 * distance(p) * normal; }
+  Vec3 turned(const Vec3& way) const { return way - 2.0 * normal.dot(way) * normal; }  ///< of a direction
+};
+
+/// A plane, and how well the surface lies on its own image across it.
+struct MirrorFit {
+  MirrorPlane plane;
+  std::vector<double> apart;  ///< of the places whose image has the surface within reach: how far from it
+
+  /// The distance that one in ten of `apart` exceeds; infinite of none.
+  double most_apart() const;
+};
+
+/// Draws `start` to where `places` on `surface`, mirrored, lie on it (iterative closest points, each pair
+/// measured along the surface's normal: Chen and Medioni 1992; pairs that fit badly count less and less:
+/// Beaton and Tukey 1974). Along the normal, since the front of a face hardly says by its nearest points how
+/// far it lies aside. Images farther than `within` from the surface, or on its other side, say nothing.
+///
+/// `surface`, `places`, `within` and the result are in one unit. `start.normal` is unit; the result's has its
+/// direction, more or less. What too few places determine stays as in `start`.
+MirrorFit fit_mirror_plane(const SurfaceQuery& surface, const std::vector<Vec3>& places,
+                           const MirrorPlane& start, double within);
+
+}  // namespace fascia::spatial

@@ -1,0 +1,207 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "builder/tissue/actuators.h"
+#include "builder/tissue/lids.h"
+#include "sim/realtime/face.h"
+
+namespace fascia::tissue {
+namespace {
+
+constexpr size_t stations = 33;
+constexpr double edge = 0.004;       // metres beside the opening among which a lid's edge is looked for
+constexpr double first = 0.05;       // of the fissure: nearer to a canthus both lids are one
+constexpr double overlap = 0.03;     // radians that a closed upper lid is to reach over the lower one
+constexpr double touching = -0.012;  // radians: more is a slit, for edges are polygons between stations
+constexpr double widest = 2.2;       // radians about the globe: farther round is its socket
+constexpr double slope = 0.06;       // radians a station: how steeply what is added may change along a lid
+
+/// The edges of the head's own mesh that lie along an eye's fissure, and the lid each is of.
+class LidEdges {
+ public:
+  LidEdges(const FaceRegion& region, const Fissure& fissure, bool left) : fissure_(fissure) {
+    const auto& distance =
+        region.opening_distance[static_cast<size_t>(left ? Opening::eye_left : Opening::eye_right)];
+    const auto is_near = [&](size_t v) { return distance[v] < edge; };
+    for (const fascia::Triangle& t : region.mesh.triangles)
+      for (size_t e = 0; e < 3; ++e) {
+        const auto a = static_cast<size_t>(t[e]), b = static_cast<size_t>(t[(e + 1) % 3]);
+        if (!is_near(a) || !is_near(b)) continue;
+        const Vec3 middle = 0.5 * (region.mesh.vertices[a] + region.mesh.vertices[b]);
+        if (std::abs(fissure.elevation(middle)) > widest) continue;
+        edges_.push_back({a, b, fissure.is_upper(middle)});
+      }
+  }
+
+  /// Radians between the lids' edges at each station where the region's vertices stand at `places`: less than
+  /// 0 where the upper lid reaches over the lower one; `none` where there is no edge.
+  std::array<double, stations> gaps(const std::vector<Vec3>& places) const {
+    std::array<double, stations> upper, lower;
+    upper.fill(none);
+    lower.fill(none);
+    constexpr double last = stations - 1;
+    for (const Edge& one : edges_) {
+      Vec3 a = places[one.a], b = places[one.b];
+      if (fissure_.place(a) > fissure_.place(b)) std::swap(a, b);
+      const double from = fissure_.place(a) * last, to = fissure_.place(b) * last;
+      if (!(from < to)) continue;
+      for (double k = std::max(0.0, std::ceil(from)); k <= std::min(last, to); k += 1.0) {
+        const double height = fissure_.elevation(a + (k - from) / (to - from) * (b - a));
+        double& best = (one.is_upper ? upper : lower)[static_cast<size_t>(k)];
+        if (best == none || (one.is_upper ? height < best : height > best)) best = height;
+      }
+    }
+    std::array<double, stations> gaps;
+    for (size_t k = 0; k < stations; ++k)
+      gaps[k] = upper[k] == none || lower[k] == none ? none : upper[k] - lower[k];
+    return gaps;
+  }
+
+  static constexpr double none = 100.0;
+
+ private:
+  struct Edge {
+    size_t a, b;  // of the region
+    bool is_upper;
+  };
+  const Fissure& fissure_;
+  std::vector<Edge> edges_;
+};
+
+/// Where the region's vertices stand when the nodes of `level` stand at `nodes`.
+std::vector<Vec3> posed_region(const FaceRegion& region, const std::vector<Follow>& skin,
+                               const rig::TissueLevel& level, const std::vector<rig::Vec3f>& nodes) {
+  std::vector<Vec3> places = region.mesh.vertices;
+  for (size_t v = 0; v < places.size(); ++v) {
+    const Follow& follow = skin[static_cast<size_t>(region.skin_vertex[v])];
+    for (size_t k = 0; k < Follow::influences; ++k)
+      if (follow.weights[k] != 0.0F)
+        places[v] += static_cast<double>(follow.weights[k]) *
+                     (nodes[follow.nodes[k]] - level.rest[follow.nodes[k]]).cast<double>();
+  }
+  return places;
+}
+
+/// One eye: what its upper lid's columns are turned by at full closing, and what has been added.
+struct Eye {
+  Eye(const TissueInputs& inputs, const FaceRegion& region, bool left)
+      : is_left(left),
+        fissure(inputs, region, left),
+        edges(region, fissure, left),
+        channel(channel_index(inputs.channels, left ? "lid_upper_left" : "lid_upper_right")) {}
+
+  /// Adds what gapes at each station; false when nothing does. What was added in vain, as where not the lids
+  /// are apart but a fold beside them, is taken back.
+  bool widen(const std::vector<Vec3>& places) {
+    constexpr double least_use = 0.08;  // radians closed, of one that was added
+    constexpr double most_gain = 2.0;
+    const auto gaps = edges.gaps(places);
+    bool any = false;
+    for (size_t k = 0; k < stations; ++k) {
+      const double place = static_cast<double>(k) / (stations - 1);
+      if (gaps[k] == LidEdges::none || place < first || place > 1.0 - first) continue;
+      if (given[k] > 0.0) {
+        const double use = (before[k] - gaps[k]) / given[k];
+        if (use < least_use) in_vain[k] = true;
+        gain[k] = std::clamp(1.0 / std::max(use, 1e-3), 1.0, most_gain);
+      }
+      if (in_vain[k]) own[k] = 0.0;
+      given[k] = in_vain[k] || gaps[k] <= touching ? 0.0 : gain[k] * (gaps[k] + overlap);
+      before[k] = gaps[k];
+      if (given[k] == 0.0) continue;
+      own[k] = std::min(added[k] + given[k], most_added(place));
+      any = true;
+    }
+    spread();
+    return any;
+  }
+
+  /// More than this, in radians, would be another fault than the skin's resistance.
+  double most_added(double place) const { return 0.3 + 0.5 * fissure.gap(place); }
+
+  void spread() {
+    for (size_t k = 0; k < stations; ++k) {
+      added[k] = 0.0;
+      for (size_t j = 0; j < stations; ++j)
+        added[k] =
+            std::max(added[k], own[j] - slope * std::abs(static_cast<double>(j) - static_cast<double>(k)));
+    }
+  }
+
+  double added_at(double place) const {
+    const double x = std::clamp(place, 0.0, 1.0) * (stations - 1);
+    const auto k = std::min(static_cast<size_t>(x), stations - 2);
+    const double t = x - static_cast<double>(k);
+    return (1.0 - t) * added[k] + t * added[k + 1];
+  }
+
+  bool is_left;
+  Fissure fissure;
+  LidEdges edges;
+  int channel;
+  std::array<double, stations> added{};  ///< radians at full closing
+  std::array<double, stations> own{};    ///< what each station asks for, before it is spread
+
+ private:
+  std::array<double, stations> before{}, given{}, gain = filled(1.2);
+  std::array<bool, stations> in_vain{};
+
+  static std::array<double, stations> filled(double value) {
+    std::array<double, stations> all;
+    all.fill(value);
+    return all;
+  }
+};
+
+/// Gives both eyes of a head that is the same on both sides what either asks for.
+void share_with_image(Eye& left, Eye& right) {
+  for (size_t k = 0; k < stations; ++k)
+    left.own[k] = right.own[stations - 1 - k] = std::max(left.own[k], right.own[stations - 1 - k]);
+  left.spread();
+  right.spread();
+}
+
+}  // namespace
+
+void settle_lids(const TissueInputs& inputs, const FaceRegion& region, const Columns& c,
+                 const std::vector<Follow>& skin, bool is_mirrored, rig::TissueLevel& level) {
+  constexpr int rounds = 5;
+  if (inputs.blink.empty()) return;
+  std::vector<Eye> eyes;
+  eyes.reserve(2);
+  for (const bool left : {true, false}) {
+    eyes.emplace_back(inputs, region, left);
+    if (eyes.back().fissure.is_closed() || eyes.back().channel < 0) eyes.pop_back();
+  }
+  const auto n = static_cast<size_t>(c.count());
+  const std::vector<float> angles = level.carrier_angle;
+  for (int round = 0; round < rounds && !eyes.empty(); ++round) {
+    const sim::FaceModel model(sim::lattice_of(level), sim::jaw_of(inputs.jaw));
+    if (!model.valid()) return;
+    const sim::realtime::Model fast(model);
+    if (!fast.valid()) return;
+    sim::realtime::Face face(fast, inputs.channels.size());
+    std::vector<rig::Vec3f> nodes(level.rest.size());
+    sim::Controls controls;
+    controls.activations = inputs.blink;
+    face.static_pose(controls, {}, nodes);
+    if (!std::all_of(nodes.begin(), nodes.end(), [](const rig::Vec3f& p) { return p.allFinite(); })) return;
+    const std::vector<Vec3> places = posed_region(region, skin, level, nodes);
+    bool any = false;
+    for (Eye& eye : eyes)
+      any = eye.widen(places) || any;
+    if (!any) return;
+    if (is_mirrored && eyes.size() == 2) share_with_image(eyes[0], eyes[1]);
+    for (size_t k = 0; k < level.carrier_angle.size(); ++k)
+      for (const Eye& eye : eyes) {
+        if (static_cast<int>(level.carrier_channel[k]) != eye.channel) continue;
+        const size_t v = level.carrier_node[k] % n;
+        level.carrier_angle[k] =
+            angles[k] + static_cast<float>(eye.added_at(eye.fissure.place(c.mesh.vertices[v])) *
+                                           closing_share(inputs, c, eye.fissure, v));
+      }
+  }
+}
+
+}  // namespace fascia::tissue
