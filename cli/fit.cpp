@@ -10,6 +10,7 @@
 #include "cli/fit_landmarks.h"
 #include "cli/fit_match.h"
 #include "cli/fit_output.h"
+#include "cli/fit_pictures.h"
 #include "cli/fit_scan.h"
 #include "cli/fit_target.h"
 #include "cli/progress.h"
@@ -24,7 +25,7 @@ namespace {
 
 struct FitRequest {
   std::filesystem::path rig, target, neutral, output, report;
-  std::string level, shape;
+  std::string level, shape, camera;
   FitTargetOptions reading;
   fit::FitOptions fitting;
 };
@@ -101,6 +102,19 @@ void fit_one_scan(const Common& common, const FitRequest& request, const formats
   figures = {{"matched_share", fitted.matched_share}};
 }
 
+void fit_all_pictures(const Common& common, const FitRequest& request, fit::Subject& subject,
+                      FitTargets& targets, std::vector<fit::FitResult>& results,
+                      std::vector<double>& motion) {
+  if (!is_landmark_file(request.target))
+    throw Error("--camera is for landmarks in pictures (.json), not for '" + request.target.string() + "'");
+  PictureFit fitted = fit_pictures(common, request.target, request.neutral, camera_of(request.camera),
+                                   subject, request.fitting);
+  targets = std::move(fitted.targets);
+  check_fit_output(request.output, targets);
+  results = std::move(fitted.results);
+  motion = std::move(fitted.motion);
+}
+
 void fit_targets(const Common& common, const FitRequest& request, fit::Subject& subject, FitTargets& targets,
                  std::vector<fit::FitResult>& results, std::vector<double>& motion) {
   targets = is_landmark_file(request.target)
@@ -130,7 +144,9 @@ void run(const Common& common, const FitRequest& request) {
   std::vector<fit::FitResult> results;
   std::vector<double> motion;
   nlohmann::ordered_json scan_figures;
-  if (const auto scan = scan_of(request, subject))
+  if (!request.camera.empty())
+    fit_all_pictures(common, request, subject, targets, results, motion);
+  else if (const auto scan = scan_of(request, subject))
     fit_one_scan(common, request, *scan, subject, targets, results, motion, scan_figures);
   else
     fit_targets(common, request, subject, targets, results, motion);
@@ -186,6 +202,12 @@ void add_fit(const Command& tool, Common& common) {
       .option("--neutral", &request->neutral,
               "Landmarks of the face at rest by the same detector, for a target of landmarks (.json)")
       .default_text("the rig's own landmarks");
+  command
+      .option("--camera", &request->camera,
+              "For landmarks in pictures, points of two numbers in pixels: focal length of the camera and "
+              "centre of its picture, pixels")
+      .value("FOCAL,X,Y")
+      .default_text("none: points are places");
   command
       .option("--head-pose", &request->reading.head_pose,
               "auto: the head's own motion is taken out where parts that cannot move have moved")

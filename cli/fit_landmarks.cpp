@@ -5,13 +5,11 @@
 #include <cmath>
 #include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "builder/rigging/gltf_source.h"
 #include "builder/spatial/surface_query.h"
+#include "cli/landmark_frames.h"
 #include "cli/still_landmarks.h"
-#include "fit/live/landmark_sets.h"
-#include "formats/landmark_file.h"
 #include "geometry/alignment.h"
 #include "geometry/error.h"
 
@@ -19,106 +17,7 @@ namespace fascia::cli {
 
 namespace {
 
-using PlainJson = nlohmann::json;
-using Points = std::map<std::string, Vec3>;
-
-struct Frame {
-  double time = 0.0;
-  Points points;  ///< file's units
-};
-
-/// Frames of a file of landmarks; one for a file of one face.
-struct LandmarkFrames {
-  std::string units;
-  std::vector<Frame> frames;
-  bool is_take = false;
-};
-
-class Reader {
- public:
-  explicit Reader(const std::filesystem::path& path) : path_(path) {}
-
-  LandmarkFrames read() const {
-    const std::vector<uint8_t> bytes = formats::read_bytes(path_);
-    const PlainJson content = PlainJson::parse(bytes.begin(), bytes.end(), nullptr, false);
-    if (!content.is_object()) fail("it is not a JSON object");
-    LandmarkFrames out;
-    if (content.contains("frames")) {
-      out.units = content.value("units", PlainJson()).is_string() ? content["units"].get<std::string>()
-                                                                  : std::string();
-      out.is_take = true;
-      if (!content["frames"].is_array() || content["frames"].empty())
-        fail("'frames' is not a list with entries");
-      for (const PlainJson& entry : content["frames"])
-        out.frames.push_back(frame(entry, "frame " + std::to_string(out.frames.size())));
-      for (size_t f = 1; f < out.frames.size(); ++f)
-        if (!(out.frames[f].time > out.frames[f - 1].time))
-          fail("the times of its frames do not rise at frame " + std::to_string(f));
-    } else if (content.contains("points")) {
-      out.units = content.value("units", PlainJson()).is_string() ? content["units"].get<std::string>()
-                                                                  : std::string();
-      out.frames = {{0.0, by_number(content["points"], "'points'")}};
-    } else {
-      const formats::LandmarkFile file = formats::read_landmarks(path_);
-      out.units = file.units;
-      out.frames = {{0.0, file.points}};
-    }
-    return out;
-  }
-
- private:
-  [[noreturn]] void fail(const std::string& what) const { throw Error("'" + path_.string() + "': " + what); }
-
-  Vec3 point(const PlainJson& value, const std::string& where) const {
-    Vec3 p = Vec3::Zero();
-    if (!value.is_array() || value.size() != 3) fail(where + " is not three numbers");
-    for (size_t k = 0; k < 3; ++k) {
-      if (!value[k].is_number()) fail(where + " is not three numbers");
-      p[static_cast<Eigen::Index>(k)] = value[k].get<double>();
-    }
-    if (!p.allFinite()) fail(where + " is not three finite numbers");
-    return p;
-  }
-
-  /// The landmarks that a detector's points show; one whose points it has not all seen (null) is left out.
-  Points by_number(const PlainJson& list, const std::string& where) const {
-    static const auto sets = fit::landmark_sets();
-    const auto set = std::find_if(sets.begin(), sets.end(), [&](const fit::LandmarkSet& known) {
-      return list.is_array() && known.points == list.size();
-    });
-    if (set == sets.end())
-      fail(where +
-           " are not the 68 points of iBUG or the 478 of MediaPipe; give others by our names under "
-           "'landmarks'");
-    Points points;
-    for (const fit::LandmarkSet::Entry& entry : set->entries) {
-      if (std::any_of(entry.points.begin(), entry.points.end(),
-                      [&](uint32_t p) { return list[p].is_null(); }))
-        continue;
-      Vec3 sum = Vec3::Zero();
-      for (const uint32_t p : entry.points)
-        sum += point(list[p], where + " " + std::to_string(p));
-      points[entry.landmark] = sum / static_cast<double>(entry.points.size());
-    }
-    return points;
-  }
-
-  Frame frame(const PlainJson& entry, const std::string& where) const {
-    if (!entry.is_object() || !entry.contains("time") || !entry["time"].is_number())
-      fail(where + " has no 'time' in seconds");
-    Frame out{entry["time"].get<double>(), {}};
-    if (entry.contains("points"))
-      out.points = by_number(entry["points"], "the points of " + where);
-    else if (entry.contains("landmarks") && entry["landmarks"].is_object())
-      for (const auto& [name, value] : entry["landmarks"].items())
-        out.points[name] = point(value, "landmark '" + name + "' of " + where);
-    else
-      fail(where + " has neither 'points' nor 'landmarks'");
-    return out;
-  }
-
-  std::filesystem::path path_;
-};
+using Points = NamedPoints;
 
 /// Where our landmarks lie on the rig's skin.
 class SkinLandmarks {
@@ -235,10 +134,13 @@ FitTargets landmark_targets(const Common& common, const std::filesystem::path& p
                             const std::filesystem::path& neutral, const fit::Subject& subject,
                             const FitTargetOptions& options) {
   const auto maker = std::make_shared<LandmarkTargetMaker>(subject, options.head_pose != "fixed");
-  const auto file = std::make_shared<LandmarkFrames>(Reader(path).read());
+  const auto file = std::make_shared<LandmarkFrames>(read_landmark_frames(path));
+  if (file->is_flat)
+    throw Error("'" + path.string() +
+                "': its points have two numbers, as those of a picture: say by --camera what took it");
   const auto rest = std::make_shared<Points>();
   if (!neutral.empty()) {
-    const LandmarkFrames at_rest = Reader(neutral).read();
+    const LandmarkFrames at_rest = read_landmark_frames(neutral);
     *rest = maker->in_metres(at_rest.frames.front().points, at_rest.units);
     if (rest->size() < 4)
       throw Error("'" + neutral.string() + "': fewer than four of its landmarks are known");

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 
 #include "geometry/error.h"
@@ -63,25 +64,30 @@ auto with_json_errors(const formats::Scene& scene, Work work) {
   }
 }
 
+/// One morph target of a primitive; none when it moves nothing.
+std::optional<ShapePart> read_part(const Accessors& accessors, size_t mesh, size_t primitive, size_t target) {
+  const PlainJson& holder = accessors.gltf().at("meshes")[mesh].at("primitives")[primitive];
+  const PlainJson targets = holder.value("targets", PlainJson::array());
+  if (target >= targets.size() || !targets[target].contains("POSITION")) return {};
+  ShapePart part{static_cast<int>(mesh), static_cast<int>(primitive), {}};
+  const std::vector<float> flat = accessors.read(targets[target]["POSITION"].get<size_t>());
+  for (size_t i = 0; i + 2 < flat.size(); i += 3)
+    part.displacements.emplace_back(flat[i], flat[i + 1], flat[i + 2]);
+  return part;
+}
+
 std::vector<Shape> read_shapes(const formats::Scene& scene) {
   const Accessors accessors(scene);
   std::vector<Shape> shapes;
   std::map<std::string, size_t> known;
   const PlainJson meshes = accessors.gltf().value("meshes", PlainJson::array());
   for (size_t m = 0; m < meshes.size(); ++m)
-    for (size_t p = 0; p < meshes[m].at("primitives").size(); ++p) {
-      const PlainJson targets = meshes[m]["primitives"][p].value("targets", PlainJson::array());
-      for (size_t t = 0; t < targets.size(); ++t) {
-        const std::string name = target_name(meshes[m], t);
-        const auto [at, is_new] = known.try_emplace(name, shapes.size());
-        if (is_new) shapes.push_back({name, {}});
-        if (!targets[t].contains("POSITION")) continue;
-        ShapePart part{static_cast<int>(m), static_cast<int>(p), {}};
-        const std::vector<float> flat = accessors.read(targets[t]["POSITION"].get<size_t>());
-        for (size_t i = 0; i + 2 < flat.size(); i += 3)
-          part.displacements.emplace_back(flat[i], flat[i + 1], flat[i + 2]);
-        shapes[at->second].parts.push_back(std::move(part));
-      }
+    for (size_t t = 0; t < target_count(meshes[m]); ++t) {
+      const std::string name = target_name(meshes[m], t);
+      const auto [at, is_new] = known.try_emplace(name, shapes.size());
+      if (is_new) shapes.push_back({name, {}});
+      for (size_t p = 0; p < meshes[m].at("primitives").size(); ++p)
+        if (auto part = read_part(accessors, m, p, t)) shapes[at->second].parts.push_back(std::move(*part));
     }
   return shapes;
 }
@@ -117,12 +123,9 @@ struct WeightKeys {
   }
 };
 
-ShapeCurves read_curves(const formats::Scene& scene, const std::vector<Shape>& shapes) {
+ShapeCurves read_curves(const formats::Scene& scene) {
   const Accessors accessors(scene);
   const PlainJson& gltf = accessors.gltf();
-  std::map<std::string, size_t> index;
-  for (size_t s = 0; s < shapes.size(); ++s)
-    index[shapes[s].name] = s;
   ShapeCurves curves;
   for (const PlainJson& animation : gltf.value("animations", PlainJson::array())) {
     std::vector<std::pair<size_t, WeightKeys>> channels;  // mesh
@@ -150,12 +153,18 @@ ShapeCurves read_curves(const formats::Scene& scene, const std::vector<Shape>& s
       channels.emplace_back(mesh, std::move(keys));
     }
     if (channels.empty()) continue;
+    for (const auto& [mesh, keys] : channels)
+      for (size_t t = 0; t < keys.width; ++t) {
+        Shape& shape = curves.shapes.emplace_back(Shape{target_name(gltf.at("meshes").at(mesh), t), {}});
+        for (size_t p = 0; p < gltf.at("meshes").at(mesh).at("primitives").size(); ++p)
+          if (auto part = read_part(accessors, mesh, p, t)) shape.parts.push_back(std::move(*part));
+      }
     curves.times.assign(times.begin(), times.end());
     for (const double time : curves.times) {
-      std::vector<double>& weights = curves.weights.emplace_back(shapes.size(), 0.0);
+      std::vector<double>& weights = curves.weights.emplace_back();
       for (const auto& [mesh, keys] : channels)
         for (size_t t = 0; t < keys.width; ++t)
-          weights[index.at(target_name(gltf.at("meshes").at(mesh), t))] = keys.at(time, t) - keys.base[t];
+          weights.push_back(keys.at(time, t) - keys.base[t]);
     }
     return curves;
   }
@@ -169,9 +178,9 @@ std::vector<Shape> morph_shapes(const formats::Scene& scene) {
   return with_json_errors(scene, [&] { return read_shapes(scene); });
 }
 
-ShapeCurves shape_curves(const formats::Scene& scene, const std::vector<Shape>& shapes) {
-  if (scene.document.json.empty() || shapes.empty()) return {};
-  return with_json_errors(scene, [&] { return read_curves(scene, shapes); });
+ShapeCurves shape_curves(const formats::Scene& scene) {
+  if (scene.document.json.empty()) return {};
+  return with_json_errors(scene, [&] { return read_curves(scene); });
 }
 
 }  // namespace fascia::cli

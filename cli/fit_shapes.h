@@ -19,8 +19,10 @@ struct Shape {
   std::vector<ShapePart> parts;
 };
 
-/// When each shape weighs how much: of the file's first animation that moves weights.
+/// When each shape weighs how much: of the file's first animation that moves weights. Meshes are animated
+/// each on its own, whatever their morph targets are called, so that here every mesh has its own shapes.
 struct ShapeCurves {
+  std::vector<Shape> shapes;                 ///< one a morph target of an animated mesh
   std::vector<double> times;                 ///< seconds, rising
   std::vector<std::vector<double>> weights;  ///< by time, one a shape: beyond the base mesh's
 };
@@ -29,7 +31,7 @@ struct ShapeCurves {
 /// when an accessor is damaged or of a kind that is not read here.
 std::vector<Shape> morph_shapes(const formats::Scene& scene);
 
-/// Key frames of the weights of `shapes`; empty when nothing moves them. Throws as `morph_shapes`.
-ShapeCurves shape_curves(const formats::Scene& scene, const std::vector<Shape>& shapes);
+/// Key frames of the weights of morph targets; empty when nothing moves them. Throws as `morph_shapes`.
+ShapeCurves shape_curves(const formats::Scene& scene);
 
 }  // namespace fascia::cli

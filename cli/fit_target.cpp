@@ -55,39 +55,77 @@ FitTargets sequence_targets(const std::filesystem::path& folder, const TargetMak
 }
 
 /// Targets of a glTF file's morph targets, alone or as its animation weighs them.
-struct MorphTargets {
-  std::vector<fit::Target> shapes;  ///< displacements from the file's base mesh
-  fit::Target base;
-
+class MorphTargets {
+ public:
   MorphTargets(const formats::Scene& scene, const std::vector<Shape>& list, const TargetMaker& maker)
       : base(maker.of_scene(scene)) {
-    const fit::Subject& subject = maker.subject();
-    const std::vector<Match> found = matches(scene, subject);
+    const std::vector<Match> found = matches(scene, maker.subject());
     for (const Shape& shape : list) {
-      fit::Target target = base;
-      target.displacements.setZero();
+      shapes_.emplace_back();
       for (const ShapePart& part : shape.parts)
-        for (const Match& match : found) {
-          const formats::SceneMesh& mesh = scene.meshes[match.mesh];
-          if (mesh.mesh != part.mesh || mesh.primitive != part.primitive) continue;
-          if (part.displacements.size() != mesh.positions.size())
-            throw Error("'" + scene.path.string() + "': the morph target '" + shape.name +
-                        "' has another number of vertices than its mesh");
-          const Mat3 linear =
-              maker.to_metres(scene).topLeftCorner<3, 3>() * mesh.to_file.topLeftCorner<3, 3>();
-          for (size_t v = 0; v < match.point.size(); ++v)
-            target.displacements.segment<3>(
-                static_cast<Eigen::Index>(3 * (subject.first_vertex(match.primitive) + v))) =
-                linear * part.displacements[match.point[v]];
-        }
-      shapes.push_back(std::move(target));
+        for (const Match& match : found)
+          add(scene, shape.name, part, match, maker);
     }
   }
 
+  /// Adds the displacements of a shape, `weight` times.
+  void add(size_t shape, double weight, fit::Target& target) const {
+    for (const Piece& piece : shapes_[shape])
+      target.displacements.segment(piece.first, piece.moved.size()) += weight * piece.moved;
+  }
+  fit::Target of_shape(size_t shape) const {
+    fit::Target target = base;
+    target.displacements.setZero();
+    add(shape, 1.0, target);
+    return target;
+  }
   double base_motion() const {
     return base.displacements.size() > 0 ? base.displacements.cwiseAbs().maxCoeff() : 0.0;
   }
+
+  fit::Target base;
+
+ private:
+  struct Piece {
+    Eigen::Index first;     ///< coordinate of the subject
+    Eigen::VectorXd moved;  ///< from the file's base mesh
+  };
+
+  void add(const formats::Scene& scene, const std::string& name, const ShapePart& part, const Match& match,
+           const TargetMaker& maker) {
+    const formats::SceneMesh& mesh = scene.meshes[match.mesh];
+    if (mesh.mesh != part.mesh || mesh.primitive != part.primitive) return;
+    if (part.displacements.size() != mesh.positions.size())
+      throw Error("'" + scene.path.string() + "': the morph target '" + name +
+                  "' has another number of vertices than its mesh");
+    const Mat3 linear = maker.to_metres(scene).topLeftCorner<3, 3>() * mesh.to_file.topLeftCorner<3, 3>();
+    Piece piece{static_cast<Eigen::Index>(3 * maker.subject().first_vertex(match.primitive)),
+                Eigen::VectorXd(3 * static_cast<Eigen::Index>(match.point.size()))};
+    for (size_t v = 0; v < match.point.size(); ++v)
+      piece.moved.segment<3>(static_cast<Eigen::Index>(3 * v)) = linear * part.displacements[match.point[v]];
+    shapes_.back().push_back(std::move(piece));
+  }
+
+  std::vector<std::vector<Piece>> shapes_;
 };
+
+/// A target for every key of a file's animated morph targets.
+FitTargets animation_targets(const formats::Scene& scene, ShapeCurves&& read, const TargetMaker& maker) {
+  const auto curves = std::make_shared<const ShapeCurves>(std::move(read));
+  const auto morphs = std::make_shared<const MorphTargets>(scene, curves->shapes, maker);
+  FitTargets targets;
+  targets.kind = FitTargets::Kind::take;
+  targets.times = curves->times;
+  for (size_t f = 0; f < curves->times.size(); ++f)
+    targets.names.push_back("frame " + std::to_string(f));
+  targets.target = [morphs, curves, maker](size_t frame) {
+    fit::Target target = morphs->base;
+    for (size_t s = 0; s < curves->shapes.size(); ++s)
+      if (curves->weights[frame][s] != 0.0) morphs->add(s, curves->weights[frame][s], target);
+    return maker.finished(std::move(target));
+  };
+  return targets;
+}
 
 }  // namespace
 
@@ -107,24 +145,12 @@ FitTargets open_fit_targets(const Common& common, const std::filesystem::path& p
     targets.target = [scene, maker](size_t) { return maker.of_scene(*scene); };
     return targets;
   }
-  const auto morphs = std::make_shared<MorphTargets>(*scene, shapes, maker);
-  const auto curves = std::make_shared<ShapeCurves>(shape_curves(*scene, shapes));
-  if (options.as == "take" && curves->times.empty())
+  ShapeCurves curves = options.as == "shapes" ? ShapeCurves{} : shape_curves(*scene);
+  if (options.as == "take" && curves.times.empty())
     throw Error("'" + path.string() + "' has no animation of morph weights: use --as shapes");
-  if (options.as == "take" || (options.as == "auto" && curves->times.size() > 1)) {
-    targets.kind = FitTargets::Kind::take;
-    targets.times = curves->times;
-    for (size_t f = 0; f < curves->times.size(); ++f)
-      targets.names.push_back("frame " + std::to_string(f));
-    targets.target = [morphs, curves, maker](size_t frame) {
-      fit::Target target = morphs->base;
-      for (size_t s = 0; s < morphs->shapes.size(); ++s)
-        if (curves->weights[frame][s] != 0.0)
-          target.displacements += curves->weights[frame][s] * morphs->shapes[s].displacements;
-      return maker.finished(std::move(target));
-    };
-    return targets;
-  }
+  if (options.as == "take" || curves.times.size() > 1)
+    return animation_targets(*scene, std::move(curves), maker);
+  const auto morphs = std::make_shared<const MorphTargets>(*scene, shapes, maker);
   if (options.as == "auto" && morphs->base_motion() > 1e-4) {  // a posed head that has morph targets besides
     common.warn("'" + path.string() +
                 "' is posed and has morph targets: the pose is fitted; use --as shapes for the "
@@ -136,7 +162,7 @@ FitTargets open_fit_targets(const Common& common, const std::filesystem::path& p
   targets.kind = FitTargets::Kind::shapes;
   for (const Shape& shape : shapes)
     targets.names.push_back(shape.name);
-  targets.target = [morphs](size_t index) { return morphs->shapes[index]; };
+  targets.target = [morphs](size_t index) { return morphs->of_shape(index); };
   return targets;
 }
 

@@ -33,7 +33,9 @@ class Subject {
   /// From a primitive's own coordinates to metres.
   Eigen::Matrix4d to_metres(size_t primitive) const;
 
+  size_t level() const { return level_; }  ///< of the rig's tissue
   const sim::FaceModel& model() const { return *model_; }
+  const sim::realtime::Model& realtime_model() const { return *fast_model_; }
   /// How vertices follow nodes: #vertices x #nodes.
   const Eigen::SparseMatrix<double, Eigen::RowMajor>& weights() const { return weights_; }
   const std::vector<float>& jaw_shares() const { return jaw_shares_; }  ///< #vertices

@@ -7,7 +7,11 @@
 
 namespace fascia::sim {
 
-using Panel = Eigen::Map<const Eigen::MatrixXd>;
+namespace {
+
+constexpr Eigen::Index at_once = 32;  // columns that the cache holds of all rows
+
+}  // namespace
 
 void FrontFactor::analyse(const Matrix& matrix, const Positions& places) {
   std::vector<Eigen::Triplet<double>> pairs;
@@ -70,7 +74,7 @@ bool FrontFactor::factor_front(size_t index) {
   const Front& front = fronts_[index];
   const auto& order = dissection_->order();
   const Eigen::Index size = front.width + front.below;
-  Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(size, size);
+  Dense dense = Dense::Zero(size, size);
   for (uint32_t c = 0; c < nodes.width; ++c)
     local_[nodes.first + c] = 3 * c;
   for (uint32_t r = 0; r < nodes.rows.size(); ++r)
@@ -83,12 +87,12 @@ bool FrontFactor::factor_front(size_t index) {
         const uint32_t other = position_[row / 3];
         if (other < nodes.first + c) continue;  // it took the block along
         dense(static_cast<Eigen::Index>(local_[other] + row % 3), static_cast<Eigen::Index>(3 * c) + k) +=
-            e.value();
+            static_cast<float>(e.value());
       }
   }
   for (const uint32_t child : front.children) {
     const auto& rows = dissection_->fronts()[child].rows;
-    const Eigen::MatrixXd& from = left_[child];
+    const Dense& from = left_[child];
     for (size_t c = 0; c < rows.size(); ++c)
       for (size_t r = c; r < rows.size(); ++r)
         dense.block<3, 3>(local_[rows[r]], local_[rows[c]]) +=
@@ -96,13 +100,13 @@ bool FrontFactor::factor_front(size_t index) {
     left_[child].resize(0, 0);
   }
   auto diagonal = dense.topLeftCorner(front.width, front.width);
-  const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>, Eigen::Lower> cholesky(diagonal);  // in place
+  const Eigen::LLT<Eigen::Ref<Dense>, Eigen::Lower> cholesky(diagonal);  // in place
   if (cholesky.info() != Eigen::Success) return false;
   auto under = dense.bottomLeftCorner(front.below, front.width);
   diagonal.triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(under);
-  dense.bottomRightCorner(front.below, front.below).selfadjointView<Eigen::Lower>().rankUpdate(under, -1.0);
+  dense.bottomRightCorner(front.below, front.below).selfadjointView<Eigen::Lower>().rankUpdate(under, -1.0F);
   left_[index] = dense.bottomRightCorner(front.below, front.below);
-  Eigen::Map<Eigen::MatrixXd>(values_.data() + front.values, size, front.width) = dense.leftCols(front.width);
+  Eigen::Map<Dense>(values_.data() + front.values, size, front.width) = dense.leftCols(front.width);
   return true;
 }
 
@@ -128,33 +132,62 @@ bool FrontFactor::compute(const Matrix& matrix, const Positions& places) {
   return is_sound_;
 }
 
-Eigen::MatrixXd FrontFactor::solve(const Eigen::MatrixXd& right) const {
-  constexpr Eigen::Index at_once = 32;  // columns that the cache holds of all rows
-  Eigen::MatrixXd solution(right.rows(), right.cols());
+FrontFactor::Dense FrontFactor::solve(const Dense& right) const {
+  return backward(forward(right));
+}
+
+FrontFactor::Dense FrontFactor::forward(const Dense& right) const {
+  const auto& order = dissection_->order();
+  Dense halfway(right.cols(), right.rows());
   for (Eigen::Index first = 0; first < right.cols(); first += at_once) {
     const Eigen::Index count = std::min(at_once, right.cols() - first);
-    solve_some(right.middleCols(first, count), solution.middleCols(first, count));
+    Dense x(count, right.rows());
+    for (size_t k = 0; k < order.size(); ++k)
+      x.middleCols<3>(static_cast<Eigen::Index>(3 * k)) =
+          right.block(static_cast<Eigen::Index>(3 * order[k]), first, 3, count).transpose();
+    go_forward(x);
+    halfway.middleRows(first, count) = x;
+  }
+  return halfway;
+}
+
+FrontFactor::Dense FrontFactor::backward(const Dense& halfway) const {
+  const auto& order = dissection_->order();
+  Dense solution(halfway.cols(), halfway.rows());
+  for (Eigen::Index first = 0; first < halfway.rows(); first += at_once) {
+    const Eigen::Index count = std::min(at_once, halfway.rows() - first);
+    Dense x = halfway.middleRows(first, count);
+    go_backward(x);
+    for (size_t k = 0; k < order.size(); ++k)
+      solution.block(static_cast<Eigen::Index>(3 * order[k]), first, 3, count) =
+          x.middleCols<3>(static_cast<Eigen::Index>(3 * k)).transpose();
   }
   return solution;
 }
 
-void FrontFactor::solve_some(const Eigen::Ref<const Eigen::MatrixXd>& right,
-                             Eigen::Ref<Eigen::MatrixXd> solution) const {
-  const auto& order = dissection_->order();
-  // Transposed, so that all of a row lie together: rows are gathered and scattered. Of the largest front's
-  // size at once: Eigen 3.4 frees a matrix twice when memory runs out while it is made larger.
-  Eigen::Index most_below = 0;
+// Rows of the largest front, for memory to be taken once: Eigen 3.4 frees a matrix twice when memory runs out
+// while it is made larger.
+Eigen::Index FrontFactor::most_below() const {
+  Eigen::Index most = 0;
   for (const Front& front : fronts_)
-    most_below = std::max<Eigen::Index>(most_below, front.below);
-  Eigen::MatrixXd x(right.cols(), right.rows()), below(right.cols(), most_below);
-  for (size_t k = 0; k < order.size(); ++k)
-    x.middleCols<3>(static_cast<Eigen::Index>(3 * k)) =
-        right.middleRows<3>(static_cast<Eigen::Index>(3 * order[k])).transpose();
+    most = std::max(most, front.below);
+  return most;
+}
+
+FrontFactor::Panel FrontFactor::panel_of(size_t front) const {
+  const Front& f = fronts_[front];
+  return {values_.data() + f.values, f.width + f.below, f.width};
+}
+
+/// `x` has a row a right-hand side, so that all of a node lie together: nodes are gathered and scattered.
+void FrontFactor::go_forward(Dense& x) const {
+  Dense below(x.rows(), most_below());
   for (size_t f = 0; f < fronts_.size(); ++f) {
     const Front& front = fronts_[f];
     const auto& nodes = dissection_->fronts()[f];
-    const Panel panel(values_.data() + front.values, front.width + front.below, front.width);
     auto here = x.middleCols(static_cast<Eigen::Index>(3 * nodes.first), front.width);
+    if (here.isZero(0.0F)) continue;  // none of them reaches this far down
+    const Panel panel = panel_of(f);
     panel.topRows(front.width)
         .triangularView<Eigen::Lower>()
         .transpose()
@@ -166,10 +199,14 @@ void FrontFactor::solve_some(const Eigen::Ref<const Eigen::MatrixXd>& right,
       x.middleCols<3>(static_cast<Eigen::Index>(3 * nodes.rows[r])) -=
           bottom.middleCols<3>(static_cast<Eigen::Index>(3 * r));
   }
+}
+
+void FrontFactor::go_backward(Dense& x) const {
+  Dense below(x.rows(), most_below());
   for (size_t f = fronts_.size(); f-- > 0;) {
     const Front& front = fronts_[f];
     const auto& nodes = dissection_->fronts()[f];
-    const Panel panel(values_.data() + front.values, front.width + front.below, front.width);
+    const Panel panel = panel_of(f);
     auto here = x.middleCols(static_cast<Eigen::Index>(3 * nodes.first), front.width);
     if (front.below > 0) {
       auto bottom = below.leftCols(front.below);
@@ -180,9 +217,6 @@ void FrontFactor::solve_some(const Eigen::Ref<const Eigen::MatrixXd>& right,
     }
     panel.topRows(front.width).triangularView<Eigen::Lower>().solveInPlace<Eigen::OnTheRight>(here);
   }
-  for (size_t k = 0; k < order.size(); ++k)
-    solution.middleRows<3>(static_cast<Eigen::Index>(3 * order[k])) =
-        x.middleCols<3>(static_cast<Eigen::Index>(3 * k)).transpose();
 }
 
 }  // namespace fascia::sim

@@ -52,6 +52,9 @@ void add_plates(const std::vector<Curvature::Plate>& plates, Blocks& blocks) {
   }
 }
 
+/// What a fibre's pull must add to the stiffness along itself to count: a share of what is there without it.
+constexpr float least_pull = 0.03F;
+
 bool is_held(uint8_t anchor) {
   const auto kind = static_cast<FibreAnchor>(anchor);
   return kind == FibreAnchor::cranium || kind == FibreAnchor::mandible;
@@ -137,17 +140,19 @@ bool Sensitivity::advance(double work) {
 /// Some columns of what the factor makes of the pulls; true when there are no more.
 bool Sensitivity::solve_pulls(double work) {
   if (pulls_.cols() == 0) return true;
-  const double a_column = 2.0 * static_cast<double>(factor_.entries());
+  const double a_column = static_cast<double>(factor_.entries());
   const Eigen::Index left = pulls_.cols() - pulls_done_,
                      count = work < a_column * static_cast<double>(left)
                                  ? std::max<Eigen::Index>(1, static_cast<Eigen::Index>(work / a_column))
                                  : left;
-  solved_pulls_.middleCols(pulls_done_, count) =
-      factor_.solve(Eigen::MatrixXd(pulls_.middleCols(pulls_done_, count)));
+  const FrontFactor::Dense halfway =
+      factor_.forward(Eigen::MatrixXd(pulls_.middleCols(pulls_done_, count)).cast<float>());
+  for (Eigen::Index row = 0; row < count; ++row)
+    if (halfway.row(row).squaredNorm() > least_pull) halfway_pulls_.row(pulls_kept_++) = halfway.row(row);
   pulls_done_ += count;
   if (pulls_done_ < pulls_.cols()) return false;
-  Eigen::MatrixXd small = pulls_.transpose() * solved_pulls_;
-  small.diagonal().array() += 1.0;
+  FrontFactor::Dense small = FrontFactor::Dense::Identity(pulls_kept_, pulls_kept_);
+  small.selfadjointView<Eigen::Lower>().rankUpdate(halfway_pulls_.topRows(pulls_kept_));
   pull_factor_.compute(small);
   return true;
 }
@@ -297,14 +302,17 @@ void Sensitivity::gather_pulls() {
   }
   pulls_.resize(size, static_cast<Eigen::Index>(curvature_.pulls.size()));
   pulls_.setFromTriplets(list.begin(), list.end());
-  solved_pulls_.resize(size, pulls_.cols());
-  pulls_done_ = 0;
+  halfway_pulls_.resize(pulls_.cols(), size);
+  pulls_done_ = pulls_kept_ = 0;
 }
 
 Eigen::MatrixXd Sensitivity::solve(const Eigen::MatrixXd& right) const {
-  Eigen::MatrixXd solution = factor_.solve(right);
-  if (pulls_.cols() > 0) solution -= solved_pulls_ * pull_factor_.solve(pulls_.transpose() * solution);
-  return solution;
+  FrontFactor::Dense halfway = factor_.forward(right.cast<float>());
+  if (pulls_kept_ > 0) {
+    const auto pulls = halfway_pulls_.topRows(pulls_kept_);
+    halfway.noalias() -= pull_factor_.solve(pulls * halfway.transpose()).transpose() * pulls;
+  }
+  return factor_.backward(halfway).cast<double>();
 }
 
 Eigen::MatrixXd Sensitivity::columns(std::span<const uint32_t> channels) const {

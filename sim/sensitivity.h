@@ -78,11 +78,11 @@ class Sensitivity {
   bool is_held_up_ = false;   ///< the last matrix has had more of the rest stiffness than it wants
   Positions unknown_places_;  ///< at rest
   // Fibres' pulls, which couple all nodes along them, are kept out of the factor and brought back by the
-  // identity of Sherman, Morrison and Woodbury.
+  // identity of Sherman, Morrison and Woodbury; half of each solve is enough for that.
   Eigen::SparseMatrix<double> pulls_;
-  Eigen::MatrixXd solved_pulls_;
-  Eigen::Index pulls_done_ = 0;  ///< columns of it
-  Eigen::LDLT<Eigen::MatrixXd> pull_factor_;
+  FrontFactor::Dense halfway_pulls_;  ///< FrontFactor::forward of those that count, from the first row on
+  Eigen::Index pulls_done_ = 0, pulls_kept_ = 0;
+  Eigen::LLT<FrontFactor::Dense> pull_factor_;
   mutable Positions work_, direction_, product_;
 };
 

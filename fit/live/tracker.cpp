@@ -122,7 +122,7 @@ Tracker::Tracker(const sim::FaceModel& model, const sim::realtime::Model& fast_m
   const auto count = static_cast<Eigen::Index>(fitted_.size());
   move_ = Eigen::VectorXd::Zero(count);
   system_ = std::make_unique<System>(static_cast<Eigen::Index>(landmarks_.size()), count);
-  result_.landmarks = places_;
+  result_.landmarks = result_.at_rest = places_;
   result_.activations = rest_;
   renewed_ = std::make_unique<LandmarkJacobian>(model, landmarks_, fitted_);
   reach_.resize(static_cast<Eigen::Index>(landmarks_.size()), count);
@@ -377,8 +377,10 @@ void Tracker::report(std::span<const Vec3> points, std::span<const double> weigh
   result_.activations = values_;
   result_.head = head_;
   result_.rms_mm = std::sqrt(mean_square(points, weights));
-  for (size_t l = 0; l < landmarks_.size(); ++l)
+  for (size_t l = 0; l < landmarks_.size(); ++l) {
     result_.landmarks[l] = head_ * (places_[l] + offsets_[l]);
+    result_.at_rest[l] = head_ * (landmarks_[l].rest + offsets_[l]);
+  }
 }
 
 }  // namespace fascia::fit

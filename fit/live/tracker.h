@@ -31,6 +31,7 @@ struct Tracked {
   std::vector<float> activations;  ///< one a channel of the rig
   HeadPose head;                   ///< from the rig's metres to the space of the points
   std::vector<Vec3> landmarks;     ///< #landmarks: where the fitted face has them, in the space of the points
+  std::vector<Vec3> at_rest;       ///< the same of the face at rest in the same pose
   double rms_mm = 0.0;             ///< root weighted mean square distance left, on the head
   uint32_t seen = 0;               ///< landmarks that counted
 };

@@ -162,7 +162,7 @@ TEST_F(Fit, ToolFitsShapesAndTakes) {
   const cli::Outcome take =
       run("fit " + at("rig.glb") + " --target " + at("play.glb") + " -o " + at("take.csv") + " --json");
   ASSERT_EQ(take.code, 0) << take.err;
-  EXPECT_GT(json::parse(take.out)["share"].get<double>(), 0.9);
+  EXPECT_GT(json::parse(take.out)["share"].get<double>(), 0.99);
   EXPECT_EQ(run("play " + at("rig.glb") + " --curves " + at("take.csv") + " -o " + at("again.glb")).code, 0);
 
   ASSERT_EQ(run("bake " + at("rig.glb") + " --shapes visemes -o " + at("shapes.glb")).code, 0);
