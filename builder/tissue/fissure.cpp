@@ -12,8 +12,6 @@ namespace fascia::tissue {
 namespace {
 
 constexpr size_t steps = 33;
-constexpr double edge = 0.004;  // metres of skin beside the opening among which a lid's edge is looked for
-constexpr double widest = 2.2;  // radians about the globe: wider than the largest eyes of drawn figures
 
 }  // namespace
 

@@ -10,6 +10,10 @@ namespace fascia::tissue {
 /// and where it lies between the canthi.
 class Fissure {
  public:
+  static constexpr double edge = 0.004;  ///< metres of skin beside the opening that hold a lid's edge
+  /// Radians about the globe: wider than the largest eyes of drawn figures; farther round is its socket.
+  static constexpr double widest = 2.2;
+
   /// From the lids' landmarks and the skin's own edge in `region`.
   Fissure(const TissueInputs& inputs, const FaceRegion& region, bool left);
 

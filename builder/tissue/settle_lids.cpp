@@ -10,11 +10,9 @@ namespace fascia::tissue {
 namespace {
 
 constexpr size_t stations = 33;
-constexpr double edge = 0.004;       // metres beside the opening among which a lid's edge is looked for
 constexpr double first = 0.05;       // of the fissure: nearer to a canthus both lids are one
 constexpr double overlap = 0.03;     // radians that a closed upper lid is to reach over the lower one
 constexpr double touching = -0.012;  // radians: more is a slit, for edges are polygons between stations
-constexpr double widest = 2.2;       // radians about the globe: farther round is its socket
 constexpr double slope = 0.06;       // radians a station: how steeply what is added may change along a lid
 
 /// The edges of the head's own mesh that lie along an eye's fissure, and the lid each is of.
@@ -23,13 +21,13 @@ class LidEdges {
   LidEdges(const FaceRegion& region, const Fissure& fissure, bool left) : fissure_(fissure) {
     const auto& distance =
         region.opening_distance[static_cast<size_t>(left ? Opening::eye_left : Opening::eye_right)];
-    const auto is_near = [&](size_t v) { return distance[v] < edge; };
+    const auto is_near = [&](size_t v) { return distance[v] < Fissure::edge; };
     for (const fascia::Triangle& t : region.mesh.triangles)
       for (size_t e = 0; e < 3; ++e) {
         const auto a = static_cast<size_t>(t[e]), b = static_cast<size_t>(t[(e + 1) % 3]);
         if (!is_near(a) || !is_near(b)) continue;
         const Vec3 middle = 0.5 * (region.mesh.vertices[a] + region.mesh.vertices[b]);
-        if (std::abs(fissure.elevation(middle)) > widest) continue;
+        if (std::abs(fissure.elevation(middle)) > Fissure::widest) continue;
         edges_.push_back({a, b, fissure.is_upper(middle)});
       }
   }
