@@ -11,10 +11,10 @@ namespace fascia::cli {
 ///     {"units": "mm", "frames": [{"time": 0.0, "points": [...]}, ...]}         a take
 ///     {"units": "mm", "frames": [{"time": 0.0, "landmarks": {NAME: [x, y, z]}}, ...]}
 ///
-/// in the axes of the file the rig was built from. (Points of two numbers: see fit_pictures.h.) `neutral`: the same landmarks on the face at rest, by the
-/// same detector, whose places on the skin then need not be ours; empty: none. Where still landmarks have
-/// moved, the head's own motion is taken out unless `options` say otherwise. `subject` must outlive the
-/// result. Throws fascia::Error naming file and entry.
+/// in the axes of the file the rig was built from. (Points of two numbers: see fit_pictures.h.) `neutral`:
+/// the same landmarks on the face at rest, by the same detector, whose places on the skin then need not be
+/// ours; empty: none. Where still landmarks have moved, the head's own motion is taken out unless `options`
+/// say otherwise. `subject` must outlive the result. Throws fascia::Error naming file and entry.
 FitTargets landmark_targets(const Common& common, const std::filesystem::path& path,
                             const std::filesystem::path& neutral, const fit::Subject& subject,
                             const FitTargetOptions& options);

