@@ -23,21 +23,13 @@ std::vector<Vec3> places_of(const TriangleMesh& skin, const std::map<std::string
 
 /// The plane between the landmarks of both sides.
 spatial::MirrorPlane between(const std::map<std::string, Vec3>& landmarks) {
-  spatial::MirrorPlane plane;
-  Vec3 across = Vec3::Zero();
-  int pairs = 0;
+  std::vector<std::pair<Vec3, Vec3>> pairs;
   for (const auto& [name, p] : landmarks) {
     if (!name.ends_with("_left")) continue;
     const auto other = landmarks.find(name.substr(0, name.size() - 5) + "_right");
-    if (other == landmarks.end()) continue;
-    across += p - other->second;
-    plane.point += 0.5 * (p + other->second);
-    ++pairs;
+    if (other != landmarks.end()) pairs.emplace_back(p, other->second);
   }
-  if (pairs == 0) return plane;
-  plane.point /= pairs;
-  if (across.norm() > 0.0) plane.normal = across.normalized();
-  return plane;
+  return spatial::plane_between(pairs).value_or(spatial::MirrorPlane{});
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace fascia::check {
 /// Places of the skin and, across the midplane, the places that are their mirror images.
 ///
 /// The midplane begins between the landmarks of both sides and is then drawn to where the face lies on its
-/// own mirror image , since landmarks are found with a
+/// own mirror image (spatial::fit_mirror_plane), since landmarks are found with a
 /// millimetre's error. The places are the landmarks and some hundred vertices of the front; one that has no
 /// skin within 2.5 mm of its image, on a face that is not a mirror image itself, is left out.
 class MirrorPoints {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <map>
 #include <memory>
 #include <set>
 
@@ -19,7 +18,6 @@ namespace {
 constexpr size_t fewest = 6;      // landmarks that tell where a head is before a camera
 constexpr int most_repeats = 40;  // of the first picture
 constexpr double settled = 1e-3;  // of an activation
-constexpr double moves = 5e-4;    // metres: landmarks that do count for the mean error
 
 /// The landmarks that files show, on the rig's skin.
 struct SeenLandmarks {
@@ -73,12 +71,6 @@ fit::TrackerOptions tracker_options(const fit::FitOptions& chosen, const fit::Ca
   return options;
 }
 
-/// From a place before the camera to where a pixel's ray passes at the same depth.
-Vec3 across(const fit::Camera& camera, const Vec3& pixel, const Vec3& place) {
-  return {(pixel.x() - camera.centre_x) / camera.focal_x * place.z() - place.x(),
-          (pixel.y() - camera.centre_y) / camera.focal_y * place.z() - place.y(), 0.0};
-}
-
 /// Follows the points until the activations settle; true when they have.
 bool settle(fit::Tracker& tracker, const SeenPoints& seen, int repeats, int& iterations) {
   std::vector<float> before;
@@ -109,22 +101,13 @@ PictureFrame measured(fit::Subject& subject, const SeenLandmarks& landmarks, con
   subject.pose(result.activations, is_next);
   result.displacements = subject.displacements(result.activations);
   result.spread.assign(result.activations.size(), 0.0);
-  result.rms_mm = tracked.rms_mm;
   out.target = {result.displacements, std::vector<double>(subject.vertex_count(), 0.0), {}};
-  double left = 0.0, miss = 0.0, miss_moved = 0.0;
-  size_t count = 0, count_moved = 0;
+  fit::Misses misses;
   for (size_t l = 0; l < landmarks.places.size(); ++l) {
     if (!(seen.weights[l] > 0.0)) continue;
-    const Vec3 gap = across(camera, seen.points[l], tracked.landmarks[l]) / tracked.head.scale;
-    const double moved = across(camera, seen.points[l], tracked.at_rest[l]).norm() / tracked.head.scale;
-    left += gap.squaredNorm();
-    out.motion += moved * moved;
-    miss += gap.norm();
-    ++count;
-    if (moved > moves) {
-      miss_moved += gap.norm();
-      ++count_moved;
-    }
+    const Vec3 gap = camera.across(seen.points[l], tracked.landmarks[l]) / tracked.head.scale;
+    const double moved = camera.across(seen.points[l], tracked.at_rest[l]).norm() / tracked.head.scale;
+    misses.add(gap.norm(), moved);
     const fit::SkinPlace& place = landmarks.places[l];
     for (size_t k = 0; k < 3; ++k) {
       const size_t vertex = subject.first_vertex(place.primitive) + place.vertices[k];
@@ -134,9 +117,8 @@ PictureFrame measured(fit::Subject& subject, const SeenLandmarks& landmarks, con
       out.target.trust[vertex] = 1.0;
     }
   }
-  result.share = out.motion > 0.0 ? 1.0 - left / out.motion : left > 0.0 ? 0.0 : 1.0;
-  result.error_mm = 1e3 * (count_moved > 0 ? miss_moved / static_cast<double>(count_moved)
-                                           : miss / static_cast<double>(std::max<size_t>(1, count)));
+  misses.write(result);
+  out.motion = misses.motion();
   return out;
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <set>
 
 #include "geometry/error.h"
@@ -64,16 +63,20 @@ auto with_json_errors(const formats::Scene& scene, Work work) {
   }
 }
 
-/// One morph target of a primitive; none when it moves nothing.
-std::optional<ShapePart> read_part(const Accessors& accessors, size_t mesh, size_t primitive, size_t target) {
-  const PlainJson& holder = accessors.gltf().at("meshes")[mesh].at("primitives")[primitive];
-  const PlainJson targets = holder.value("targets", PlainJson::array());
-  if (target >= targets.size() || !targets[target].contains("POSITION")) return {};
-  ShapePart part{static_cast<int>(mesh), static_cast<int>(primitive), {}};
-  const std::vector<float> flat = accessors.read(targets[target]["POSITION"].get<size_t>());
-  for (size_t i = 0; i + 2 < flat.size(); i += 3)
-    part.displacements.emplace_back(flat[i], flat[i + 1], flat[i + 2]);
-  return part;
+/// Adds what one morph target of a mesh moves.
+void add_parts(const Accessors& accessors, size_t mesh, size_t target, Shape& shape) {
+  const PlainJson& primitives = accessors.gltf().at("meshes").at(mesh).at("primitives");
+  for (size_t p = 0; p < primitives.size(); ++p) {
+    const auto targets = primitives[p].find("targets");
+    if (targets == primitives[p].end() || target >= targets->size()) continue;
+    const auto position = (*targets)[target].find("POSITION");
+    if (position == (*targets)[target].end()) continue;
+    ShapePart part{static_cast<int>(mesh), static_cast<int>(p), {}};
+    const std::vector<float> flat = accessors.read(position->get<size_t>());
+    for (size_t i = 0; i + 2 < flat.size(); i += 3)
+      part.displacements.emplace_back(flat[i], flat[i + 1], flat[i + 2]);
+    shape.parts.push_back(std::move(part));
+  }
 }
 
 std::vector<Shape> read_shapes(const formats::Scene& scene) {
@@ -86,8 +89,7 @@ std::vector<Shape> read_shapes(const formats::Scene& scene) {
       const std::string name = target_name(meshes[m], t);
       const auto [at, is_new] = known.try_emplace(name, shapes.size());
       if (is_new) shapes.push_back({name, {}});
-      for (size_t p = 0; p < meshes[m].at("primitives").size(); ++p)
-        if (auto part = read_part(accessors, m, p, t)) shapes[at->second].parts.push_back(std::move(*part));
+      add_parts(accessors, m, t, shapes[at->second]);
     }
   return shapes;
 }
@@ -142,6 +144,7 @@ ShapeCurves read_curves(const formats::Scene& scene) {
       keys.values = accessors.read(sampler.at("output").get<size_t>());
       keys.interpolation = sampler.value("interpolation", "LINEAR");
       keys.width = target_count(gltf.at("meshes").at(mesh));
+      if (keys.width == 0) continue;
       const PlainJson& holder = node.contains("weights") ? node : gltf.at("meshes").at(mesh);
       if (holder.contains("weights")) keys.base = holder["weights"].get<std::vector<double>>();
       keys.base.resize(keys.width, 0.0);
@@ -156,8 +159,7 @@ ShapeCurves read_curves(const formats::Scene& scene) {
     for (const auto& [mesh, keys] : channels)
       for (size_t t = 0; t < keys.width; ++t) {
         Shape& shape = curves.shapes.emplace_back(Shape{target_name(gltf.at("meshes").at(mesh), t), {}});
-        for (size_t p = 0; p < gltf.at("meshes").at(mesh).at("primitives").size(); ++p)
-          if (auto part = read_part(accessors, mesh, p, t)) shape.parts.push_back(std::move(*part));
+        add_parts(accessors, mesh, t, shape);
       }
     curves.times.assign(times.begin(), times.end());
     for (const double time : curves.times) {

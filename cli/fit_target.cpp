@@ -136,20 +136,20 @@ FitTargets open_fit_targets(const Common& common, const std::filesystem::path& p
   if (std::filesystem::is_directory(path)) return sequence_targets(path, maker, options.fps);
   if (extension == ".pc2" || extension == ".mdd") return cache_targets(path, maker, options.fps);
   const auto scene = std::make_shared<formats::Scene>(formats::read(path));
+  if (options.as == "take" || options.as == "auto")
+    if (ShapeCurves curves = shape_curves(*scene); curves.times.size() > (options.as == "take" ? 0 : 1))
+      return animation_targets(*scene, std::move(curves), maker);
   const std::vector<Shape> shapes = morph_shapes(*scene);
   FitTargets targets;
   if ((options.as == "shapes" || options.as == "take") && shapes.empty())
     throw Error("'" + path.string() + "' has no morph targets to fit: use --as mesh");
+  if (options.as == "take")
+    throw Error("'" + path.string() + "' has no animation of morph weights: use --as shapes");
   if (shapes.empty() || options.as == "mesh") {
     targets.names = {path.filename().string()};
     targets.target = [scene, maker](size_t) { return maker.of_scene(*scene); };
     return targets;
   }
-  ShapeCurves curves = options.as == "shapes" ? ShapeCurves{} : shape_curves(*scene);
-  if (options.as == "take" && curves.times.empty())
-    throw Error("'" + path.string() + "' has no animation of morph weights: use --as shapes");
-  if (options.as == "take" || curves.times.size() > 1)
-    return animation_targets(*scene, std::move(curves), maker);
   const auto morphs = std::make_shared<const MorphTargets>(*scene, shapes, maker);
   if (options.as == "auto" && morphs->base_motion() > 1e-4) {  // a posed head that has morph targets besides
     common.warn("'" + path.string() +

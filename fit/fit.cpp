@@ -312,30 +312,38 @@ FitResult Fitter::solve(const Target& target, bool is_next) {
   return result;
 }
 
+void Misses::add(double left, double moved, double trust) {
+  constexpr double moves = 5e-4;  // metres
+  left_ += trust * left * left;
+  whole_ += trust * moved * moved;
+  trust_ += trust;
+  miss_ += left;
+  ++count_;
+  if (moved > moves) {
+    miss_moved_ += left;
+    ++count_moved_;
+  }
+}
+
+void Misses::write(FitResult& result) const {
+  result.share = whole_ > 0.0 ? 1.0 - left_ / whole_ : left_ > 0.0 ? 0.0 : 1.0;
+  result.rms_mm = trust_ > 0.0 ? 1e3 * std::sqrt(left_ / trust_) : 0.0;
+  result.error_mm = 1e3 * (count_moved_ > 0 ? miss_moved_ / static_cast<double>(count_moved_)
+                                            : miss_ / static_cast<double>(std::max<size_t>(1, count_)));
+}
+
 void Fitter::finish(const Target& target, FitResult& result) {
   if (!is_sequence_) subject_->pose(result.activations, false);
   result.displacements = subject_->displacements(result.activations);
-  double left = 0.0, whole = 0.0, trust = 0.0, miss = 0.0, miss_moved = 0.0;
-  size_t count = 0, count_moved = 0;
+  Misses misses;
   for (size_t v = 0; v < subject_->vertex_count(); ++v) {
     if (target.trust[v] <= 0.0) continue;
     const auto at = static_cast<Eigen::Index>(3 * v);
     const Vec3 wanted = target.displacements.segment<3>(at),
                gap = result.displacements.segment<3>(at) - wanted;
-    left += target.trust[v] * gap.squaredNorm();
-    whole += target.trust[v] * wanted.squaredNorm();
-    trust += target.trust[v];
-    miss += gap.norm();
-    ++count;
-    if (wanted.norm() > 5e-4) {
-      miss_moved += gap.norm();
-      ++count_moved;
-    }
+    misses.add(gap.norm(), wanted.norm(), target.trust[v]);
   }
-  result.share = whole > 0.0 ? 1.0 - left / whole : left > 0.0 ? 0.0 : 1.0;
-  result.rms_mm = 1e3 * std::sqrt(left / trust);
-  result.error_mm = 1e3 * (count_moved > 0 ? miss_moved / static_cast<double>(count_moved)
-                                           : miss / static_cast<double>(count));
+  misses.write(result);
   result.spread.assign(result.activations.size(), 0.0);
   if (hessian_.size() == 0) return;
   Eigen::MatrixXd curvature = hessian_;

@@ -45,6 +45,21 @@ struct FitResult {
   std::vector<std::pair<uint32_t, uint32_t>> alike;
 };
 
+/// Adds up what a fit leaves, place by place.
+class Misses {
+ public:
+  /// `left`: from where the fit has a place to where it should be; `moved`: how far it should have moved;
+  /// metres. `trust` above 0.
+  void add(double left, double moved, double trust = 1.0);
+  double motion() const { return whole_; }  ///< trusted squares of what should have moved
+  /// Writes share, error_mm and rms_mm.
+  void write(FitResult& result) const;
+
+ private:
+  double left_ = 0.0, whole_ = 0.0, trust_ = 0.0, miss_ = 0.0, miss_moved_ = 0.0;
+  size_t count_ = 0, count_moved_ = 0;
+};
+
 /// A pose and how its mean squared distance from a target answers activations.
 struct Linearised {
   std::vector<uint32_t> channels;  ///< that rows and columns below stand for

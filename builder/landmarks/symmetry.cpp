@@ -50,22 +50,16 @@ double unit_of(const std::map<std::string, SkinLandmark>& landmarks) {
 std::optional<MirrorPlane> mirror_plane(const std::map<std::string, SkinLandmark>& landmarks,
                                         const spatial::SurfaceQuery& skin) {
   constexpr double within = 8.0, alike = 0.35;  // millimetres of an adult's face
-  MirrorPlane plane;
-  Vec3 across = Vec3::Zero(), middle = Vec3::Zero();
-  double pairs = 0.0;
+  std::vector<std::pair<Vec3, Vec3>> pairs;
   for_each_pair(landmarks, [&](const SkinLandmark& left, const SkinLandmark& right) {
-    across += left.position - right.position;
-    middle += 0.5 * (left.position + right.position);
-    pairs += 1.0;
+    pairs.emplace_back(left.position, right.position);
   });
-  if (pairs < 3.0 || !(across.norm() > 0.0)) return {};
-  plane.normal = across.normalized();
-  plane.point = middle / pairs;
+  const auto plane = spatial::plane_between(pairs);
+  if (pairs.size() < 3 || !plane) return {};
   const double unit = unit_of(landmarks);
   const std::vector<Vec3> places = places_of(landmarks, skin);
-  const spatial::MirrorFit fit = spatial::fit_mirror_plane(skin, places, plane, within * unit);
-  if (fit.apart.size() < 12 || 5 * fit.apart.size() < 4 * places.size()) return {};
-  if (fit.most_apart() > alike * unit) return {};
+  const spatial::MirrorFit fit = spatial::fit_mirror_plane(skin, places, *plane, within * unit);
+  if (!fit.covers(places.size()) || fit.most_apart() > alike * unit) return {};
   return fit.plane;
 }
 

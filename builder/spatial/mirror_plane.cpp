@@ -92,6 +92,16 @@ double improve(const std::vector<Pair>& pairs, double within, MirrorPlane& plane
 
 }  // namespace
 
+std::optional<MirrorPlane> plane_between(const std::vector<std::pair<Vec3, Vec3>>& pairs) {
+  Vec3 across = Vec3::Zero(), middle = Vec3::Zero();
+  for (const auto& [left, right] : pairs) {
+    across += left - right;
+    middle += 0.5 * (left + right);
+  }
+  if (!(across.norm() > 0.0)) return {};
+  return MirrorPlane{middle / static_cast<double>(pairs.size()), across.normalized()};
+}
+
 double MirrorFit::most_apart() const {
   if (apart.empty()) return std::numeric_limits<double>::infinity();
   std::vector<double> sorted = apart;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "builder/spatial/surface_query.h"
@@ -22,7 +24,13 @@ struct MirrorFit {
 
   /// The distance that one in ten of `apart` exceeds; infinite of none.
   double most_apart() const;
+  /// Whether four in five of the places that were tried, and a dozen at least, have an image to speak of.
+  bool covers(size_t tried) const { return apart.size() >= 12 && 5 * apart.size() >= 4 * tried; }
 };
+
+/// The plane in the middle of pairs of places, each to the left and to the right; none where there are no
+/// pairs or they lie on one another.
+std::optional<MirrorPlane> plane_between(const std::vector<std::pair<Vec3, Vec3>>& pairs);
 
 /// Draws `start` to where `places` on `surface`, mirrored, lie on it (iterative closest points, each pair
 /// measured along the surface's normal: Chen and Medioni 1992; pairs that fit badly count less and less:

@@ -101,18 +101,12 @@ double unit_of(const TissueInputs& inputs) {
 
 std::optional<Symmetry> symmetry_of(const TissueInputs& inputs, const FaceRegion& region) {
   constexpr double within = 10.0, alike = 1.5, exact = 0.35;  // millimetres of an adult's face
-  spatial::MirrorPlane plane;
-  Vec3 across = Vec3::Zero(), middle = Vec3::Zero();
-  double pairs = 0.0;
+  std::vector<std::pair<Vec3, Vec3>> pairs;
   for (const auto& [name, right] : inputs.landmarks)
-    if (const auto left = inputs.landmarks.find(left_name(name)); left != inputs.landmarks.end()) {
-      across += left->second - right;
-      middle += 0.5 * (left->second + right);
-      pairs += 1.0;
-    }
-  if (pairs < 3.0 || !(across.norm() > 0.0)) return {};
-  plane.normal = across.normalized();
-  plane.point = middle / pairs;
+    if (const auto left = inputs.landmarks.find(left_name(name)); left != inputs.landmarks.end())
+      pairs.emplace_back(left->second, right);
+  const auto plane = spatial::plane_between(pairs);
+  if (pairs.size() < 3 || !plane) return {};
   const double unit = unit_of(inputs);
   const Vec3 chin = landmark(inputs, "gnathion"), brow = landmark(inputs, "glabella");
   std::vector<Vec3> places;  // of the face between chin and brow, where neither neck nor hair begin
@@ -126,8 +120,8 @@ std::optional<Symmetry> symmetry_of(const TissueInputs& inputs, const FaceRegion
   for (size_t i = 0; i < places.size(); i += step)
     tried.push_back(places[i]);
   const spatial::MirrorFit fit =
-      spatial::fit_mirror_plane(spatial::SurfaceQuery(region.mesh), tried, plane, within * unit);
-  if (fit.apart.size() < 12 || 5 * fit.apart.size() < 4 * tried.size()) return {};
+      spatial::fit_mirror_plane(spatial::SurfaceQuery(region.mesh), tried, *plane, within * unit);
+  if (!fit.covers(tried.size())) return {};
   const double most = fit.most_apart();
   if (most > alike * unit) return {};
   Symmetry symmetry{fit.plane};

@@ -25,6 +25,12 @@ struct HeadPose {
 struct Camera {
   double focal_x = 1000.0, focal_y = 1000.0;
   double centre_x = 0.0, centre_y = 0.0;
+
+  /// From a place before the camera to where the ray of `pixel` (x and y count) passes at the same depth.
+  Vec3 across(const Vec3& pixel, const Vec3& place) const {
+    return {(pixel.x() - centre_x) / focal_x * place.z() - place.x(),
+            (pixel.y() - centre_y) / focal_y * place.z() - place.y(), 0.0};
+  }
 };
 
 /// The pose that brings `from` nearest to `to` in weighted squared distance, by a rotation, a shift and, with

@@ -175,14 +175,12 @@ Vec3 Tracker::miss(size_t landmark, const Vec3& point, Mat3& seen) const {
     seen.setIdentity();
     return head_.back(point) - place;
   }
-  const Camera& camera = *options_.camera;
   Vec3 at = head_ * place;
   at.z() = std::max(at.z(), 1e-3);
   seen.setZero();
   seen.row(0) = head_.rotation.row(0) - at.x() / at.z() * head_.rotation.row(2);
   seen.row(1) = head_.rotation.row(1) - at.y() / at.z() * head_.rotation.row(2);
-  return {(point.x() - camera.centre_x) / camera.focal_x * at.z() - at.x(),
-          (point.y() - camera.centre_y) / camera.focal_y * at.z() - at.y(), 0.0};
+  return options_.camera->across(point, at);
 }
 
 double Tracker::mean_square(std::span<const Vec3> points, std::span<const double> weights) const {

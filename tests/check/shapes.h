@@ -1,28 +1,12 @@
 #pragma once
 
 #include <cmath>
-#include <functional>
 
 #include "check/head.h"
+#include "tests/shapes/grid.h"
 
 /// Surfaces whose measures are known beforehand. Metres.
 namespace fascia::testing {
-
-/// A grid of `columns` x `rows` cells, vertex (i, j) at place(i / columns, j / rows), facing along +z when
-/// place goes right with the first and up with the second.
-inline TriangleMesh grid(int columns, int rows, const std::function<Vec3(double, double)>& place) {
-  TriangleMesh mesh;
-  for (int j = 0; j <= rows; ++j)
-    for (int i = 0; i <= columns; ++i)
-      mesh.vertices.push_back(place(static_cast<double>(i) / columns, static_cast<double>(j) / rows));
-  for (int j = 0; j < rows; ++j)
-    for (int i = 0; i < columns; ++i) {
-      const int a = j * (columns + 1) + i, b = a + 1, c = a + columns + 1, d = c + 1;
-      mesh.triangles.push_back({a, b, d});
-      mesh.triangles.push_back({a, d, c});
-    }
-  return mesh;
-}
 
 inline void append(TriangleMesh& to, const TriangleMesh& mesh) {
   const int first = to.vertex_count();

@@ -5,30 +5,18 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "tests/shapes/grid.h"
+
 namespace fascia::spatial {
 namespace {
 
 /// A vault of 160 by 120 mm with a ridge along x = 0, as a face has with its nose, cut into triangles that
 /// are not alike on both sides; `scar` metres high 40 mm to the left.
 TriangleMesh face_like(double scar = 0.0) {
-  constexpr int columns = 83, rows = 61;
-  TriangleMesh mesh;
-  for (int j = 0; j <= rows; ++j)
-    for (int i = 0; i <= columns; ++i) {
-      const double wave = i == 0 || i == columns ? 0.0 : 3e-4 * std::sin(1.7 * i + j),
-                   x = 0.16 * (i / static_cast<double>(columns) - 0.5) + wave,
-                   y = 0.12 * (j / static_cast<double>(rows) - 0.5);
-      const double nose = 0.02 * std::exp(-x * x / 1e-4 - y * y / 9e-4),
-                   bump = scar * std::exp(-((x - 0.04) * (x - 0.04) + y * y) / 6e-5);
-      mesh.vertices.emplace_back(x, y, 0.05 - 6.0 * x * x - 3.0 * y * y + nose + bump);
-    }
-  for (int j = 0; j < rows; ++j)
-    for (int i = 0; i < columns; ++i) {
-      const int a = j * (columns + 1) + i, b = a + 1, c = a + columns + 1, d = c + 1;
-      mesh.triangles.push_back({a, b, d});
-      mesh.triangles.push_back({a, d, c});
-    }
-  return mesh;
+  return testing::waving_vault(83, 61, 3e-4, [&](double x, double y) {
+    return 0.02 * std::exp(-x * x / 1e-4 - y * y / 9e-4) +
+           scar * std::exp(-((x - 0.04) * (x - 0.04) + y * y) / 6e-5);
+  });
 }
 
 std::vector<Vec3> some_of(const TriangleMesh& mesh) {

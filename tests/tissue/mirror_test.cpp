@@ -6,28 +6,14 @@
 #include <map>
 
 #include "geometry/connectivity.h"
+#include "tests/shapes/grid.h"
 
 namespace fascia::tissue {
 namespace {
 
 /// A vault of 160 by 120 mm, the same on both sides of x = 0, cut into triangles that are not.
 TriangleMesh vault(double lopsided = 0.0) {
-  constexpr int columns = 23, rows = 17;
-  TriangleMesh mesh;
-  for (int j = 0; j <= rows; ++j)
-    for (int i = 0; i <= columns; ++i) {
-      const double wave = i == 0 || i == columns ? 0.0 : 0.001 * std::sin(1.7 * i + j),
-                   x = 0.16 * (i / static_cast<double>(columns) - 0.5) + wave,
-                   y = 0.12 * (j / static_cast<double>(rows) - 0.5);
-      mesh.vertices.emplace_back(x, y, 0.05 - 6.0 * x * x - 3.0 * y * y + lopsided * x);
-    }
-  for (int j = 0; j < rows; ++j)
-    for (int i = 0; i < columns; ++i) {
-      const int a = j * (columns + 1) + i, b = a + 1, c = a + columns + 1, d = c + 1;
-      mesh.triangles.push_back({a, b, d});
-      mesh.triangles.push_back({a, d, c});
-    }
-  return mesh;
+  return testing::waving_vault(23, 17, 0.001, [&](double x, double) { return lopsided * x; });
 }
 
 RemeshResult remeshed_half(const TriangleMesh& mesh, const Symmetry& symmetry) {
