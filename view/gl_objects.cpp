@@ -43,6 +43,16 @@ Program::~Program() {
   glDeleteProgram(name_);
 }
 
+void Program::set(const char* uniform, const Vec3& value) const {
+  const Eigen::Vector3f single = value.cast<float>();
+  glUniform3fv(place(uniform), 1, single.data());
+}
+
+void Program::set(const char* uniform, const Mat4& value) const {
+  const Eigen::Matrix4f single = value.cast<float>();
+  glUniformMatrix4fv(place(uniform), 1, GL_FALSE, single.data());
+}
+
 GLint Program::place(const char* uniform) const {
   const auto [entry, is_new] = places_.try_emplace(uniform, -1);
   if (is_new) entry->second = glGetUniformLocation(name_, uniform);
@@ -58,7 +68,17 @@ void Canvas::bind(int width, int height) {
   glViewport(0, 0, width, height);
 }
 
+void Canvas::use_depth_of(const Canvas& other) {
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+  if (other.depth_ == Depth::buffer)
+    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, other.depth_image_);
+  else
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, other.depth_image_, 0);
+}
+
 void Canvas::make(int width, int height) {
+  GLint bound = 0;
+  glGetIntegerv(GL_TEXTURE_BINDING_2D, &bound);
   const auto image = [&](GLenum format, GLenum attachment, bool is_buffer, bool is_depth) {
     GLuint name = 0;
     if (is_buffer) {
@@ -89,6 +109,7 @@ void Canvas::make(int width, int height) {
   }
   if (depth_ != Depth::none)
     depth_image_ = image(GL_DEPTH_COMPONENT24, GL_DEPTH_ATTACHMENT, depth_ == Depth::buffer, true);
+  glBindTexture(GL_TEXTURE_2D, static_cast<GLuint>(bound));
   if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
     release();
     throw Error("pictures of " + std::to_string(width) + " x " + std::to_string(height) +

@@ -5,6 +5,8 @@
 #include <map>
 #include <string>
 
+#include "geometry/mesh.h"
+
 namespace fascia::view {
 
 /// A linked OpenGL program and the places of its uniforms.
@@ -22,6 +24,8 @@ class Program {
   void set(const char* uniform, double value) const {
     glUniform1f(place(uniform), static_cast<float>(value));
   }
+  void set(const char* uniform, const Vec3& value) const;
+  void set(const char* uniform, const Mat4& value) const;
 
  private:
   GLuint name_ = 0;
@@ -41,6 +45,9 @@ class Canvas {
 
   /// Binds it for drawing, with its viewport. Throws fascia::Error when the driver has no room for it.
   void bind(int width, int height);
+  /// Draws by the depth image of `other` (of the same size, bound before) in place of one of its own, until
+  /// either is made anew.
+  void use_depth_of(const Canvas& other);
   GLuint framebuffer() const { return framebuffer_; }
   GLuint colour() const { return colour_; }
   GLuint depth() const { return depth_image_; }

@@ -56,6 +56,7 @@ uniform mat4 to_light;
 uniform float light_span, light_range;   // metres
 uniform float key_size;
 uniform float turn;                      // 0..1, another for each round of samples
+const mat2 golden_turn = mat2(-0.73736888, 0.67549029, -0.67549029, -0.73736888);   // by pi (3 - sqrt 5)
 float grain(vec2 at) { return fract(52.9829189 * fract(dot(floor(at), vec2(0.06711056, 0.00583715)))); }
 float lit_share(vec3 p, vec3 n, out float thickness) {
   thickness = 1.0;
@@ -63,11 +64,13 @@ float lit_share(vec3 p, vec3 n, out float thickness) {
   vec3 at = (to_light * vec4(p + 0.0011 * n, 1.0)).xyz * 0.5 + 0.5;
   if (any(lessThan(at, vec3(0.0))) || any(greaterThan(at, vec3(1.0)))) return 1.0;
   float angle = 6.2831853 * (grain(gl_FragCoord.xy) + turn);
+  vec2 first = vec2(cos(angle), sin(angle)), toward = first;   // turned on tap by tap: no sine for each
   float texel = 1.0 / float(textureSize(shadow_map, 0).x), bias = 0.0006 / light_range;
   float reach = max(key_size * 0.022 / light_span, 2.0 * texel), found = 0.0, sum = 0.0, through = 0.0;
   for (int i = 0; i < SEARCHES; ++i) {
-    float share = (float(i) + 0.5) / float(SEARCHES), a = angle + 2.399963 * float(i);
-    float depth = texture(shadow_map, at.xy + reach * sqrt(share) * vec2(cos(a), sin(a))).r;
+    float share = (float(i) + 0.5) / float(SEARCHES);
+    float depth = texture(shadow_map, at.xy + reach * sqrt(share) * toward).r;
+    toward = golden_turn * toward;
     through += max(at.z - depth, 0.0);
     if (depth < at.z - bias) { found += 1.0; sum += depth; }
   }
@@ -75,9 +78,11 @@ float lit_share(vec3 p, vec3 n, out float thickness) {
   if (found == 0.0) return 1.0;
   float gap = (at.z - sum / found) * light_range;
   float width = clamp(gap * key_size / light_span, 1.5 * texel, 0.06), lit = 0.0;
+  toward = first;
   for (int i = 0; i < TAPS; ++i) {
-    float share = (float(i) + 0.5) / float(TAPS), a = angle + 2.399963 * float(i);
-    float depth = texture(shadow_map, at.xy + width * sqrt(share) * vec2(cos(a), sin(a))).r;
+    float share = (float(i) + 0.5) / float(TAPS);
+    float depth = texture(shadow_map, at.xy + width * sqrt(share) * toward).r;
+    toward = golden_turn * toward;
     lit += depth < at.z - bias * (1.0 + 2.0 * width / texel * 0.15) ? 0.0 : 1.0;
   }
   return lit / float(TAPS);
@@ -122,10 +127,12 @@ float open_share(vec3 p, vec3 n, float distance_here) {
   float turn = 6.2831853 * grain(gl_FragCoord.xy);
   float sum = 0.0;
   const int count = 16;
+  const mat2 on = mat2(-0.92387953, 0.38268343, -0.38268343, -0.92387953);   // by 7/16 of a turn
+  vec2 toward = vec2(cos(turn + 1.3744468), sin(turn + 1.3744468));          // half of that, from a chance start
   for (int i = 0; i < count; ++i) {
     float share = (float(i) + 0.5) / float(count);
-    float angle = turn + 6.2831853 * 7.0 * share;
-    vec2 at = gl_FragCoord.xy + max(reach * share, 1.0 + float(i) * 0.2) * vec2(cos(angle), sin(angle));
+    vec2 at = gl_FragCoord.xy + max(reach * share, 1.0 + float(i) * 0.2) * toward;
+    toward = on * toward;
     float distance = texelFetch(geometry, ivec2(clamp(at, vec2(0.0), size - 1.0)), 0).w;
     if (distance <= 0.0) continue;
     vec3 v = eye_position(at, distance) - p;
@@ -153,7 +160,10 @@ float lobe(vec3 n, vec3 v, vec3 l, float rough) {
   float shape = rough * rough / a;   // a larger source is a weaker one
   return shape * shape * a2 / (d * d) / max(4.0 * mix(nl, 1.0, a * 0.5) * mix(nv, 1.0, a * 0.5), 0.05) * nl;
 }
-vec3 fresnel(vec3 f0, float cosine) { return f0 + (1.0 - f0) * pow(1.0 - clamp(cosine, 0.0, 1.0), 5.0); }
+vec3 fresnel(vec3 f0, float cosine) {
+  float c = 1.0 - clamp(cosine, 0.0, 1.0), c2 = c * c;
+  return f0 + (1.0 - f0) * (c2 * c2 * c);
+}
 vec3 mirrored_share(vec3 f0, float rough, float nv) {
   vec4 r = rough * vec4(-1.0, -0.0275, -0.572, 0.022) + vec4(1.0, 0.0425, 1.04, -0.04);
   float a = min(r.x * r.x, exp2(-9.28 * nv)) * r.x + r.y;
