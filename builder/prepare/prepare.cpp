@@ -15,10 +15,13 @@ namespace {
 /// Landmarks drawn by hand lie a little off the surface; far off, they belong to another mesh.
 std::map<std::string, Vec3> onto_skin(const formats::Scene& scene, const spatial::SurfaceQuery& surface,
                                       const std::map<std::string, Vec3>& landmarks,
+                                      const std::set<std::string>& rough,
                                       std::vector<std::string>& warnings) {
   std::map<std::string, Vec3> projected;
   for (const auto& [name, p] : landmarks) {
     const spatial::ClosestPoint hit = surface.nearest_place(p);
+    projected[name] = hit.position;
+    if (rough.count(name)) continue;
     const double off_mm = 1e3 * hit.distance;
     const std::string where = "landmark '" + name + "' lies " +
                               std::to_string(static_cast<int>(off_mm + 0.5)) + " mm from the skin of '" +
@@ -26,7 +29,6 @@ std::map<std::string, Vec3> onto_skin(const formats::Scene& scene, const spatial
     if (off_mm > 20.0)
       throw Error(where + ": place it on the skin, or check that landmarks and head are in the same axes");
     if (off_mm > 8.0) warnings.push_back(where + "; its nearest skin point is used");
-    projected[name] = hit.position;
   }
   return projected;
 }
@@ -88,7 +90,7 @@ PreparedHead prepare(const formats::Scene& scene, const formats::LandmarkFile& g
     head.meshes.push_back(std::move(mesh));
   }
   head.surface.emplace(head.skin);
-  head.landmarks = onto_skin(scene, *head.surface, landmarks, head.warnings);
+  head.landmarks = onto_skin(scene, *head.surface, landmarks, options.rough_landmarks, head.warnings);
   return head;
 }
 

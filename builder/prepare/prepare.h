@@ -2,6 +2,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -66,9 +67,10 @@ struct PreparedHead {
 };
 
 struct PrepareOptions {
-  std::string units = "auto";  ///< auto, m, cm, mm, or metres a unit as a number
-  std::string up = "auto";     ///< auto, y or z
-  std::string skin;            ///< name of the mesh that is the skin; empty: found
+  std::string units = "auto";             ///< auto, m, cm, mm, or metres a unit as a number
+  std::string up = "auto";                ///< auto, y or z
+  std::string skin;                       ///< name of the mesh that is the skin; empty: found
+  std::set<std::string> rough_landmarks;  ///< only roughly placed: how far they are off the skin says nothing
 };
 
 /// Units of a landmark file that are known to be the head file's own.

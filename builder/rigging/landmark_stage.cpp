@@ -147,16 +147,11 @@ FoundLandmarks find_landmarks(const formats::Scene& file, const formats::Landmar
   }
   const double located_at = now();
   const Points reference = reference_points(anatomy);
-  result.head = result.is_inside_out
-                    ? prepare::prepare(turned_over(scene), located.landmarks, reference, options)
-                    : prepare::prepare(scene, located.landmarks, reference, options);
-  // What prepare says of places that were only roughly found is no news: they are found anew.
-  std::erase_if(result.head.warnings, [&](const std::string& warning) {
-    return std::any_of(
-        located.landmarks.points.begin(), located.landmarks.points.end(), [&](const auto& point) {
-          return !given.points.count(point.first) && warning.rfind("landmark '" + point.first + "'", 0) == 0;
-        });
-  });
+  prepare::PrepareOptions preparing = options;
+  for (const auto& [name, p] : located.landmarks.points)
+    if (!given.points.count(name)) preparing.rough_landmarks.insert(name);
+  result.head = prepare::prepare(result.is_inside_out ? turned_over(scene) : scene, located.landmarks,
+                                 reference, preparing);
   const double prepared_at = now();
   place_landmarks(result, located, given, anatomy, with_regions);
   if (const auto plane = landmarks::mirror_plane(result.landmarks, *result.head.surface))
