@@ -6,7 +6,7 @@
 
 #include "cli/fit_cache.h"
 #include "cli/fit_match.h"
-#include "cli/fit_shapes.h"
+#include "formats/morph_shapes.h"
 #include "formats/scene.h"
 #include "geometry/error.h"
 #include "geometry/text.h"
@@ -57,12 +57,12 @@ FitTargets sequence_targets(const std::filesystem::path& folder, const TargetMak
 /// Targets of a glTF file's morph targets, alone or as its animation weighs them.
 class MorphTargets {
  public:
-  MorphTargets(const formats::Scene& scene, const std::vector<Shape>& list, const TargetMaker& maker)
+  MorphTargets(const formats::Scene& scene, const std::vector<formats::Shape>& list, const TargetMaker& maker)
       : base(maker.of_scene(scene)) {
     const std::vector<Match> found = matches(scene, maker.subject());
-    for (const Shape& shape : list) {
+    for (const formats::Shape& shape : list) {
       shapes_.emplace_back();
-      for (const ShapePart& part : shape.parts)
+      for (const formats::ShapePart& part : shape.parts)
         for (const Match& match : found)
           add(scene, shape.name, part, match, maker);
     }
@@ -91,8 +91,8 @@ class MorphTargets {
     Eigen::VectorXd moved;  ///< from the file's base mesh
   };
 
-  void add(const formats::Scene& scene, const std::string& name, const ShapePart& part, const Match& match,
-           const TargetMaker& maker) {
+  void add(const formats::Scene& scene, const std::string& name, const formats::ShapePart& part,
+           const Match& match, const TargetMaker& maker) {
     const formats::SceneMesh& mesh = scene.meshes[match.mesh];
     if (mesh.mesh != part.mesh || mesh.primitive != part.primitive) return;
     if (part.displacements.size() != mesh.positions.size())
@@ -110,8 +110,9 @@ class MorphTargets {
 };
 
 /// A target for every key of a file's animated morph targets.
-FitTargets animation_targets(const formats::Scene& scene, ShapeCurves&& read, const TargetMaker& maker) {
-  const auto curves = std::make_shared<const ShapeCurves>(std::move(read));
+FitTargets animation_targets(const formats::Scene& scene, formats::ShapeCurves&& read,
+                             const TargetMaker& maker) {
+  const auto curves = std::make_shared<const formats::ShapeCurves>(std::move(read));
   const auto morphs = std::make_shared<const MorphTargets>(scene, curves->shapes, maker);
   FitTargets targets;
   targets.kind = FitTargets::Kind::take;
@@ -137,9 +138,10 @@ FitTargets open_fit_targets(const Common& common, const std::filesystem::path& p
   if (extension == ".pc2" || extension == ".mdd") return cache_targets(path, maker, options.fps);
   const auto scene = std::make_shared<formats::Scene>(formats::read(path));
   if (options.as == "take" || options.as == "auto")
-    if (ShapeCurves curves = shape_curves(*scene); curves.times.size() > (options.as == "take" ? 0 : 1))
+    if (formats::ShapeCurves curves = formats::shape_curves(*scene);
+        curves.times.size() > (options.as == "take" ? 0 : 1))
       return animation_targets(*scene, std::move(curves), maker);
-  const std::vector<Shape> shapes = morph_shapes(*scene);
+  const std::vector<formats::Shape> shapes = formats::morph_shapes(*scene);
   FitTargets targets;
   if ((options.as == "shapes" || options.as == "take") && shapes.empty())
     throw Error("'" + path.string() + "' has no morph targets to fit: use --as mesh");
@@ -160,7 +162,7 @@ FitTargets open_fit_targets(const Common& common, const std::filesystem::path& p
     return targets;
   }
   targets.kind = FitTargets::Kind::shapes;
-  for (const Shape& shape : shapes)
+  for (const formats::Shape& shape : shapes)
     targets.names.push_back(shape.name);
   targets.target = [morphs](size_t index) { return morphs->of_shape(index); };
   return targets;

@@ -8,7 +8,7 @@
 #include <iterator>
 
 #include "builder/rigging/embedded_head.h"
-#include "cli/fit_shapes.h"
+#include "formats/morph_shapes.h"
 #include "formats/scene.h"
 #include "geometry/error.h"
 #include "runtime/drivers/response.h"
@@ -101,18 +101,18 @@ KnownFace::KnownFace(const SculptedHead& head, const std::string& detail) : head
 
 void KnownFace::read_shapes() {
   const formats::Scene scene = formats::read(head_.shapes);
-  const std::vector<cli::Shape> shapes = cli::morph_shapes(scene);
+  const std::vector<formats::Shape> shapes = formats::morph_shapes(scene);
   // The skin is the largest mesh that the shapes move; people share the shapes of another file's mesh `head`.
   const bool is_own = head_.head == head_.shapes;
-  const auto is_same = [&](const rig::Primitive& primitive, const cli::ShapePart& part) {
+  const auto is_same = [&](const rig::Primitive& primitive, const formats::ShapePart& part) {
     return is_own ? static_cast<int>(primitive.mesh) == part.mesh &&
                         static_cast<int>(primitive.primitive) == part.primitive
                   : primitive.name == "head";
   };
   const auto& primitives = subject_->file().primitives;
   size_t skin = primitives.size(), count = 0;
-  for (const cli::Shape& shape : shapes)
-    for (const cli::ShapePart& part : shape.parts)
+  for (const formats::Shape& shape : shapes)
+    for (const formats::ShapePart& part : shape.parts)
       for (size_t p = 0; p < primitives.size(); ++p)
         if (is_same(primitives[p], part) && part.displacements.size() > count) {
           skin = p;
@@ -127,10 +127,10 @@ void KnownFace::read_shapes() {
     if (std::all_of(t.begin(), t.end(), [&](auto v) { return static_cast<size_t>(v) < count; }))
       triangles_.push_back({static_cast<int>(t[0]), static_cast<int>(t[1]), static_cast<int>(t[2])});
   const Mat3 linear = subject_->to_metres(skin).topLeftCorner<3, 3>();
-  for (const cli::Shape& shape : shapes) {
+  for (const formats::Shape& shape : shapes) {
     const std::string name = arkit_name(shape.name);
     Eigen::VectorXd truth = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(3 * count));
-    for (const cli::ShapePart& part : shape.parts)
+    for (const formats::ShapePart& part : shape.parts)
       if (is_same(primitives[skin], part))
         for (size_t v = 0; v < count && v < part.displacements.size(); ++v)
           truth.segment<3>(static_cast<Eigen::Index>(3 * v)) = linear * part.displacements[v];

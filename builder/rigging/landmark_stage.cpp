@@ -8,7 +8,9 @@
 #include "builder/landmarks/symmetry.h"
 #include "builder/prepare/repair.h"
 #include "builder/rigging/find_landmarks.h"
+#include "builder/rigging/shape_places.h"
 #include "builder/rigging/stages.h"
+#include "geometry/error.h"
 
 namespace fascia::rigging {
 
@@ -60,6 +62,28 @@ struct LocatedHead {
   std::optional<landmarks::GenericFace> generic;  ///< with `found`
 };
 
+/// By how face-like the surfaces are; where nothing is, or only doubtfully, or where the head's own shapes
+/// say that its face stands elsewhere, by those. What the caller knows (two places and more) comes first.
+landmarks::FoundHead find_head(const formats::Scene& scene, const landmarks::GenericFace& generic,
+                               const anatomy::GenericAnatomy& anatomy, const prepare::PrepareOptions& options,
+                               const landmarks::HeadHints& hints) {
+  const std::string path = scene.path.string();
+  const auto by_surface = [&] {
+    return landmarks::find_head(generic, prepare::search_surfaces(scene, options.skin), path, hints);
+  };
+  const auto places = hints.given.size() < 2 ? places_by_shapes(scene, anatomy) : std::nullopt;
+  if (!places) return by_surface();
+  std::optional<landmarks::FoundHead> found;
+  try {
+    found = by_surface();
+  } catch (const Error&) {
+    // The shapes are left to tell.
+  }
+  if (found && !found->is_doubtful && places->agree(found->placement())) return *found;
+  return landmarks::find_head(generic, prepare::joined_meshes(scene, places->mesh), path,
+                              {places->anchors, hints.up});
+}
+
 LocatedHead locate_head(const formats::Scene& scene, const formats::LandmarkFile& given,
                         const anatomy::GenericAnatomy& anatomy, const prepare::PrepareOptions& options) {
   LocatedHead located;
@@ -68,9 +92,8 @@ LocatedHead locate_head(const formats::Scene& scene, const formats::LandmarkFile
   located.landmarks = prepare::in_file_units(scene, given);
   located.landmarks.units = prepare::head_units;
   located.generic = landmarks::generic_face(anatomy);
-  located.found = landmarks::find_head(*located.generic, prepare::search_surfaces(scene, options.skin),
-                                       scene.path.string(),
-                                       {anchors_of(located.landmarks, anatomy), declared_up(options.up)});
+  located.found = find_head(scene, *located.generic, anatomy, options,
+                            {anchors_of(located.landmarks, anatomy), declared_up(options.up)});
   for (const auto& [name, p] : landmarks::rough_landmarks(*located.generic, anatomy, *located.found))
     located.landmarks.points.emplace(name, p);
   return located;

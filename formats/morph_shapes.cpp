@@ -1,4 +1,4 @@
-#include "cli/fit_shapes.h"
+#include "formats/morph_shapes.h"
 
 #include <algorithm>
 #include <map>
@@ -10,7 +10,7 @@
 #include "gltf/read/container.h"
 #include "gltf/read/model.h"
 
-namespace fascia::cli {
+namespace fascia::formats {
 
 namespace {
 
@@ -19,7 +19,7 @@ using PlainJson = nlohmann::json;
 /// A glTF document with its accessors.
 class Accessors {
  public:
-  explicit Accessors(const formats::Scene& scene)
+  explicit Accessors(const Scene& scene)
       : path_(scene.path.string()),
         gltf_(PlainJson::parse(scene.document.json)),
         model_(gltf::load_model(gltf::glb_bytes(scene.document.json, scene.document.bin), path_)) {}
@@ -55,7 +55,7 @@ size_t target_count(const PlainJson& mesh) {
 }
 
 template <class Work>
-auto with_json_errors(const formats::Scene& scene, Work work) {
+auto with_json_errors(const Scene& scene, Work work) {
   try {
     return work();
   } catch (const PlainJson::exception& error) {
@@ -79,18 +79,33 @@ void add_parts(const Accessors& accessors, size_t mesh, size_t target, Shape& sh
   }
 }
 
-std::vector<Shape> read_shapes(const formats::Scene& scene) {
+struct TargetPlace {
+  std::string name;
+  size_t mesh = 0, target = 0;
+};
+
+std::vector<TargetPlace> named_targets(const PlainJson& gltf,
+                                       const std::function<bool(const std::string&)>& is_wanted) {
+  std::vector<TargetPlace> places;
+  const PlainJson meshes = gltf.value("meshes", PlainJson::array());
+  for (size_t m = 0; m < meshes.size(); ++m)
+    for (size_t t = 0; t < target_count(meshes[m]); ++t)
+      if (std::string name = target_name(meshes[m], t); !is_wanted || is_wanted(name))
+        places.push_back({std::move(name), m, t});
+  return places;
+}
+
+std::vector<Shape> read_shapes(const Scene& scene, const std::function<bool(const std::string&)>& is_wanted) {
+  const std::vector<TargetPlace> places = named_targets(PlainJson::parse(scene.document.json), is_wanted);
+  if (places.empty()) return {};  // before the file's numbers are looked at
   const Accessors accessors(scene);
   std::vector<Shape> shapes;
   std::map<std::string, size_t> known;
-  const PlainJson meshes = accessors.gltf().value("meshes", PlainJson::array());
-  for (size_t m = 0; m < meshes.size(); ++m)
-    for (size_t t = 0; t < target_count(meshes[m]); ++t) {
-      const std::string name = target_name(meshes[m], t);
-      const auto [at, is_new] = known.try_emplace(name, shapes.size());
-      if (is_new) shapes.push_back({name, {}});
-      add_parts(accessors, m, t, shapes[at->second]);
-    }
+  for (const TargetPlace& place : places) {
+    const auto [at, is_new] = known.try_emplace(place.name, shapes.size());
+    if (is_new) shapes.push_back({place.name, {}});
+    add_parts(accessors, place.mesh, place.target, shapes[at->second]);
+  }
   return shapes;
 }
 
@@ -125,7 +140,7 @@ struct WeightKeys {
   }
 };
 
-ShapeCurves read_curves(const formats::Scene& scene) {
+ShapeCurves read_curves(const Scene& scene) {
   const Accessors accessors(scene);
   const PlainJson& gltf = accessors.gltf();
   ShapeCurves curves;
@@ -175,14 +190,15 @@ ShapeCurves read_curves(const formats::Scene& scene) {
 
 }  // namespace
 
-std::vector<Shape> morph_shapes(const formats::Scene& scene) {
+std::vector<Shape> morph_shapes(const Scene& scene,
+                                const std::function<bool(const std::string& name)>& is_wanted) {
   if (scene.document.json.empty()) return {};
-  return with_json_errors(scene, [&] { return read_shapes(scene); });
+  return with_json_errors(scene, [&] { return read_shapes(scene, is_wanted); });
 }
 
-ShapeCurves shape_curves(const formats::Scene& scene) {
+ShapeCurves shape_curves(const Scene& scene) {
   if (scene.document.json.empty()) return {};
   return with_json_errors(scene, [&] { return read_curves(scene); });
 }
 
-}  // namespace fascia::cli
+}  // namespace fascia::formats

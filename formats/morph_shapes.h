@@ -1,11 +1,12 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "formats/scene.h"
 
-namespace fascia::cli {
+namespace fascia::formats {
 
 /// A morph target of one primitive: displacements in the primitive's own coordinates, #vertices.
 struct ShapePart {
@@ -27,11 +28,13 @@ struct ShapeCurves {
   std::vector<std::vector<double>> weights;  ///< by time, one a shape: beyond the base mesh's
 };
 
-/// The morph targets of a glTF file, in the file's order, by `mesh.extras.targetNames`. Throws fascia::Error
-/// when an accessor is damaged or of a kind that is not read here.
-std::vector<Shape> morph_shapes(const formats::Scene& scene);
+/// The morph targets of a glTF file, in the file's order, by `mesh.extras.targetNames`; of those alone whose
+/// names `is_wanted`, where it is given. Throws fascia::Error when an accessor is damaged or of a kind that
+/// is not read here.
+std::vector<Shape> morph_shapes(const Scene& scene,
+                                const std::function<bool(const std::string& name)>& is_wanted = {});
 
 /// Key frames of the weights of morph targets; empty when nothing moves them. Throws as `morph_shapes`.
-ShapeCurves shape_curves(const formats::Scene& scene);
+ShapeCurves shape_curves(const Scene& scene);
 
-}  // namespace fascia::cli
+}  // namespace fascia::formats
