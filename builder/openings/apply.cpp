@@ -1,5 +1,6 @@
 #include "builder/openings/apply.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <map>

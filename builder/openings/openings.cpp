@@ -1,5 +1,7 @@
 #include "builder/openings/openings.h"
 
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 

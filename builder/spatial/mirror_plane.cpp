@@ -1,6 +1,7 @@
 #include "builder/spatial/mirror_plane.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
