@@ -235,8 +235,11 @@ void Examination::eyes(const std::string& pose, const Shape& shape) {
     Vec3 centre;
     double radius = 0.0;
     const std::vector<Vec3>& rest = head_.parts[ball].mesh.vertices;
-    if (!sphere_centre(rest, centre, radius)) {
-      const std::optional<Eye> eye = plausible_eye(head_, k == 0);
+    const std::optional<Eye> eye = plausible_eye(head_, k == 0);
+    // A plate a little bent, as drawn faces have for eyes, lies on the sphere of no eyeball: it turns about
+    // the globe behind it.
+    constexpr double largest = 2.0;  // of the globe
+    if (!sphere_centre(rest, centre, radius) || (eye && radius > largest * eye->radius)) {
       if (!eye) continue;
       centre = eye->centre;
     }

@@ -10,6 +10,8 @@ namespace {
 // Of the globe's radius: lids lie between these, and beyond the last what else is before the eye, brow and
 // fold of the upper lid, as far from small eyes set deep.
 constexpr double nearest = 0.75, farthest = 1.55, outside = 2.6;
+constexpr double least_before =
+    0.01;  // of the globe's radius: a tenth of a millimetre before an eye that stays
 
 }  // namespace
 
@@ -53,15 +55,15 @@ LidLook::LidLook(const Head& head, const Skin& skin, const Eye& eye, const Seam&
       eye_(eye),
       frame_(head.landmarks.at(left ? "exocanthion_left" : "exocanthion_right"),
              head.landmarks.at(left ? "endocanthion_left" : "endocanthion_right"), eye, left),
-      lids_(moving_patch_about(skin, eye.centre, (outside + 0.1) * eye.radius)),
+      lids_(seam.are_shut ? patch_about(skin.rest(), eye.centre, (outside + 0.1) * eye.radius)
+                          : moving_patch_about(skin, eye.centre, (outside + 0.1) * eye.radius)),
       face_(skin.rest()) {
   for (size_t p = 0; p < head.parts.size(); ++p)
     if (head.parts[p].name == (left ? "eye_left" : "eye_right")) eyeball_.push_back(p);
-  constexpr double more = 0.1;  // radians beyond the edges at rest
   for (size_t s = 0; s < seam.stations.size(); ++s) {
     const double t = seam.stations[s];
-    ranges_.push_back({t, frame_.elevation(position(skin.rest(), seam.lower_edge[s]), t) - more,
-                       frame_.elevation(position(skin.rest(), seam.upper_edge[s]), t) + more});
+    ranges_.push_back({t, frame_.elevation(position(skin.rest(), seam.lower_edge[s]), t),
+                       frame_.elevation(position(skin.rest(), seam.upper_edge[s]), t)});
   }
 }
 
@@ -77,13 +79,20 @@ LidState LidLook::look(const std::vector<Vec3>& skin, const Shape& shape) const 
   const spatial::SurfaceQuery lids(lids_.mesh(skin));
   const double start = farthest * eye_.radius, reach = (farthest - nearest) * eye_.radius;
   constexpr double step = 0.004;  // radians: .05 mm on an adult's globe
+  constexpr double more = 0.1;    // radians looked at beyond the edges at rest
+  const auto is_covered = [&](const Vec3& ray) {
+    const Vec3 origin = eye_.centre + outside * eye_.radius * ray;
+    if (lids.blocked(origin, -ray, (outside - nearest) * eye_.radius)) return true;
+    if (!eyeball_.empty()) return false;
+    // A flat eye in one with its lids lies deeper: what has come before what one saw at rest is a lid.
+    const auto eye = face_.first_hit(origin, -ray, outside * eye_.radius);
+    return eye && lids.blocked(origin, -ray, eye->distance - least_before * eye_.radius);
+  };
   for (const auto& [t, low, high] : ranges_) {
     double open = 0.0, sum = 0.0;
-    for (double angle = low; angle < high; angle += step) {
+    for (double angle = low - more; angle < high + more; angle += step) {
       const Vec3 ray = frame_.direction(t, angle);
-      if (lids.blocked(eye_.centre + outside * eye_.radius * ray, -ray, (outside - nearest) * eye_.radius) ||
-          !is_sight(ray))
-        continue;
+      if (is_covered(ray) || !is_sight(ray)) continue;
       open += step * eye_.radius;
       sum += angle * step * eye_.radius;
     }
@@ -102,7 +111,7 @@ LidState LidLook::look(const std::vector<Vec3>& skin, const Shape& shape) const 
   if (ball_mesh.triangles.empty()) return out;
   const spatial::SurfaceQuery ball(std::move(ball_mesh));
   for (const auto& [t, low, high] : ranges_)
-    for (double angle = low; angle < high; angle += 0.02) {
+    for (double angle = low - more; angle < high + more; angle += 0.02) {
       const Vec3 ray = frame_.direction(t, angle), origin = eye_.centre + start * ray;
       const auto lid = lids.first_hit(origin, -ray, reach);
       if (!lid) continue;  // a gap, counted above

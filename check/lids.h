@@ -48,7 +48,7 @@ class LidLook {
   Eye eye_;
   LidFrame frame_;
   struct Range {
-    double station, low, high;  // high and low: radians
+    double station, low, high;  // high and low: radians, of the edges at rest
   };
   std::vector<Range> ranges_;
   Patch lids_;

@@ -62,11 +62,11 @@ uint8_t side_at(const TriangleMesh& mesh, const std::vector<uint8_t>& sides, con
 }  // namespace
 
 std::vector<uint8_t> sides_of_opening(const Skin& skin, const Vec3& upper, const Vec3& lower,
-                                      const Vec3& centre, double reach) {
+                                      const Vec3& centre, double reach, bool with_still) {
   const std::vector<Vec3>& vertices = skin.rest().vertices;
   std::vector<bool> within(vertices.size());
   for (size_t v = 0; v < within.size(); ++v)
-    within[v] = (vertices[v] - centre).norm() < reach && !skin.is_still()[v];
+    within[v] = (vertices[v] - centre).norm() < reach && (with_still || !skin.is_still()[v]);
   const std::vector<double> to_upper = ways(skin, upper, within), to_lower = ways(skin, lower, within);
   std::vector<uint8_t> sides(vertices.size(), Seam::none);
   for (size_t v = 0; v < sides.size(); ++v)
@@ -179,7 +179,10 @@ Seam mouth_seam(const Skin& skin, const std::map<std::string, Vec3>& landmarks, 
   return seam;
 }
 
-Seam lid_seam(const Skin& skin, const std::map<std::string, Vec3>& landmarks, const Eye& eye, bool left) {
+namespace {
+
+Seam lid_seam(const Skin& skin, const std::map<std::string, Vec3>& landmarks, const Eye& eye, bool left,
+              bool with_still) {
   Seam seam;
   const std::string side = left ? "_left" : "_right";
   for (const char* name : {"palpebrale_superius", "palpebrale_inferius", "exocanthion", "endocanthion"})
@@ -188,8 +191,12 @@ Seam lid_seam(const Skin& skin, const std::map<std::string, Vec3>& landmarks, co
              bottom = landmarks.at("palpebrale_inferius" + side);
   const LidFrame frame(landmarks.at("exocanthion" + side), landmarks.at("endocanthion" + side), eye, left);
   const double width = (frame.at_left - frame.at_right).norm();
-  seam.sides = sides_of_opening(skin, top, bottom, 0.5 * (frame.at_left + frame.at_right), 0.9 * width);
-  const Patch lids = moving_patch_about(skin, eye.centre, 1.7 * eye.radius);
+  // Where lids are shut their margins may have been placed on one of them, above or below where they meet.
+  const Vec3 aside(0.0, with_still ? 0.4 * width : 0.0, 0.0);
+  seam.sides = sides_of_opening(skin, top + aside, bottom - aside, 0.5 * (frame.at_left + frame.at_right),
+                                0.9 * width, with_still);
+  const Patch lids = with_still ? patch_about(skin.rest(), eye.centre, 1.7 * eye.radius)
+                                : moving_patch_about(skin, eye.centre, 1.7 * eye.radius);
   if (lids.triangles.empty()) return seam;
   const TriangleMesh mesh = lids.mesh(skin.rest().vertices);
   std::vector<uint8_t> sides;
@@ -199,7 +206,8 @@ Seam lid_seam(const Skin& skin, const std::map<std::string, Vec3>& landmarks, co
   constexpr int stations = 9;
   for (int s = 1; s <= stations; ++s) {
     const double t = static_cast<double>(s) / (stations + 1);
-    const double high = frame.elevation(top, t) + 0.25, low = frame.elevation(bottom, t) - 0.25;
+    const double beyond = with_still ? 0.5 : 0.25;
+    const double high = frame.elevation(top, t) + beyond, low = frame.elevation(bottom, t) - beyond;
     const double step = 1e-4 * width / 0.03 / eye.radius;
     Look look;
     look.reach = 0.75 * eye.radius;
@@ -218,6 +226,53 @@ Seam lid_seam(const Skin& skin, const std::map<std::string, Vec3>& landmarks, co
     seam.lower_edge.push_back(lower);
   }
   return seam;
+}
+
+/// Whether the edges of `seam` lie on each other all along and are yet far apart along the surface, as those
+/// of shut lids are. Where the eye is one surface with its lids it is no way from one to the other.
+bool are_shut(const Skin& skin, const Seam& seam, double width) {
+  constexpr size_t least_stations = 6;
+  constexpr double most_gap = 0.03, one_gap = 0.06, least_way = 0.15;  // of the width
+  if (seam.stations.size() < least_stations) return false;
+  const TriangleMesh& mesh = skin.rest();
+  constexpr double canthus = 0.15;  // nearer to one it is hard to tell which lid a place is of
+  int wider = 0;                    // one station may look into a fold beside the edges
+  for (size_t s = 0; s < seam.stations.size(); ++s) {
+    if (seam.stations[s] < canthus || seam.stations[s] > 1.0 - canthus) continue;
+    const double gap = (position(mesh, seam.upper_edge[s]) - position(mesh, seam.lower_edge[s])).norm();
+    if (gap > one_gap * width) return false;
+    wider += gap > most_gap * width ? 1 : 0;
+  }
+  if (wider > 1) return false;
+  const size_t middle = seam.stations.size() / 2;
+  const auto corners = [&](const SurfacePoint& p) { return mesh.triangles[static_cast<size_t>(p.triangle)]; };
+  const Triangle upper = corners(seam.upper_edge[middle]), lower = corners(seam.lower_edge[middle]);
+  const Vec3 from = position(mesh, seam.upper_edge[middle]);
+  std::vector<bool> within(mesh.vertices.size());
+  for (size_t v = 0; v < within.size(); ++v)
+    within[v] = seam.sides[v] != Seam::none;
+  // The way begins at the upper edge's own triangle, whatever else is as near.
+  for (const int v : lower)
+    within[static_cast<size_t>(v)] =
+        within[static_cast<size_t>(v)] && std::find(upper.begin(), upper.end(), v) == upper.end();
+  for (const int v : lower)
+    if (!within[static_cast<size_t>(v)]) return false;
+  const std::vector<double> way = ways(skin, mesh.vertices[static_cast<size_t>(upper[0])], within);
+  return std::all_of(lower.begin(), lower.end(), [&](int v) {
+    return way[static_cast<size_t>(v)] - (mesh.vertices[static_cast<size_t>(upper[0])] - from).norm() >
+           least_way * width;
+  });
+}
+
+}  // namespace
+
+Seam lid_seam(const Skin& skin, const std::map<std::string, Vec3>& landmarks, const Eye& eye, bool left) {
+  const std::string side = left ? "_left" : "_right";
+  const auto outer = landmarks.find("exocanthion" + side), inner = landmarks.find("endocanthion" + side);
+  if (outer == landmarks.end() || inner == landmarks.end()) return {};
+  Seam whole = lid_seam(skin, landmarks, eye, left, true);
+  whole.are_shut = are_shut(skin, whole, (outer->second - inner->second).norm());
+  return whole.are_shut ? whole : lid_seam(skin, landmarks, eye, left, false);
 }
 
 }  // namespace fascia::check

@@ -14,14 +14,15 @@ struct Seam {
   std::vector<double> stations;  ///< 0 at the corner to the subject's right .. 1 at the other, rising
   std::vector<SurfacePoint> upper_edge, lower_edge;  ///< #stations, on the skin's mesh at rest
   std::vector<uint8_t> sides;                        ///< of each vertex of the skin
+  bool are_shut = false;  ///< two lids that meet all along at rest, moved by anything or not
   bool empty() const { return stations.empty(); }
 };
 
 /// Which lip or lid each vertex of the skin within `reach` metres of `centre` is of: the one whose middle,
 /// `upper` or `lower`, is nearer along the surface. They hang together at their corners alone, so this holds
-/// whatever their form and also inside of the opening.
+/// whatever their form and also inside of the opening. `with_still`: also over what nothing moves.
 std::vector<uint8_t> sides_of_opening(const Skin& skin, const Vec3& upper, const Vec3& lower,
-                                      const Vec3& centre, double reach);
+                                      const Vec3& centre, double reach, bool with_still = false);
 
 /// Rays that look at an opening along one station, from its upper end to its lower.
 struct Look {
@@ -42,7 +43,9 @@ bool find_edges(const spatial::SurfaceQuery& query, const TriangleMesh& mesh,
 /// against an adult's.
 Seam mouth_seam(const Skin& skin, const std::map<std::string, Vec3>& landmarks, double size);
 
-/// The seam of an eye's lids, seen from outside toward the eye's centre; nine stations between the canthi.
+/// The seam of an eye's lids, seen from outside toward the eye's centre; nine stations between the canthi. An
+/// eye that is one surface with its lids and that nothing moves is no lid; lids that are shut are, though
+/// nothing moves them.
 Seam lid_seam(const Skin& skin, const std::map<std::string, Vec3>& landmarks, const Eye& eye, bool left);
 
 }  // namespace fascia::check

@@ -76,6 +76,40 @@ TEST(Lids, AnEyeThatIsOneSurfaceWithThemIsWhatOneSeesBetweenThem) {
   EXPECT_EQ(lids_of(open, scanned(eye_with_lids(0.0, 0.0))).widest, 0.0);
 }
 
+TEST(Lids, AFlatEyeThatIsOneSurfaceWithThemIsCoveredByWhatComesBeforeIt) {
+  constexpr double deep = 0.5, before = 0.55;  // of where eyes lie
+  // What of the lids has come between the edges at rest lies deep too.
+  const auto scanned = [&](Head head) {
+    for (Vec3& p : head.parts[0].mesh.vertices)
+      if (const double elevation = std::asin(p.y() / 0.0125); elevation < 0.47 && elevation > -0.27)
+        p *= before;
+    for (Vec3& p : head.parts[1].mesh.vertices)
+      p *= deep;
+    head.parts[0].is_still.assign(head.parts[0].mesh.vertices.size(), false);
+    append(head.parts[0].mesh, head.parts[1].mesh);
+    head.parts[0].is_still.resize(head.parts[0].mesh.vertices.size(), true);
+    head.parts.pop_back();
+    return head;
+  };
+  const Head open = scanned(eye_with_lids(0.5, -0.3));
+  EXPECT_NEAR(lids_of(open, open).widest, 0.8 * 0.012, 1.5e-4);
+  EXPECT_EQ(lids_of(open, scanned(eye_with_lids(0.0, 0.0))).widest, 0.0);
+  EXPECT_NEAR(lids_of(open, scanned(eye_with_lids(0.05, -0.05))).widest, 0.1 * 0.012, 1.5e-4);
+}
+
+TEST(Lids, ThatAreShutAtRestAndStayAreClosed) {
+  constexpr double slit = 0.004;  // radians on each side: edges in one place are welded
+  Head shut = eye_with_lids(slit, -slit);
+  shut.parts.pop_back();
+  shut.parts[0].is_still.assign(shut.parts[0].mesh.vertices.size(), true);
+  // Both margins placed on the upper lid, as where the eye was thought open.
+  shut.landmarks["palpebrale_superius_left"] = 0.0125 * Vec3(0.0, std::sin(0.5), std::cos(0.5));
+  shut.landmarks["palpebrale_inferius_left"] = 0.0125 * Vec3(0.0, std::sin(0.1), std::cos(0.1));
+  const LidState state = lids_of(shut, shut);
+  EXPECT_EQ(state.gaps.size(), 9U);
+  EXPECT_LT(state.widest, 3.0 * slit * 0.012);
+}
+
 TEST(Lids, SeamFollowsBothEdges) {
   const Head open = eye_with_lids(0.5, -0.3);
   const Skin skin(open, Vec3::Zero(), 0.1);

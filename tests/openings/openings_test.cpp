@@ -8,9 +8,12 @@
 #include <random>
 #include <sstream>
 
+#include "builder/openings/fused.h"
+#include "builder/spatial/surface_query.h"
 #include "geometry/connectivity.h"
 #include "geometry/error.h"
 #include "tests/openings/closed_head.h"
+#include "tests/shapes/grid.h"
 
 namespace fascia::testing {
 namespace {
@@ -122,6 +125,31 @@ TEST(Openings, LeavesOpenHeadsAlone) {
   openings::OpeningOptions options;
   options.open = "never";
   EXPECT_TRUE(open(closed.skin, closed.landmarks, options).opened.parted.empty());
+}
+
+TEST(Openings, LeavesAMouthAloneWhoseCornersWerePlacedTooFarOut) {
+  constexpr double half_line = 0.036, side = 0.06;
+  const auto is_slit_fused = [&](double half_slit) {
+    TriangleMesh skin;
+    for (const double up : {1.0, -1.0}) {  // two halves of a square, joined beside the slit
+      const TriangleMesh half = grid(120, 60, [&](double u, double v) {
+        const double x = side * (2.0 * u - 1.0), gap = std::abs(x) < half_slit ? 1e-4 : 0.0;
+        return Vec3(x, up > 0.0 ? gap + v * (side - gap) : -gap - (1.0 - v) * (side - gap), 0.0);
+      });
+      const int first = skin.vertex_count();
+      skin.vertices.insert(skin.vertices.end(), half.vertices.begin(), half.vertices.end());
+      for (const Triangle& t : half.triangles)
+        skin.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    }
+    skin = weld(skin, 1e-6, nullptr);
+    openings::MeetingLine line;
+    line.half_width = half_line;
+    line.heights = {0.0, 0.0};
+    return openings::is_fused(skin, connectivity(skin), spatial::SurfaceQuery(skin), line);
+  };
+  EXPECT_TRUE(is_slit_fused(0.0));
+  EXPECT_FALSE(is_slit_fused(0.0185));  // near its ends the way around them is short
+  EXPECT_FALSE(is_slit_fused(half_line));
 }
 
 TEST(Openings, PartsOnlyWhatIsClosed) {
