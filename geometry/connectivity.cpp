@@ -121,8 +121,8 @@ TriangleMesh weld(const TriangleMesh& mesh, double tolerance, std::vector<int>* 
   // A hash grid of cells two tolerances wide: a partner lies in one of the 27 cells around.
   const double cell = std::max(2.0 * tolerance, 1e-12);
   const auto key = [](int64_t x, int64_t y, int64_t z) {
-    return static_cast<uint64_t>(x * 73856093LL) ^ static_cast<uint64_t>(y * 19349663LL) ^
-           static_cast<uint64_t>(z * 83492791LL);
+    return static_cast<uint64_t>(x) * 73856093U ^ static_cast<uint64_t>(y) * 19349663U ^
+           static_cast<uint64_t>(z) * 83492791U;
   };
   std::unordered_multimap<uint64_t, int> grid;
   grid.reserve(mesh.vertices.size());
