@@ -62,15 +62,16 @@ TEST(Lids, AnEyeballThatStandsOutIsMeasured) {
   EXPECT_NEAR(lids_of(open, posed).cornea_out, 7e-4, 1e-4);
 }
 
+/// The eyeball as a part of the skin that nothing moves, as in scans.
+Head scanned(Head head) {
+  head.parts[0].is_still.assign(head.parts[0].mesh.vertices.size(), false);
+  append(head.parts[0].mesh, head.parts[1].mesh);
+  head.parts[0].is_still.resize(head.parts[0].mesh.vertices.size(), true);
+  head.parts.pop_back();
+  return head;
+}
+
 TEST(Lids, AnEyeThatIsOneSurfaceWithThemIsWhatOneSeesBetweenThem) {
-  // The eyeball as a part of the skin that nothing moves, as in scans.
-  const auto scanned = [](Head head) {
-    head.parts[0].is_still.assign(head.parts[0].mesh.vertices.size(), false);
-    append(head.parts[0].mesh, head.parts[1].mesh);
-    head.parts[0].is_still.resize(head.parts[0].mesh.vertices.size(), true);
-    head.parts.pop_back();
-    return head;
-  };
   const Head open = scanned(eye_with_lids(0.5, -0.3));
   EXPECT_NEAR(lids_of(open, open).widest, 0.8 * 0.012, 1.5e-4);
   EXPECT_EQ(lids_of(open, scanned(eye_with_lids(0.0, 0.0))).widest, 0.0);
@@ -79,22 +80,18 @@ TEST(Lids, AnEyeThatIsOneSurfaceWithThemIsWhatOneSeesBetweenThem) {
 TEST(Lids, AFlatEyeThatIsOneSurfaceWithThemIsCoveredByWhatComesBeforeIt) {
   constexpr double deep = 0.5, before = 0.55;  // of where eyes lie
   // What of the lids has come between the edges at rest lies deep too.
-  const auto scanned = [&](Head head) {
+  const auto flat = [&](Head head) {
     for (Vec3& p : head.parts[0].mesh.vertices)
       if (const double elevation = std::asin(p.y() / 0.0125); elevation < 0.47 && elevation > -0.27)
         p *= before;
     for (Vec3& p : head.parts[1].mesh.vertices)
       p *= deep;
-    head.parts[0].is_still.assign(head.parts[0].mesh.vertices.size(), false);
-    append(head.parts[0].mesh, head.parts[1].mesh);
-    head.parts[0].is_still.resize(head.parts[0].mesh.vertices.size(), true);
-    head.parts.pop_back();
-    return head;
+    return scanned(std::move(head));
   };
-  const Head open = scanned(eye_with_lids(0.5, -0.3));
+  const Head open = flat(eye_with_lids(0.5, -0.3));
   EXPECT_NEAR(lids_of(open, open).widest, 0.8 * 0.012, 1.5e-4);
-  EXPECT_EQ(lids_of(open, scanned(eye_with_lids(0.0, 0.0))).widest, 0.0);
-  EXPECT_NEAR(lids_of(open, scanned(eye_with_lids(0.05, -0.05))).widest, 0.1 * 0.012, 1.5e-4);
+  EXPECT_EQ(lids_of(open, flat(eye_with_lids(0.0, 0.0))).widest, 0.0);
+  EXPECT_NEAR(lids_of(open, flat(eye_with_lids(0.05, -0.05))).widest, 0.1 * 0.012, 1.5e-4);
 }
 
 TEST(Lids, ThatAreShutAtRestAndStayAreClosed) {
