@@ -97,6 +97,19 @@ TEST(Prepare, ATiltedHeadIsSetUprightAndOneAlongTheAxesKeepsThem) {
   }
 }
 
+TEST(Prepare, ALandmarkFarOffTheSkinIsRefusedWhereItWasGivenAndTakenWhereItIsRough) {
+  const formats::Scene scene = scene_in(Mat4::Identity());
+  formats::LandmarkFile file = landmarks_in(Mat4::Identity(), 1.0, "m");
+  file.points["pronasale"] = Vec3(0, 0, 0.16);
+  EXPECT_THROW(prepare(scene, file, reference(), {}), Error);
+  PrepareOptions options;
+  options.rough_landmarks = {"pronasale"};
+  const PreparedHead head = prepare(scene, file, reference(), options);
+  EXPECT_NEAR(head.landmarks.at("pronasale").norm(), 0.11, 2e-3);
+  for (const std::string& warning : head.warnings)
+    EXPECT_EQ(warning.find("pronasale"), std::string::npos) << warning;
+}
+
 TEST(Prepare, TakesLandmarksInOtherUnitsThanTheHead) {
   const Mat4 to_file = Mat4::Identity();
   const PreparedHead head = prepare(scene_in(to_file), landmarks_in(to_file, 1000.0, "mm"), reference(), {});
