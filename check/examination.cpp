@@ -30,6 +30,14 @@ double excess(const Row& row) {
   return out;
 }
 
+/// Whether the surface through `vertices` lies behind `centre`, the middle of its curve, as an eye looks.
+bool is_hollow(const std::vector<Vec3>& vertices, const Vec3& centre, const Eye& eye) {
+  Vec3 middle = Vec3::Zero();
+  for (const Vec3& p : vertices)
+    middle += p / static_cast<double>(vertices.size());
+  return (centre - middle).dot(eye.gaze) > 0.5 * eye.radius;
+}
+
 Vec3 middle_of_face(const Head& head) {
   Vec3 sum = Vec3::Zero();
   int count = 0;
@@ -236,10 +244,11 @@ void Examination::eyes(const std::string& pose, const Shape& shape) {
     double radius = 0.0;
     const std::vector<Vec3>& rest = head_.parts[ball].mesh.vertices;
     const std::optional<Eye> eye = plausible_eye(head_, k == 0);
-    // A plate a little bent, as drawn faces have for eyes, lies on the sphere of no eyeball: it turns about
-    // the globe behind it.
+    // A plate a little bent, as drawn faces have for eyes, or one that is hollow to the front, lies on the
+    // sphere of no eyeball: it turns about the globe behind it.
     constexpr double largest = 2.0;  // of the globe
-    if (!sphere_centre(rest, centre, radius) || (eye && radius > largest * eye->radius)) {
+    if (!sphere_centre(rest, centre, radius) || (eye && radius > largest * eye->radius) ||
+        (eye && is_hollow(rest, centre, *eye))) {
       if (!eye) continue;
       centre = eye->centre;
     }

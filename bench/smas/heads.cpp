@@ -26,7 +26,7 @@ double quantile(std::vector<double> values, double share) {
 
 void run(const std::filesystem::path& file, const anatomy::GenericAnatomy& anatomy) {
   const rigging::FoundLandmarks found = rigging::find_landmarks(formats::read(file), {}, anatomy);
-  const skull::FitResult skull = rigging::fit_skull(anatomy, found.head, found.landmarks, 1.0);
+  const skull::FitResult skull = rigging::fit_skull(anatomy, found, 1.0);
   smas::Inputs inputs = smas::inputs_from(anatomy);
   inputs.skin = &found.head.skin;
   inputs.cranium = &skull.cranium;

@@ -1,5 +1,6 @@
 #include "builder/landmarks/symmetry.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -45,11 +46,28 @@ double unit_of(const std::map<std::string, SkinLandmark>& landmarks) {
   return 0.001 * (left->second.position - right->second.position).norm() / adult;
 }
 
+/// The place of the skin on the plane that is nearest to `from`, by going from one to the other in turn, as on
+/// the ridge of a nose: nothing where they do not meet within `near`.
+std::optional<Vec3> along_plane(const MirrorPlane& plane, const spatial::SurfaceQuery& skin, const Vec3& from,
+                                double near) {
+  constexpr int rounds = 60;
+  Vec3 p = from;
+  for (int round = 0; round < rounds; ++round) {
+    const Vec3 foot = plane.foot(p);
+    const auto hit = skin.closest(foot);
+    if (!hit.found()) return {};
+    p = hit.position;
+    if (hit.distance < 0.1 * near) break;
+  }
+  if (std::abs(plane.distance(p)) > near) return {};
+  return p;
+}
+
 }  // namespace
 
-std::optional<MirrorPlane> mirror_plane(const std::map<std::string, SkinLandmark>& landmarks,
-                                        const spatial::SurfaceQuery& skin) {
-  constexpr double within = 8.0, alike = 0.35;  // millimetres of an adult's face
+std::optional<FaceMirror> face_mirror(const std::map<std::string, SkinLandmark>& landmarks,
+                                      const spatial::SurfaceQuery& skin) {
+  constexpr double within = 8.0, alike = 2.0, exact = 0.35;  // millimetres of an adult's face
   std::vector<std::pair<Vec3, Vec3>> pairs;
   for_each_pair(landmarks, [&](const SkinLandmark& left, const SkinLandmark& right) {
     pairs.emplace_back(left.position, right.position);
@@ -59,13 +77,16 @@ std::optional<MirrorPlane> mirror_plane(const std::map<std::string, SkinLandmark
   const double unit = unit_of(landmarks);
   const std::vector<Vec3> places = places_of(landmarks, skin);
   const spatial::MirrorFit fit = spatial::fit_mirror_plane(skin, places, *plane, within * unit);
-  if (!fit.covers(places.size()) || fit.most_apart() > alike * unit) return {};
-  return fit.plane;
+  const double most = fit.most_apart();
+  if (!fit.covers(places.size()) || most > alike * unit) return {};
+  return FaceMirror{fit.plane, most <= exact * unit};
 }
 
-int make_symmetric(const MirrorPlane& plane, const spatial::SurfaceQuery& skin,
+int make_symmetric(const FaceMirror& mirror, const spatial::SurfaceQuery& skin,
                    std::map<std::string, SkinLandmark>& landmarks) {
-  const double near = 0.6 * unit_of(landmarks), far = 5.0 * unit_of(landmarks);
+  const MirrorPlane& plane = mirror.plane;
+  const double unit = unit_of(landmarks), near = 0.6 * unit, far = (mirror.is_exact ? 5.0 : 3.0) * unit;
+  const double least = mirror.is_exact ? 0.0 : far;
   int moved = 0;
   // Beside the mesh, as a mask's ears are, a landmark is as far from the skin as it was.
   const auto settled = [&](const Vec3& p, const SkinLandmark& before) -> std::optional<Vec3> {
@@ -79,25 +100,38 @@ int make_symmetric(const MirrorPlane& plane, const spatial::SurfaceQuery& skin,
     if (left.is_given || right.is_given) return;
     const Vec3 image = plane.image(right.position);
     // Found apart, one of them was found wrong: the surer one counts.
-    const bool is_apart = (left.position - image).norm() > far;
-    const Vec3 mean = !is_apart                             ? Vec3(0.5 * (left.position + image))
-                      : left.confidence >= right.confidence ? left.position
-                                                            : image;
-    const auto here = settled(mean, left), there = settled(plane.image(mean), right);
-    if (!here || !there) return;
-    left.position = *here;
-    right.position = *there;
-    moved += 2;
+    const double apart = (left.position - image).norm();
+    const bool is_left_surer = left.confidence >= right.confidence;
+    // A landmark less sure than its image would bend the skull to one side.
+    left.confidence = right.confidence = apart > far ? std::max(left.confidence, right.confidence)
+                                                     : 0.5 * (left.confidence + right.confidence);
+    if (apart < least) return;
+    const Vec3 surer = is_left_surer ? left.position : image, mean = 0.5 * (left.position + image);
+    for (const Vec3& p : {apart > far ? surer : mean, surer}) {  // a mean may lie in the air beside a fold
+      const auto here = settled(p, left), there = settled(plane.image(p), right);
+      if (!here || !there) continue;
+      left.position = *here;
+      right.position = *there;
+      moved += 2;
+      return;
+    }
   });
   for (auto& [name, landmark] : landmarks) {
-    if (name.ends_with("_left") || name.ends_with("_right") || landmark.is_given) continue;
-    const Vec3 p = 0.5 * (landmark.position + plane.image(landmark.position));
-    if (const auto here = settled(p, landmark)) {
-      landmark.position = *here;
+    if (name.ends_with("_left") || name.ends_with("_right") || landmark.is_given ||
+        std::abs(plane.distance(landmark.position)) < least)
+      continue;
+    const Vec3 p = plane.foot(landmark.position);
+    const auto here = settled(p, landmark);
+    if (const auto place = here ? here : along_plane(plane, skin, landmark.position, near)) {
+      landmark.position = *place;
       ++moved;
     }
   }
   return moved;
+}
+
+Mat3 upright(const MirrorPlane& plane) {
+  return Eigen::Quaterniond::FromTwoVectors(plane.normal, Vec3::UnitX()).toRotationMatrix();
 }
 
 }  // namespace fascia::landmarks

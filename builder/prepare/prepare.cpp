@@ -94,4 +94,21 @@ PreparedHead prepare(const formats::Scene& scene, const formats::LandmarkFile& g
   return head;
 }
 
+void turn(PreparedHead& head, const Mat3& rotation) {
+  for (PreparedMesh& mesh : head.meshes)
+    for (Vec3& p : mesh.positions)
+      p = rotation * p;
+  for (Vec3& p : head.skin.vertices)
+    p = rotation * p;
+  if (head.surface) head.surface.emplace(head.skin);
+  for (auto& [name, p] : head.landmarks)
+    p = rotation * p;
+  for (std::optional<Eyeball>* eye : {&head.eye_left, &head.eye_right})
+    if (*eye) {
+      (*eye)->centre = rotation * (*eye)->centre;
+      (*eye)->gaze = rotation * (*eye)->gaze;
+    }
+  head.input_to_metres.topRows<3>() = rotation * head.input_to_metres.topRows<3>();
+}
+
 }  // namespace fascia::prepare

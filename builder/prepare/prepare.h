@@ -103,4 +103,8 @@ std::vector<TriangleMesh> search_surfaces(const formats::Scene& scene, const std
 PreparedHead prepare(const formats::Scene& scene, const formats::LandmarkFile& given,
                      const std::map<std::string, Vec3>& reference, const PrepareOptions& options);
 
+/// Turns the rig frame about its origin: every place and direction of `head` by `rotation`, and the map that
+/// leads from the file.
+void turn(PreparedHead& head, const Mat3& rotation);
+
 }  // namespace fascia::prepare

@@ -140,7 +140,7 @@ BuildResult build_rig(const formats::Scene& scene, const formats::LandmarkFile& 
   const std::map<std::string, Vec3> points = places(all_landmarks);
 
   const skull::FitResult skull =
-      stages.run("skull", [&] { return fit_skull(anatomy, head, all_landmarks, options.tissue_scale); });
+      stages.run("skull", [&] { return fit_skull(anatomy, found, options.tissue_scale); });
   report_skull(skull, report);
   close_openings(opened, head, skull, options, report);
   report_parts(head, report);

@@ -9,6 +9,7 @@
 #include "builder/landmarks/regions.h"
 #include "builder/landmarks/skin_landmark.h"
 #include "builder/prepare/prepare.h"
+#include "builder/spatial/mirror_plane.h"
 #include "formats/landmark_file.h"
 #include "formats/scene.h"
 
@@ -20,6 +21,7 @@ struct FoundLandmarks {
   std::map<std::string, landmarks::SkinLandmark> landmarks;  ///< metres, rig frame
   std::optional<landmarks::FaceRegions>
       regions;                      ///< of the vertices of `head.skin`; nothing when nothing was searched
+  std::optional<spatial::MirrorPlane> mirror;  ///< between the face's sides, where these are alike
   double likeness = 1.0;            ///< how face-like what was found is, 0 to 1; 1 when nothing was searched
   bool is_inside_out = false;       ///< the file's triangles face inward; those of `head` were turned
   std::array<double, 3> seconds{};  ///< for finding the head, preparing it, placing the landmarks

@@ -148,6 +148,35 @@ Points reference_points(const anatomy::GenericAnatomy& anatomy) {
   return points;
 }
 
+/// Turns the rig frame until the face's mirror plane is its own, for what follows tells left from right by the
+/// axes: a head that leans a little would move otherwise on one side than on the other. What leans by less
+/// than landmarks are found to keeps the file's axes.
+void set_upright(FoundLandmarks& result, const landmarks::FaceMirror& mirror) {
+  const double least = (mirror.is_exact ? 0.25 : 0.75) * EIGEN_PI / 180.0;
+  const Mat3 turn = landmarks::upright(mirror.plane);
+  result.mirror = mirror.plane;
+  if (Eigen::AngleAxisd(turn).angle() < least) return;
+  result.mirror = {turn * mirror.plane.point, turn * mirror.plane.normal};
+  prepare::turn(result.head, turn);
+  for (auto& [name, landmark] : result.landmarks)
+    landmark.position = turn * landmark.position;
+}
+
+/// Makes the eyeballs of a head that is its own mirror image each other's images too, where they nearly are:
+/// a globe that is guessed behind a flat eye depends on how that is cut into triangles.
+void pair_eyes(prepare::PreparedHead& head, const spatial::MirrorPlane& plane) {
+  constexpr double most_apart = 0.3, most_larger = 1.2;  // of the radius; one over the other
+  if (!head.eye_left || !head.eye_right) return;
+  prepare::Eyeball &left = *head.eye_left, &right = *head.eye_right;
+  const Vec3 image = plane.image(right.centre);
+  const double ratio = left.radius / right.radius;
+  if ((left.centre - image).norm() > most_apart * left.radius || std::max(ratio, 1.0 / ratio) > most_larger)
+    return;
+  left.centre = 0.5 * (left.centre + image);
+  right.centre = plane.image(left.centre);
+  left.radius = right.radius = 0.5 * (left.radius + right.radius);
+}
+
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
@@ -177,8 +206,11 @@ FoundLandmarks find_landmarks(const formats::Scene& file, const formats::Landmar
                                  reference, preparing);
   const double prepared_at = now();
   place_landmarks(result, located, given, anatomy, with_regions);
-  if (const auto plane = landmarks::mirror_plane(result.landmarks, *result.head.surface))
-    landmarks::make_symmetric(*plane, *result.head.surface, result.landmarks);
+  if (const auto mirror = landmarks::face_mirror(result.landmarks, *result.head.surface)) {
+    landmarks::make_symmetric(*mirror, *result.head.surface, result.landmarks);
+    if (mirror->is_exact) pair_eyes(result.head, mirror->plane);
+    set_upright(result, *mirror);
+  }
   result.seconds = {located_at - started, prepared_at - located_at, now() - prepared_at};
   return result;
 }

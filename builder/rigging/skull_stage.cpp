@@ -102,10 +102,11 @@ rig::Surface rig_surface(const TriangleMesh& mesh) {
   return surface;
 }
 
-skull::FitResult fit_skull(const anatomy::GenericAnatomy& anatomy, const prepare::PreparedHead& head,
-                           const SkinLandmarks& landmarks, double tissue_scale) {
+skull::FitResult fit_skull(const anatomy::GenericAnatomy& anatomy, const FoundLandmarks& found,
+                           double tissue_scale) {
+  const prepare::PreparedHead& head = found.head;
   std::map<std::string, skull::TargetLandmark> targets;
-  for (const auto& [name, landmark] : landmarks)
+  for (const auto& [name, landmark] : found.landmarks)
     targets[name] = {landmark.position, landmark.confidence};
   skull::FitOptions options;
   options.tissue_scale = tissue_scale;
@@ -116,6 +117,7 @@ skull::FitResult fit_skull(const anatomy::GenericAnatomy& anatomy, const prepare
   if (!upper.empty()) options.teeth_upper = &upper;
   if (!lower.empty()) options.teeth_lower = &lower;
   skull::FitResult fit = fit_with_teeth(generic, skin, targets, options);
+  if (found.mirror) fit.jaw.hinge = found.mirror->normal;
   warn_of_bad_fit(fit);
   return fit;
 }

@@ -29,9 +29,10 @@ openings::OpenedHead open_head(const formats::Scene& scene, FoundLandmarks& foun
 void close_openings(openings::OpenedHead& opened, prepare::PreparedHead& head, const skull::FitResult& skull,
                     const BuildOptions& options, BuildReport& report);
 
-/// Fits the generic skull under the head's skin; teeth the head has serve as evidence.
-skull::FitResult fit_skull(const anatomy::GenericAnatomy& anatomy, const prepare::PreparedHead& head,
-                           const SkinLandmarks& landmarks, double tissue_scale);
+/// Fits the generic skull under the head's skin; teeth the head has serve as evidence. The jaw's hinge stands
+/// across the plane between the face's sides, where there is one.
+skull::FitResult fit_skull(const anatomy::GenericAnatomy& anatomy, const FoundLandmarks& found,
+                           double tissue_scale);
 
 /// Lays all muscles of `anatomy` as `edits` ask and adds their figures and warnings to `report`.
 std::vector<rig::Muscle> build_muscles(const anatomy::GenericAnatomy& anatomy,

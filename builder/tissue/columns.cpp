@@ -156,10 +156,15 @@ Cut cut_anew(const TissueInputs& inputs, const FaceRegion& region, const std::op
     for (const SurfacePoint& place : half.source)
       half_lengths.push_back(blend(region, place, lengths));
     const RemeshResult own = finished(on_region(remesh(half.mesh, half_lengths), half, *symmetry));
-    Cut cut;
-    if (auto full = with_images(own, region, *symmetry, cut.left)) {
-      cut.remeshed = symmetry->is_exact ? std::move(*full) : finished(std::move(*full));
-      if (!symmetry->is_exact) cut.left.clear();
+    Symmetry tried = *symmetry;
+    for (const bool is_exact : {true, false}) {  // where it is exact but for a part, as the mouth's lining
+      if (is_exact && !symmetry->is_exact) continue;
+      tried.is_exact = is_exact;
+      Cut cut;
+      auto full = with_images(own, region, tried, cut.left);
+      if (!full) continue;
+      cut.remeshed = is_exact ? std::move(*full) : finished(std::move(*full));
+      if (!is_exact) cut.left.clear();
       return cut;
     }
   }

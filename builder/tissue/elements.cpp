@@ -222,7 +222,9 @@ void add_membranes(const Columns& c, const anatomy::Mechanics& m, const std::vec
 /// Between the columns of a lip's or cheek's outer skin and those of its lining lies the same flesh: each
 /// lining column hangs on three outer ones that end before it, some way to its sides however close columns
 /// stand.
-void add_lip_body(const Columns& c, const anatomy::Mechanics& m, rig::TissueLevel& level) {
+void add_lip_body(const TissueInputs& inputs, const Columns& c, rig::TissueLevel& level) {
+  const anatomy::Mechanics& m = inputs.mechanics;
+  const double middle = 0.5 * (landmark(inputs, "cheilion_left") + landmark(inputs, "cheilion_right")).x();
   constexpr double same_lip = 0.3;  // of Columns::lower_lip
   const auto n = static_cast<size_t>(c.count());
   const SpringAdder spring{level, m.tissue};
@@ -238,7 +240,10 @@ void add_lip_body(const Columns& c, const anatomy::Mechanics& m, rig::TissueLeve
         near.push_back(w);
     }
     if (near.empty()) continue;
-    const Vec3 across = c.normals[v].cross(Vec3::UnitY()).normalized(), up = across.cross(c.normals[v]);
+    // From the midline outward, so that both sides hang alike.
+    const double outward = c.mesh.vertices[v].x() < middle ? -1.0 : 1.0;
+    const Vec3 across = outward * c.normals[v].cross(Vec3::UnitY()).normalized(),
+               up = outward * across.cross(c.normals[v]);
     std::map<size_t, double> share;
     for (const double angle : {0.5, 2.5944, 4.6888}) {  // thirds of a turn
       const Vec3 aim = c.inner[v] + m.lips.body_spread * (std::cos(angle) * across + std::sin(angle) * up);
@@ -298,7 +303,7 @@ rig::TissueLevel make_level(const TissueInputs& inputs, const LevelOptions& want
   add_nodes(columns, inputs.mechanics, level);
   const std::vector<double> carried = add_retinacula(columns, attachments, inputs.mechanics, level);
   add_membranes(columns, inputs.mechanics, carried, level);
-  add_lip_body(columns, inputs.mechanics, level);
+  add_lip_body(inputs, columns, level);
   add_tethers(columns, attachments, inputs.mechanics, level);
   return level;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -224,8 +225,9 @@ std::optional<RemeshResult> with_images(const RemeshResult& half, const FaceRegi
     if (!place) {
       // Where the region ends its last triangles may reach farther on one side.
       place = finder.place(p, facing, ends);
+      missing += !place || beside[v].first < 0;
+      if (!place) place = finder.place(p, facing, std::numeric_limits<double>::infinity());
       if (!place) return {};
-      missing += beside[v].first < 0;
     }
     full.source.push_back(*place);
     full.mesh.vertices.push_back(plane.is_exact ? p : position(region.mesh, *place));

@@ -119,7 +119,7 @@ class Stages {
         rigging::find_landmarks(scene_, formats::read_landmarks(folder / "landmarks.json"), anatomy_, {});
     for (const auto& [name, landmark] : found_.landmarks)
       points_[name] = landmark.position;
-    skull_ = rigging::fit_skull(anatomy_, found_.head, found_.landmarks, 1.0);
+    skull_ = rigging::fit_skull(anatomy_, found_, 1.0);
     smas_ = smas_of(anatomy_);
     rigging::BuildReport report;
     rig_.muscles = rigging::build_muscles(anatomy_, found_.head, skull_, smas_, points_, {}, report);
@@ -133,7 +133,7 @@ class Stages {
 
   uint64_t skull(const GenericAnatomy& changed) const {
     Digest digest;
-    const skull::FitResult fitted = rigging::fit_skull(changed, found_.head, found_.landmarks, 1.0);
+    const skull::FitResult fitted = rigging::fit_skull(changed, found_, 1.0);
     const rig::Skull built = rigging::rig_skull(fitted, found_.head, found_.landmarks);
     rig::skull_fields(digest, built);
     return digest.value();

@@ -25,7 +25,7 @@ struct Head {
   explicit Head(const fs::path& file) {
     static const anatomy::GenericAnatomy anatomy = anatomy::load_generic();
     found = rigging::find_landmarks(formats::read(file), {}, anatomy);
-    skull = rigging::fit_skull(anatomy, found.head, found.landmarks, 1.0);
+    skull = rigging::fit_skull(anatomy, found, 1.0);
     inputs = smas::inputs_from(anatomy);
     inputs.skin = &found.head.skin;
     inputs.cranium = &skull.cranium;

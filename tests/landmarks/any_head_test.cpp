@@ -159,6 +159,47 @@ TEST(SameHead, AMirroredHeadHasMirroredLandmarks) {
   EXPECT_LE(off, 1.0);
 }
 
+/// Degrees between the rig frame's left and the made head's, which was turned by `rotation`.
+double lean(const rigging::FoundLandmarks& found, const Mat3& rotation) {
+  const Vec3 left = (found.head.input_to_metres.topLeftCorner<3, 3>() * rotation.col(0)).normalized();
+  return std::acos(std::clamp(left.x(), -1.0, 1.0)) * 180 / EIGEN_PI;
+}
+
+TEST(SameHead, StandsUprightHoweverItLeans) {
+  // By less than the axes of a file are taken for the head's.
+  for (const MadeHead& head : {made("adult", as_it_is), made("anime", as_anime)})
+    for (const Mat3& rotation : {turn(4, Vec3(0, 0, 1)), turn(-4, Vec3(0, 1, 0)), turn(3, Vec3(0, 1, 1))}) {
+      const rigging::FoundLandmarks found =
+          rigging::find_landmarks(moved(head, rotation, 1.0, Vec3::Zero()).scene, {}, anatomy_of_tests());
+      EXPECT_LE(lean(found, rotation), 0.3) << head.name;
+      ASSERT_TRUE(found.mirror);
+      EXPECT_GT(found.mirror->normal.x(), std::cos(0.3 * EIGEN_PI / 180));
+      // What is prepared went along.
+      for (const auto& [name, landmark] : found.landmarks) {
+        if (landmark.confidence < 0.8) continue;
+        EXPECT_LE(found.head.surface->closest(landmark.position).distance, 1e-3) << name;
+      }
+      const Vec3 corner =
+          transform_point(found.head.input_to_metres, rotation * head.scene.meshes[0].positions[0]);
+      EXPECT_LE((found.head.meshes[0].positions[0] - corner).norm(), 1e-6);
+      EXPECT_LE((found.head.eye_left->centre - found.mirror->image(found.head.eye_right->centre)).norm(), 1e-3);
+    }
+}
+
+TEST(SameHead, BothSidesLandmarksAreEachOthersImages) {
+  const rigging::FoundLandmarks found = rigging::find_landmarks(
+      moved(made("anime", as_anime), turn(4, Vec3(0, 1, 1)), 1.0, Vec3::Zero()).scene, {}, anatomy_of_tests());
+  ASSERT_TRUE(found.mirror);
+  for (const auto& [name, landmark] : found.landmarks) {
+    if (name.ends_with("_right")) continue;
+    const bool is_left = name.ends_with("_left");
+    const landmarks::SkinLandmark& other =
+        is_left ? found.landmarks.at(name.substr(0, name.size() - 4) + "right") : landmark;
+    EXPECT_LE((landmark.position - found.mirror->image(other.position)).norm(), 1.2e-3) << name;
+    EXPECT_EQ(landmark.confidence, other.confidence) << name;
+  }
+}
+
 TEST(GivenLandmarks, AlwaysHelp) {
   // Heads so changed that finding alone is far off, or finds nothing.
   const auto strange = [](const Vec3& p) {
