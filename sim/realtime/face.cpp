@@ -145,12 +145,12 @@ MinimiseResult Face::substep(const Controls& now, const StepOptions& options, Wo
     };
     for (const uint32_t node : contacts.soft_nodes())
       bring(node);
-    // Who faces whom changes slowly, and is known from afar: after the first time, a quarter of them a
+    // Who faces whom changes slowly, and is known from afar: after the first time, an eighth of them a
     // substep.
     if (turn_ == 0)
       contacts.find_facing(work.nodes.data(), facing_, work.facing_search);
     else
-      contacts.find_facing(work.nodes.data(), facing_, work.facing_search, turn_ % 4, 4);
+      contacts.find_facing(work.nodes.data(), facing_, work.facing_search, turn_ % 8, 8);
     ++turn_;
     if (contacts.options().friction > 0.0 || contacts.options().stickiness > 0.0) {
       RigidTransform turn;

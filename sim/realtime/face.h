@@ -63,8 +63,7 @@ class Face final : public Solver {
              Boundary& boundary) const;
   void fill_nodes(const float* x, Positions& nodes) const;
   double contact_energy(Solve& solve, const float* x, float* gradient);
-  double evaluate(Solve& solve, const float* x);
-  float momentum(const Workspace& work) const;
+  double evaluate(Solve& solve, const float* x, bool wants_energy = true);
   MinimiseResult minimise(Solve& solve, const MinimiseOptions& options, float* x);
   /// Few iterations without line search, for a substep.
   MinimiseResult iterate(Solve& solve, const MinimiseOptions& options, float* x);
