@@ -46,8 +46,8 @@ double unit_of(const std::map<std::string, SkinLandmark>& landmarks) {
   return 0.001 * (left->second.position - right->second.position).norm() / adult;
 }
 
-/// The place of the skin on the plane that is nearest to `from`, by going from one to the other in turn, as on
-/// the ridge of a nose: nothing where they do not meet within `near`.
+/// The place of the skin on the plane that is nearest to `from`, by going from one to the other in turn, as
+/// on the ridge of a nose: nothing where they do not meet within `near`.
 std::optional<Vec3> along_plane(const MirrorPlane& plane, const spatial::SurfaceQuery& skin, const Vec3& from,
                                 double near) {
   constexpr int rounds = 60;

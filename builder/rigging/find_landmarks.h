@@ -20,7 +20,7 @@ struct FoundLandmarks {
   prepare::PreparedHead head;
   std::map<std::string, landmarks::SkinLandmark> landmarks;  ///< metres, rig frame
   std::optional<landmarks::FaceRegions>
-      regions;                      ///< of the vertices of `head.skin`; nothing when nothing was searched
+      regions;  ///< of the vertices of `head.skin`; nothing when nothing was searched
   std::optional<spatial::MirrorPlane> mirror;  ///< between the face's sides, where these are alike
   double likeness = 1.0;            ///< how face-like what was found is, 0 to 1; 1 when nothing was searched
   bool is_inside_out = false;       ///< the file's triangles face inward; those of `head` were turned

@@ -148,9 +148,9 @@ Points reference_points(const anatomy::GenericAnatomy& anatomy) {
   return points;
 }
 
-/// Turns the rig frame until the face's mirror plane is its own, for what follows tells left from right by the
-/// axes: a head that leans a little would move otherwise on one side than on the other. What leans by less
-/// than landmarks are found to keeps the file's axes.
+/// Turns the rig frame until the face's mirror plane is its own, for what follows tells left from right by
+/// the axes: a head that leans a little would move otherwise on one side than on the other. What leans by
+/// less than landmarks are found to keeps the file's axes.
 void set_upright(FoundLandmarks& result, const landmarks::FaceMirror& mirror) {
   const double least = (mirror.is_exact ? 0.25 : 0.75) * EIGEN_PI / 180.0;
   const Mat3 turn = landmarks::upright(mirror.plane);

@@ -44,7 +44,7 @@ struct LevelOptions {
   std::string name = "medium";
   int columns = 2000;
   /// Edge length at the mouth's corners over that along the lips. The corner opens like a crack, wider the
-  /// finer its tip is cut: medium and high cut it alike, at some 0.9 mm, low at 1.8.
+  /// finer its tip is cut: medium and high cut it alike, at some 0.9 mm.
   double corner_ratio = 0.5;
 };
 

@@ -2,7 +2,9 @@
 // fault must fail the row that is there for it.
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <cmath>
 #include <filesystem>
 #include <set>
 
@@ -177,6 +179,43 @@ TEST(Check, AnEyeThatTurnsBesideItsCentreIsFound) {
   const std::vector<Row> rows = rows_of(rig, rig.player());
   expect_fails(rows, "look_left.centre_left");
   expect_holds(rows, "look_left.centre_right");
+}
+
+TEST(Check, AHollowPlateTurnsAboutTheGlobeBehindIt) {
+  // As drawn faces have for eyes: part of a sphere whose middle lies before the face.
+  RigHead rig(built().bytes(built().result.rig), "embedded");
+  Head drawn = rig.head();
+  ASSERT_TRUE(drawn.eyes[0]);
+  const Vec3 globe = drawn.eyes[0]->centre, before = globe + Vec3(0, 0, 0.03);
+  constexpr double radius = 0.02;
+  Part plate{"eye_left", {}};
+  size_t largest = 0;
+  for (const Part& part : drawn.parts)
+    largest = std::max(largest, part.mesh.vertices.size());
+  const int side = static_cast<int>(std::sqrt(static_cast<double>(largest))) + 2;
+  for (int i = 0; i < side; ++i)
+    for (int j = 0; j < side; ++j) {
+      const double u = 1.2 * i / (side - 1.0) - 0.6, v = 1.2 * j / (side - 1.0) - 0.6;
+      plate.mesh.vertices.emplace_back(before + radius * Vec3(u, v, -1.0).normalized());
+    }
+  drawn.parts.push_back(plate);
+  const Player sound = rig.player();
+  const auto rows_about = [&](const Vec3& centre) {
+    return run(
+        drawn,
+        [&](const Weights& weights) {
+          auto shape = sound(weights);
+          const bool looks = weights[0].first == "eyeLookOutLeft";
+          const Mat3 turn = Eigen::AngleAxisd(looks ? 0.4 : 0.0, Vec3::UnitY()).toRotationMatrix();
+          shape->push_back(plate.mesh.vertices);
+          for (Vec3& p : shape->back())
+            p = centre + turn * (p - centre);
+          return shape;
+        },
+        checks());
+  };
+  expect_holds(rows_about(globe), "look_left.centre_left");
+  expect_fails(rows_about(before), "look_left.centre_left");
 }
 
 TEST(Check, AMouthThatStaysShutIsFound) {

@@ -182,13 +182,15 @@ TEST(SameHead, StandsUprightHoweverItLeans) {
       const Vec3 corner =
           transform_point(found.head.input_to_metres, rotation * head.scene.meshes[0].positions[0]);
       EXPECT_LE((found.head.meshes[0].positions[0] - corner).norm(), 1e-6);
-      EXPECT_LE((found.head.eye_left->centre - found.mirror->image(found.head.eye_right->centre)).norm(), 1e-3);
+      EXPECT_LE((found.head.eye_left->centre - found.mirror->image(found.head.eye_right->centre)).norm(),
+                1e-3);
     }
 }
 
 TEST(SameHead, BothSidesLandmarksAreEachOthersImages) {
-  const rigging::FoundLandmarks found = rigging::find_landmarks(
-      moved(made("anime", as_anime), turn(4, Vec3(0, 1, 1)), 1.0, Vec3::Zero()).scene, {}, anatomy_of_tests());
+  const rigging::FoundLandmarks found =
+      rigging::find_landmarks(moved(made("anime", as_anime), turn(4, Vec3(0, 1, 1)), 1.0, Vec3::Zero()).scene,
+                              {}, anatomy_of_tests());
   ASSERT_TRUE(found.mirror);
   for (const auto& [name, landmark] : found.landmarks) {
     if (name.ends_with("_right")) continue;
