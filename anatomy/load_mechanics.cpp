@@ -133,8 +133,10 @@ void read(const Section& in, mechanics::Lids& out) {
   in.value("opening", "1", out.opening);
   in.value("raising", "1", out.raising);
   in.value("canthal_turn", "deg", out.canthal_turn);
-  in.value("upper_follows_pitch", "1", out.upper_follows_pitch);
-  in.value("lower_follows_pitch", "1", out.lower_follows_pitch);
+  in.value("upper_follows_up", "1", out.upper_follows_up);
+  in.value("upper_follows_down", "1", out.upper_follows_down);
+  in.value("lower_follows_up", "1", out.lower_follows_up);
+  in.value("lower_follows_down", "1", out.lower_follows_down);
   in.value("follows_yaw", "1", out.follows_yaw);
   in.value("upper_drawn", "deg", out.upper_drawn);
   in.value("lower_drawn", "deg", out.lower_drawn);

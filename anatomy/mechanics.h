@@ -139,8 +139,10 @@ struct Lids {
   double raising = 0.0;  ///< turn of the lower lid at lid_lower = 1 over the fissure's height
   double canthal_turn =
       0.0;  ///< radians: added to the closing towards the inner canthus, where skin resists most
-  double upper_follows_pitch = 0.0;  ///< turn of the upper lid with the globe's pitch
-  double lower_follows_pitch = 0.0;  ///< turn of the lower lid with the globe's pitch
+  double upper_follows_up = 0.0;  ///< turn of the upper lid with the globe's pitch above the primary position
+  double upper_follows_down = 0.0;  ///< the same below it
+  double lower_follows_up = 0.0;    ///< turn of the lower lid with the globe's pitch above it
+  double lower_follows_down = 0.0;  ///< the same below it
   double follows_yaw = 0.0;  ///< turn of both lids with the globe's yaw: the cornea's bulge takes them along
   double upper_drawn = 0.0;  ///< radians: turn of the upper plate towards the nose at full contraction of the
                              ///< pretarsal muscle (Horner's part)

@@ -17,26 +17,29 @@ void add_square(const uint32_t* nodes, const double* coefficients, size_t count,
         out.emplace_back(unknown[nodes[i]], unknown[nodes[j]], weight * coefficients[i] * coefficients[j]);
 }
 
+/// Adds weight * the sum over axes of g g^T, g the `count` nodes' gradients along an axis: each pair once.
+template <int axes>
+void add_squares(const uint32_t* nodes, const Eigen::Matrix<double, axes, 1>* gradients, size_t count,
+                 double weight, const std::vector<int32_t>& unknown, Triplets& out) {
+  for (size_t i = 0; i < count; ++i)
+    for (size_t j = 0; j < count; ++j)
+      if (unknown[nodes[i]] >= 0 && unknown[nodes[j]] >= 0)
+        out.emplace_back(unknown[nodes[i]], unknown[nodes[j]], weight * gradients[i].dot(gradients[j]));
+}
+
 void add_membrane(const Membrane& m, const std::vector<int32_t>& unknown, Triplets& out) {
-  Eigen::Matrix<double, 2, 3> shape;  // gradients of the corner functions in the triangle's plane
-  shape.rightCols<2>() = m.inverse_rest.transpose();
-  shape.col(0) = -shape.col(1) - shape.col(2);
-  for (int axis = 0; axis < 2; ++axis) {
-    const double row[3] = {shape(axis, 0), shape(axis, 1), shape(axis, 2)};
-    add_square(m.nodes.data(), row, 3, m.area * (2.0 * m.mu + 0.5 * m.lambda), unknown, out);
-  }
+  Eigen::Vector2d gradients[3];  // of the corner functions, in the triangle's plane
+  gradients[1] = m.inverse_rest.row(0).transpose();
+  gradients[2] = m.inverse_rest.row(1).transpose();
+  gradients[0] = -gradients[1] - gradients[2];
+  add_squares<2>(m.nodes.data(), gradients, 3, m.area * (2.0 * m.mu + 0.5 * m.lambda), unknown, out);
 }
 
 void add_prism(const Prism& p, const Positions& x, const std::vector<int32_t>& unknown, Triplets& out) {
   if (p.stiffness == 0.0) return;
   const auto gradient = prism_volume_gradient(p.nodes, x.data());
-  const double weight = p.stiffness / std::max(std::abs(p.volume), 1e-12);
-  for (int axis = 0; axis < 3; ++axis) {
-    double row[6];
-    for (size_t i = 0; i < 6; ++i)
-      row[i] = gradient[i][axis];
-    add_square(p.nodes.data(), row, 6, weight, unknown, out);
-  }
+  add_squares<3>(p.nodes.data(), gradient.data(), 6, p.stiffness / std::max(std::abs(p.volume), 1e-12),
+                 unknown, out);
 }
 
 }  // namespace

@@ -5,14 +5,15 @@
 // family.
 //
 //   bench_expressions [HEAD|FAMILY]... [--level NAME] [--table FILE.json] [--only SHAPE,...] [--csv FILE]
-//                     [--sheet PREFIX] [--threads N]
+//                     [--sheet PREFIX] [--threads N] [--anatomy DIR]
 //   bench_expressions --remeshed PERSON... [--level NAME]
 //   bench_expressions --response [HEAD|FAMILY]... [--level NAME] [--table FILE.json] [--threads N]
 //
 // Rigs are built by the tool as a user would, landmarks found, and kept in the temporary folder until the
-// tool or the head changes; --table plays another table on them. Doing nothing scores 0 and some 3 mm, a
-// half-amplitude copy 0.75. mouthClose is scored as jawOpen + mouthClose. Heads of one family share one
-// sculpted set.
+// tool or the head changes; --table plays another table on them, --anatomy builds them from other data
+// (files of DIR instead of those of their name in anatomy/data), which are not kept. Doing nothing scores 0
+// and some 3 mm, a half-amplitude copy 0.75. mouthClose is scored as jawOpen + mouthClose. Heads of one
+// family share one sculpted set.
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -36,7 +37,7 @@ namespace {
 struct Request {
   std::vector<std::string> heads;
   std::set<std::string> only;
-  std::string level = "low", table, csv, sheet;
+  std::string level = "low", table, csv, sheet, anatomy;
   int threads = 2;
   bool remeshed = false, response = false;
 };
@@ -180,6 +181,8 @@ void run(const Request& request) {
         std::find(request.heads.begin(), request.heads.end(), head.name) != request.heads.end() ||
         std::find(request.heads.begin(), request.heads.end(), head.family) != request.heads.end())
       heads.push_back(head);
+  for (SculptedHead& head : heads)
+    head.anatomy = request.anatomy;
   if (heads.empty()) {
     std::printf("skipped: the measured data hold no heads with shapes of their own of that name\n");
     return;
@@ -220,6 +223,8 @@ int main(int argc, char** argv) {
       request.table = value();
     else if (word == "--csv")
       request.csv = value();
+    else if (word == "--anatomy")
+      request.anatomy = value();
     else if (word == "--sheet")
       request.sheet = value();
     else if (word == "--threads")
@@ -241,7 +246,7 @@ int main(int argc, char** argv) {
       std::fprintf(
           stderr,
           "usage: bench_expressions [HEAD|FAMILY]... [--level NAME] [--table FILE.json] [--only SHAPE,...] "
-          "[--csv FILE] [--sheet PREFIX] [--threads N] [--remeshed] [--response]\n");
+          "[--csv FILE] [--sheet PREFIX] [--threads N] [--anatomy DIR] [--remeshed] [--response]\n");
       return 2;
     } else {
       request.heads.push_back(word);

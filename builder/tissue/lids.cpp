@@ -118,8 +118,9 @@ void add_eye(const TissueInputs& inputs, const FaceRegion& region, const Columns
         turn(close, f.lateral, lid * unfolding, -lift * fade);
       else
         turn(raise, f.lateral, -m.raising * gap * fade, m.raising * gap * fade);
-      const double follows = (is_upper ? m.upper_follows_pitch : m.lower_follows_pitch) * fade;
-      turn(pitch, f.lateral, -follows, follows);
+      const double up = is_upper ? m.upper_follows_up : m.lower_follows_up;
+      const double down = is_upper ? m.upper_follows_down : m.lower_follows_down;
+      turn(pitch, f.lateral, -up * fade, down * fade);
       // Horner's part of the pretarsal muscle draws the plates, the lower one most, towards the nose.
       const double drawn = (left ? -1.0 : 1.0) * (is_upper ? m.upper_drawn : m.lower_drawn) * fade;
       turn(is_upper ? draw_upper : draw_lower, f.up, drawn, -drawn);

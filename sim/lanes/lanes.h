@@ -42,6 +42,28 @@ FASCIA_INLINE Lanes load(const float* from) {
     out.part[p] = *reinterpret_cast<const UnalignedPart*>(from + p * part_width);
   return out;
 }
+/// Sixteen floats of which only the upper halves are in memory; the lower ones are zero.
+FASCIA_INLINE Lanes load_upper_halves(const uint16_t* from) {
+  Lanes out;
+  for (size_t p = 0; p < part_count; ++p) {
+    const uint16_t* const first = from + p * part_width;
+#if defined(__AVX512F__)
+    const __m256i halves = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(first));
+    out.part[p] =
+        _mm512_castsi512_ps(_mm512_maskz_slli_epi32(0xffff, _mm512_maskz_cvtepu16_epi32(0xffff, halves), 16));
+#elif defined(__AVX2__)
+    const __m128i halves = _mm_loadu_si128(reinterpret_cast<const __m128i*>(first));
+    out.part[p] = _mm256_castsi256_ps(_mm256_slli_epi32(_mm256_cvtepu16_epi32(halves), 16));
+#elif defined(__SSE2__)
+    const __m128i halves = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(first));
+    out.part[p] = _mm_castsi128_ps(_mm_unpacklo_epi16(_mm_setzero_si128(), halves));
+#else
+    for (size_t l = 0; l < part_width; ++l)
+      out.part[p][l] = __builtin_bit_cast(float, static_cast<uint32_t>(first[l]) << 16);
+#endif
+  }
+  return out;
+}
 FASCIA_INLINE void store(float* to, const Lanes& value) {
   for (size_t p = 0; p < part_count; ++p)
     *reinterpret_cast<UnalignedPart*>(to + p * part_width) = value.part[p];

@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <bit>
 
 namespace fascia::sim::realtime {
 namespace {
@@ -12,6 +13,13 @@ constexpr size_t last_piece = 16;  // unknowns that are not worth cutting furthe
 
 const Vec3 directions[] = {{1, 0, 0}, {0, 1, 0},  {0, 0, 1}, {1, 1, 0}, {1, -1, 0},
                            {1, 0, 1}, {1, 0, -1}, {0, 1, 1}, {0, 1, -1}};
+
+/// The nearest float whose lower half is zero, its upper half; `value` must be finite.
+uint16_t upper_half(double value) {
+  const auto bits = std::bit_cast<uint32_t>(static_cast<float>(value));
+  return static_cast<uint16_t>((bits + 0x7fffU + ((bits >> 16U) & 1U)) >> 16U);
+}
+
 /// The fewest of two sides' nodes without which no edge joins them: by a greatest matching (König 1931).
 std::vector<uint32_t> fewest_between(const std::vector<uint32_t>& near, const std::vector<uint32_t>& far,
                                      const Matrix& matrix) {
@@ -150,8 +158,8 @@ void Dissection::find_rows(const Matrix& matrix) {
 }
 
 /// Appends a front with its F.
-void PanelFactor::pack(const Dissection::Front& from, const Eigen::MatrixXd& matrix,
-                       std::vector<float>& values) {
+template <class Dense>
+void PanelFactor::pack(const Dissection::Front& from, const Dense& matrix, std::vector<uint16_t>& values) {
   constexpr uint32_t wide = batch_width;
   const auto rows = static_cast<uint32_t>(matrix.rows());
   Panels::Front front;
@@ -167,28 +175,33 @@ void PanelFactor::pack(const Dissection::Front& from, const Eigen::MatrixXd& mat
   for (uint32_t block = 0; block < front.blocks; ++block)
     for (uint32_t c = 0; c < front.columns(block); ++c)
       for (uint32_t r = wide * block; r < wide * (block + 1); ++r)
-        values.push_back(r < rows ? static_cast<float>(matrix(r, c)) : 0.0F);
+        values.push_back(r < rows ? upper_half(matrix(r, c)) : uint16_t{0});
   scratch_ = std::max<size_t>(scratch_, std::max(3 * wide * front.blocks, 4 * front.width));
   fronts_.push_back(front);
 }
 
 bool PanelFactor::compute(const Dissection& dissection, const Matrix& matrix) {
-  if (factor(dissection, matrix)) return true;
+  // Twice as fast in single precision, whose rounding that of the fronts hides; where it does not let a pivot
+  // stay positive, double precision does.
+  if (factor<float>(dissection, matrix) || factor<double>(dissection, matrix)) return true;
   *this = {};  // a part of a factor is none
   return false;
 }
 
+template <class Real>
 bool PanelFactor::factor(const Dissection& dissection, const Matrix& matrix) {
+  using Dense = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
   const auto& fronts = dissection.fronts();
   const auto& order = dissection.order();
   size_ = order.size();
   fronts_.clear();
   rows_.clear();
-  std::vector<float> values;
+  scratch_ = 0;
+  std::vector<uint16_t> values;
   std::vector<uint32_t> position(size_);
   for (uint32_t k = 0; k < size_; ++k)
     position[order[k]] = k;
-  std::vector<Eigen::MatrixXd> left(fronts.size());  // what each front leaves to its parent
+  std::vector<Dense> left(fronts.size());  // what each front leaves to its parent
   std::vector<std::vector<uint32_t>> children(fronts.size());
   for (uint32_t f = 0; f < fronts.size(); ++f)
     if (fronts[f].parent >= 0) children[static_cast<size_t>(fronts[f].parent)].push_back(f);
@@ -197,7 +210,7 @@ bool PanelFactor::factor(const Dissection& dissection, const Matrix& matrix) {
     const auto& front = fronts[f];
     const auto width = static_cast<Eigen::Index>(front.width),
                below = static_cast<Eigen::Index>(front.rows.size());
-    Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(width + below, width + below);
+    Dense dense = Dense::Zero(width + below, width + below);
     for (uint32_t c = 0; c < front.width; ++c)
       local[front.first + c] = c;
     for (uint32_t r = 0; r < front.rows.size(); ++r)
@@ -205,7 +218,7 @@ bool PanelFactor::factor(const Dissection& dissection, const Matrix& matrix) {
     for (uint32_t c = 0; c < front.width; ++c)
       for (Matrix::InnerIterator e(matrix, static_cast<int>(order[front.first + c])); e; ++e) {
         const uint32_t row = position[static_cast<size_t>(e.col())];
-        if (row >= front.first + c) dense(local[row], c) += e.value();
+        if (row >= front.first + c) dense(local[row], c) += static_cast<Real>(e.value());
       }
     for (const uint32_t child : children[f]) {
       const auto& rows = fronts[child].rows;
@@ -215,21 +228,24 @@ bool PanelFactor::factor(const Dissection& dissection, const Matrix& matrix) {
       left[child].resize(0, 0);
     }
     auto diagonal = dense.topLeftCorner(width, width);
-    const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>, Eigen::Lower> cholesky(diagonal);  // in place
+    const Eigen::LLT<Eigen::Ref<Dense>, Eigen::Lower> cholesky(diagonal);  // in place
     if (cholesky.info() != Eigen::Success) return false;
     auto under = dense.bottomLeftCorner(below, width);
-    diagonal.triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(under);
-    dense.bottomRightCorner(below, below).selfadjointView<Eigen::Lower>().rankUpdate(under, -1.0);
+    diagonal.template triangularView<Eigen::Lower>().transpose().template solveInPlace<Eigen::OnTheRight>(
+        under);
+    dense.bottomRightCorner(below, below)
+        .template selfadjointView<Eigen::Lower>()
+        .rankUpdate(under, Real(-1));
     left[f] = dense.bottomRightCorner(below, below);
 
-    Eigen::MatrixXd whole(width + below, width);
+    Dense whole(width + below, width);
     whole.topRows(width) =
-        diagonal.triangularView<Eigen::Lower>().solve(Eigen::MatrixXd::Identity(width, width));
+        diagonal.template triangularView<Eigen::Lower>().solve(Dense::Identity(width, width));
     whole.bottomRows(below).noalias() = -under * whole.topRows(width);
     if (!whole.allFinite()) return false;
     pack(front, whole, values);
   }
-  values_ = Floats(values.size());
+  values_ = Aligned<uint16_t>(values.size());
   std::copy(values.begin(), values.end(), values_.data());
   return true;
 }

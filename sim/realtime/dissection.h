@@ -41,7 +41,9 @@ class Dissection {
 };
 
 /// The Cholesky factor of a matrix in an order of elimination, front by front in whole blocks of sixteen
-/// rows, single precision (computed in double). Diagonal parts are kept as their inverses.
+/// rows, rounded to the upper halves of floats (computed in
+/// single precision, and in double where that does not do). Diagonal parts are kept as their
+/// inverses.
 class PanelFactor {
  public:
   /// Factors `matrix`, which must have the pattern `dissection` was made for. Returns false, and stays empty,
@@ -53,13 +55,16 @@ class PanelFactor {
   size_t scratch() const { return scratch_; }  ///< floats that a solve needs to work in
 
  private:
+  /// In numbers of the type `Real`.
+  template <class Real>
   bool factor(const Dissection& dissection, const Eigen::SparseMatrix<double, Eigen::RowMajor>& matrix);
-  void pack(const Dissection::Front& from, const Eigen::MatrixXd& matrix, std::vector<float>& values);
+  template <class Dense>
+  void pack(const Dissection::Front& from, const Dense& matrix, std::vector<uint16_t>& values);
 
   size_t size_ = 0, scratch_ = 0;
   std::vector<Panels::Front> fronts_;
   std::vector<int32_t> rows_;
-  Floats values_;
+  Aligned<uint16_t> values_;
 };
 
 }  // namespace fascia::sim::realtime

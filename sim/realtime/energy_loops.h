@@ -40,6 +40,7 @@ void volume_ratios(const Packed& packed, size_t b, const float* x, float* shares
               load(batch.prism[layer].inverse_volume));
 }
 
+template <bool is_wanted>
 Lanes triangle_energy(const Packed& packed, const float* x, float* gradient) {
   Lanes energy = splat(0.0F);
   for (size_t b = 0; b < packed.triangle_batches; ++b) {
@@ -62,9 +63,10 @@ Lanes triangle_energy(const Packed& packed, const float* x, float* gradient) {
       for (size_t k = 0; k < 3; ++k)
         scatter_add(gradient + 4 * layer, batch.column[k], force[layer][k], stiffer[layer][k]);
   }
-  return energy;
+  return is_wanted ? energy : splat(0.0F);
 }
 
+template <bool is_wanted>
 Lanes edge_energy(const Packed& packed, const float* x, float* gradient) {
   Lanes energy = splat(0.0F);
   for (size_t b = 0; b < packed.edge_batches; ++b) {
@@ -95,9 +97,10 @@ Lanes edge_energy(const Packed& packed, const float* x, float* gradient) {
         scatter_add(gradient + 4 * layer, batch.column[k], force[layer][k],
                     k < 2 ? stiffer[layer][k] : splat(0.0F));
   }
-  return energy;
+  return is_wanted ? energy : splat(0.0F);
 }
 
+template <bool is_wanted>
 Lanes spring_energy(const Packed& packed, const float* x, float* gradient) {
   Lanes energy = splat(0.0F);
   for (size_t b = 0; b < packed.spring_batches; ++b) {
@@ -108,9 +111,10 @@ Lanes spring_energy(const Packed& packed, const float* x, float* gradient) {
     scatter_add(gradient, s.at[0], splat(-1.0F) * pull, stiffer);
     scatter_add(gradient, s.at[1], pull, stiffer);
   }
-  return energy;
+  return is_wanted ? energy : splat(0.0F);
 }
 
+template <bool is_wanted>
 Lanes held_energy(const Packed& packed, const Boundary& boundary, const float* x, float* gradient) {
   Lanes energy = splat(0.0F);
   for (size_t b = 0; b < packed.tether_batches; ++b) {
@@ -138,9 +142,10 @@ Lanes held_energy(const Packed& packed, const Boundary& boundary, const float* x
                 where_below(splat(0.0F), depth, load(g.stiffness), splat(0.0F)));
     energy += 0.5F * push * depth;
   }
-  return energy;
+  return is_wanted ? energy : splat(0.0F);
 }
 
+template <bool is_wanted>
 Lanes pressure_energy(const Packed& packed, const Boundary& boundary, const float* x, float* gradient) {
   Lanes energy = splat(0.0F);
   for (size_t b = 0; b < packed.pressure_batches; ++b) {
@@ -157,7 +162,7 @@ Lanes pressure_energy(const Packed& packed, const Boundary& boundary, const floa
     for (size_t k = 0; k < 3; ++k)
       scatter_add(gradient, batch.at[k], share * push[k]);
   }
-  return energy;
+  return is_wanted ? energy : splat(0.0F);
 }
 
 /// Where the points of sixteen fibres are.
@@ -176,6 +181,7 @@ FASCIA_INLINE Lanes3 fibre_point(const FibrePointBatch& p, const Boundary& bound
   return place;
 }
 
+template <bool is_wanted>
 Lanes fibre_energy(const Packed& packed, const Boundary& boundary, const float* x, float* gradient) {
   Lanes energy = splat(0.0F);
   for (size_t b = 0; b < packed.fibre_batches; ++b) {
@@ -212,18 +218,20 @@ Lanes fibre_energy(const Packed& packed, const Boundary& boundary, const float* 
       before = after;
     }
   }
-  return energy;
+  return is_wanted ? energy : splat(0.0F);
 }
 
+/// Where `is_wanted` is false the energy is not summed, and 0 is returned; the gradient's bits are the same.
+template <bool is_wanted>
 double total_energy(const Packed& packed, const Boundary& boundary, const float* x, float* gradient) {
   for (size_t i = 0; i < packed.places; i += 16)
     store(gradient + i, splat(0.0F));
-  double energy = static_cast<double>(total(triangle_energy(packed, x, gradient)));
-  energy += static_cast<double>(total(edge_energy(packed, x, gradient)));
-  energy += static_cast<double>(total(spring_energy(packed, x, gradient)));
-  energy += static_cast<double>(total(held_energy(packed, boundary, x, gradient)));
-  energy += static_cast<double>(total(pressure_energy(packed, boundary, x, gradient)));
-  energy += static_cast<double>(total(fibre_energy(packed, boundary, x, gradient)));
+  double energy = static_cast<double>(total(triangle_energy<is_wanted>(packed, x, gradient)));
+  energy += static_cast<double>(total(edge_energy<is_wanted>(packed, x, gradient)));
+  energy += static_cast<double>(total(spring_energy<is_wanted>(packed, x, gradient)));
+  energy += static_cast<double>(total(held_energy<is_wanted>(packed, boundary, x, gradient)));
+  energy += static_cast<double>(total(pressure_energy<is_wanted>(packed, boundary, x, gradient)));
+  energy += static_cast<double>(total(fibre_energy<is_wanted>(packed, boundary, x, gradient)));
   if (packed.balance == nullptr) return energy;
   Lanes work = splat(0.0F);
   for (size_t i = 0; i < packed.places; i += 16) {
@@ -231,7 +239,7 @@ double total_energy(const Packed& packed, const Boundary& boundary, const float*
     store(gradient + i, load(gradient + i) - balance);
     work += balance * (load(x + i) - load(packed.rest + i));
   }
-  return energy - static_cast<double>(total(work));
+  return is_wanted ? energy - static_cast<double>(total(work)) : 0.0;
 }
 
 }  // namespace

@@ -11,10 +11,12 @@ namespace fascia::sim::realtime {
 /// How time passes for a face in real time.
 struct StepOptions {
   ActivationDynamics dynamics;
-  int iterations = 2;       ///< at most, of each substep
+  /// Of each substep; one far from settled after two or more takes some further ones that are searched along,
+  /// once a frame, and from eight on all are.
+  int iterations = 2;
   double tolerance = 3e-7;  ///< metres: largest move of a node still wanted when a substep ends earlier
   bool checks_last =
-      false;  ///< whether the last iteration's energy is looked at too; costs as much as one more
+      false;  ///< whether iterations are searched along however few they are; costs as much as one more
   int largest_number_of_substeps = 16;  ///< a longer frame loses the rest of its time
   double largest_displacement = 0.15;   ///< metres: beyond it the watchdog calls the face diverged
 };
@@ -63,12 +65,12 @@ class Face final : public Solver {
              Boundary& boundary) const;
   void fill_nodes(const float* x, Positions& nodes) const;
   double contact_energy(Solve& solve, const float* x, float* gradient);
-  double evaluate(Solve& solve, const float* x);
-  float momentum(const Workspace& work) const;
+  double evaluate(Solve& solve, const float* x, bool wants_energy = true);
   MinimiseResult minimise(Solve& solve, const MinimiseOptions& options, float* x);
   /// Few iterations without line search, for a substep.
   MinimiseResult iterate(Solve& solve, const MinimiseOptions& options, float* x);
-  MinimiseResult substep(const Controls& now, const StepOptions& options, Workspace& work);
+  MinimiseResult substep(const Controls& now, const StepOptions& options, int& searches_left,
+                         Workspace& work);
   /// Takes the nodes of prisms that a substep of few iterations has turned inside out back towards where it
   /// began; false when some are left.
   bool untangle(Workspace& work, float* x) const;

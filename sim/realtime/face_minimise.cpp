@@ -55,12 +55,13 @@ double Face::contact_energy(Solve& solve, const float* x, float* gradient) {
   return energy;
 }
 
-/// Energy at `x`, its gradient over unknowns in `work.packed`.
-double Face::evaluate(Solve& solve, const float* x) {
+/// Energy at `x` where it is wanted, its gradient over unknowns in `work.packed`.
+double Face::evaluate(Solve& solve, const float* x, bool wants_energy) {
   Workspace& w = solve.work;
   const Loops& loops = model_->loops();
   float* const gradient = w.gradient.data();
-  double energy = loops.energy(model_->packed(), solve.boundary, x, gradient);
+  const auto find = wants_energy ? loops.energy : loops.gradient;
+  double energy = find(model_->packed(), solve.boundary, x, gradient);
   energy += contact_energy(solve, x, gradient);
   solve.unknowns.x = x;
   solve.unknowns.gradient = gradient;
@@ -70,20 +71,6 @@ double Face::evaluate(Solve& solve, const float* x) {
   }
   return energy +
          loops.collect(solve.unknowns, w.moved.data(), w.damped.data(), w.packed.data(), w.scaling.data());
-}
-
-/// Hestenes-Stiefel momentum (Hestenes & Stiefel 1952): how much of the step before is added to the new
-/// direction. It finishes the line search along that step which was left out, by what the step did to the
-/// gradient, and keeps the new direction conjugate to it. Since the preconditioner takes x, y and z alike,
-/// steps are rather too short; without a line search no more than one step's length is added.
-float Face::momentum(const Workspace& w) const {
-  const size_t floats = model_->unknown_floats();
-  const auto dot = model_->loops().dot;
-  const float *step = w.steps[0].data(), *before = w.last_gradient.data(), *now = w.packed.data(),
-              *direction = w.direction.data();
-  const double slope = dot(step, now, floats), curvature = slope - dot(step, before, floats);
-  const double conjugacy = dot(direction, before, floats) - dot(direction, now, floats);
-  return curvature > 0.0 ? f(std::clamp((conjugacy - slope) / curvature, 0.0, 1.0)) : 0.0F;
 }
 
 /// Unknowns in single precision, for sim::minimise: those of the model's places `x`, preconditioned by the
@@ -100,10 +87,13 @@ struct Face::Space {
   double evaluate() { return face.evaluate(solve, x); }
   double residual() const { return std::sqrt(static_cast<double>(loops.largest(w.packed.data(), floats))); }
   void start_direction() { std::copy(w.packed.data(), w.packed.data() + floats, w.direction.data()); }
-  void precondition() {
-    loops.scale(w.scaling.data(), w.direction.data(), floats);
-    loops.solve(solve.factor, w.direction.data(), w.solve_scratch.data());
-    loops.scale(w.scaling.data(), w.direction.data(), floats);
+  void precondition() { precondition(w.direction.data()); }
+  /// direction := P^-1 from.
+  void precondition(const float* from) {
+    float* const direction = w.direction.data();
+    loops.scale(w.scaling.data(), from, direction, floats);
+    loops.solve(solve.factor, direction, w.solve_scratch.data());
+    loops.scale(w.scaling.data(), direction, direction, floats);
   }
   double step_dot(size_t slot) const { return loops.dot(w.steps[slot].data(), w.direction.data(), floats); }
   double change_dot(size_t slot) const {
@@ -149,27 +139,20 @@ MinimiseResult Face::minimise(Solve& solve, const MinimiseOptions& options, floa
 MinimiseResult Face::iterate(Solve& solve, const MinimiseOptions& options, float* x) {
   Workspace& w = solve.work;
   Space space{*this, solve, x};
-  const auto& slots = model_->slots();
-  float *const direction = w.direction.data(), *const step_before = w.steps[0].data();
   MinimiseResult result;
-  double value = space.evaluate();
   for (int iteration = 0; iteration < options.iterations; ++iteration) {
-    result.residual = space.residual();
-    if (!std::isfinite(value) || !std::isfinite(result.residual)) return result;
-    space.start_direction();
-    space.precondition();
+    evaluate(solve, x, false);
+    space.precondition(w.packed.data());
     space.negate();
     result.move = space.longest();
     result.converged = result.move <= options.tolerance;
-    if (result.converged || !(space.slope() < 0.0)) return result;
-    model_->loops().take_steps({slots.size(), slots.data(), direction, step_before,
-                                iteration > 0 ? momentum(w) : 0.0F, last_direction_.data(),
-                                step_scale_.data(), x});
-    result.iterations = iteration + 1;
-    if (iteration + 1 == options.iterations) return result;
-    std::copy(direction, direction + space.floats, step_before);
+    if (result.converged || !std::isfinite(result.move)) return result;
+    const bool is_first = iteration == 0, judges = !is_first || options.iterations == 1;
+    model_->loops().take_steps({model_->slots().size(), model_->slots().data(), w.direction.data(), judges,
+                                w.packed.data(), is_first ? nullptr : w.last_gradient.data(),
+                                last_direction_.data(), step_scale_.data(), x});
     space.keep_gradient();
-    value = space.evaluate();
+    result.iterations = iteration + 1;
   }
   return result;
 }

@@ -5,20 +5,24 @@
 
 namespace fascia::sim::realtime {
 
-/// Floats on whole cache lines, zero at first.
-class Floats {
+/// Numbers on whole cache lines, zero at first.
+template <class Number>
+class Aligned {
  public:
-  Floats() = default;
-  explicit Floats(size_t count) : lines_((count + 15) / 16) {}
-  float* data() { return lines_.empty() ? nullptr : lines_.front().value; }
-  const float* data() const { return lines_.empty() ? nullptr : lines_.front().value; }
-  size_t size() const { return 16 * lines_.size(); }
+  static constexpr size_t line = 64 / sizeof(Number);  ///< numbers on one
+
+  Aligned() = default;
+  explicit Aligned(size_t count) : lines_((count + line - 1) / line) {}
+  Number* data() { return lines_.empty() ? nullptr : lines_.front().value; }
+  const Number* data() const { return lines_.empty() ? nullptr : lines_.front().value; }
+  size_t size() const { return line * lines_.size(); }
 
  private:
   struct alignas(64) Line {
-    float value[16] = {};
+    Number value[line] = {};
   };
   std::vector<Line> lines_;
 };
+using Floats = Aligned<float>;
 
 }  // namespace fascia::sim::realtime

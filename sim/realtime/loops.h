@@ -9,8 +9,9 @@
 namespace fascia::sim::realtime {
 
 const Loops& FASCIA_LOOPS() {
-  static constexpr Loops loops{place, total_energy, volume_ratios, multiply, subtract, collect, scale,
-                               solve, take_steps,   begin_step,    dot_of,   add,      largest};
+  static constexpr Loops loops{
+      place, total_energy<true>, total_energy<false>, volume_ratios, multiply, subtract, collect, scale,
+      solve, take_steps,         begin_step,          dot_of,        add,      largest};
   return loops;
 }
 

@@ -100,8 +100,8 @@ bool Model::make_factors() {
   Positions places;
   for (const uint32_t node : unknowns)
     places.push_back(face_->rest()[node]);
-  const Dissection dissection(stiffness + fibre_stiffness(), places);
-  Eigen::SparseMatrix<double, Eigen::RowMajor> pose = stiffness + fibre_stiffness();
+  const Eigen::SparseMatrix<double, Eigen::RowMajor> pose = stiffness + fibre_stiffness();
+  const Dissection dissection(pose, places);
   if (!pose_factor_.compute(dissection, pose)) return false;
   const double h = face_->options().substep;
   Eigen::SparseMatrix<double, Eigen::RowMajor> step =

@@ -128,13 +128,15 @@ struct SparseRows {
 
 /// A Cholesky factor by fronts, see dissection.h. Of a front with the factor's diagonal part A and part B
 /// below it stands F = (A^-1; -B A^-1), so that going forward is one product with F and going back one with
-/// its transpose.
+/// its transpose. Numbers are half as long as floats: a solve is bound by how fast fronts come from memory,
+/// and a preconditioner may be rounded, for both products round alike, so that it stays symmetric and
+/// definite.
 struct Panels {
   struct Front {
     uint32_t first, width;  ///< its unknowns
     uint32_t blocks;        ///< of sixteen rows of F
     uint32_t rows;          ///< into `row`: 16 * blocks, its own first
-    uint32_t values;  ///< into `value`: block after block by columns, sixteen floats each; columns after a
+    uint32_t values;  ///< into `value`: block after block by columns, sixteen numbers each; columns after a
                       ///< block's last own row are left out
     uint32_t columns(uint32_t block) const {
       const auto last = static_cast<uint32_t>(batch_width) * (block + 1);
@@ -143,8 +145,8 @@ struct Panels {
   };
   size_t size, fronts;
   const Front* front;
-  const int32_t* row;  ///< 4 * unknown, or 4 * size for none
-  const float* value;
+  const int32_t* row;     ///< 4 * unknown, or 4 * size for none
+  const uint16_t* value;  ///< the upper halves of floats
 };
 
 /// What a solve asks for and what holds it back: unknowns by their places, with the forces that act on each
@@ -162,14 +164,15 @@ struct Unknowns {
 
 /// One iteration without line search: each node goes along the direction by a step size of its own.
 struct NodeSteps {
-  size_t count;         ///< unknowns
-  const int32_t* slot;  ///< of each, into places
-  float* direction;     ///< 4 an unknown; on return the steps taken
-  const float*
-      before;  ///< the steps of the iteration before, added `momentum` times where step sizes are near 1
-  float momentum;
-  float* last;        ///< 4 an unknown: each node's last step, of whatever solve
-  float* step_scale;  ///< of each unknown, 0.02 to 1: its step size; smaller where steps keep reversing
+  size_t count;            ///< unknowns
+  const int32_t* slot;     ///< of each, into places
+  const float* direction;  ///< 4 an unknown
+  bool judges;             ///< whether step sizes are chosen anew
+  /// Gradients now and before the last step, 4 an unknown; no gradient before where the last step was of
+  /// another substep.
+  const float *gradient, *gradient_before;
+  float* last;        ///< 4 an unknown: each node's last step, of whatever solve; on return the one taken
+  float* step_scale;  ///< of each unknown, 0.02 to 1: its step size; smaller where a step went too far
   float* x;           ///< places
 };
 
@@ -191,6 +194,8 @@ struct Loops {
   /// (places), and in each place's fourth float by how much it is stiffer than at rest, newton per metre:
   /// where walls stand and springs have stiffened.
   double (*energy)(const Packed&, const Boundary&, const float* x, float* gradient);
+  /// The same gradient without the energy: 0 is returned.
+  double (*gradient)(const Packed&, const Boundary&, const float* x, float* gradient);
   /// What is left of the volume of a batch's prisms at `x`, as shares of that at rest: 16 outer ones, then 16
   /// inner ones.
   void (*volume_ratios)(const Packed&, size_t batch, const float* x, float* shares);
@@ -202,14 +207,17 @@ struct Loops {
   /// a step S P^-1 S with S^2 = p / (p + more), by which a node is moved less where it is stiffer than the
   /// factor knows; one a float of `packed`.
   double (*collect)(const Unknowns&, const float* moved, const float* damped, float* packed, float* scaling);
-  /// list *= factors.
-  void (*scale)(const float* factors, float* list, size_t count);
+  /// out = factors * list, number by number; the two may be one.
+  void (*scale)(const float* factors, const float* list, float* out, size_t count);
   /// Solves in place over unknowns (4 x (size + 1) floats, the last place of no meaning). `scratch` as
   /// PanelFactor::scratch says.
   void (*solve)(const Panels&, float* values, float* scratch);
   /// One iteration without line search, made safe by two bounds: no node moves farther than a substep's
-  /// largest sensible motion, and each has a step size of its own that shrinks where its steps reverse and
-  /// grows back where they do not (resilient propagation, Riedmiller & Braun 1993).
+  /// largest sensible motion, and each has a step size of its own. Within a substep it is the secant's along
+  /// the node's last step (Barzilai & Borwein 1988, node by node), between bounds; where a substep has one
+  /// iteration it shrinks where steps reverse and grows back where they do not (resilient propagation,
+  /// Riedmiller & Braun 1993). Hestenes-Stiefel momentum (Hestenes & Stiefel 1952), at most 1, over nodes
+  /// whose step sizes are near 1, finishes the line search along the last step that was left out.
   void (*take_steps)(const NodeSteps&);
   /// Finds where inertia alone and where the bones alone would bring the unknowns, and starts x between the
   /// two.

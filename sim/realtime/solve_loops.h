@@ -24,15 +24,15 @@ constexpr size_t group_width = part_count == 1 ? 4 : part_count == 2 ? 2 : 1;
 
 /// Adds what `count` blocks of a front, all with every column, say of its own places.
 template <size_t count>
-FASCIA_INLINE void spread_columns(const float* value, uint32_t columns, const float* own, const int32_t* row,
-                                  float* values) {
+FASCIA_INLINE void spread_columns(const uint16_t* value, uint32_t columns, const float* own,
+                                  const int32_t* row, float* values) {
   Lanes3 sums[count];
   for (size_t g = 0; g < count; ++g)
     sums[g] = Lanes3{splat(0.0F), splat(0.0F), splat(0.0F)};
   for (uint32_t c = 0; c < columns; ++c) {
     const Lanes x = splat(own[4 * c]), y = splat(own[4 * c + 1]), z = splat(own[4 * c + 2]);
     for (size_t g = 0; g < count; ++g)
-      sums[g] += load(value + batch_width * (g * columns + c)) * Lanes3{x, y, z};
+      sums[g] += load_upper_halves(value + batch_width * (g * columns + c)) * Lanes3{x, y, z};
   }
   for (size_t g = 0; g < count; ++g)
     scatter_add(values, row + batch_width * g, sums[g]);
@@ -44,7 +44,7 @@ void go_forward(const Panels& panels, const Panels::Front& front, float* values,
     store_quad(own + 4 * c, load_quad(from + 4 * c));
     store_quad(from + 4 * c, Quad{});
   }
-  const float* value = panels.value + front.values;
+  const uint16_t* value = panels.value + front.values;
   const int32_t* row = panels.row + front.rows;
   for (uint32_t b = 0; b < front.blocks;) {
     const uint32_t columns = front.columns(b);
@@ -64,7 +64,7 @@ void go_forward(const Panels& panels, const Panels::Front& front, float* values,
 
 /// What `count` columns from `column` on say of the places of all rows, `places` as x, y, z of sixteen.
 template <size_t count>
-FASCIA_INLINE void collect_rows(const Panels::Front& front, const float* value, uint32_t block,
+FASCIA_INLINE void collect_rows(const Panels::Front& front, const uint16_t* value, uint32_t block,
                                 uint32_t column, const float* places, float* own) {
   Lanes3 sums[count];
   for (size_t g = 0; g < count; ++g)
@@ -74,7 +74,7 @@ FASCIA_INLINE void collect_rows(const Panels::Front& front, const float* value, 
     const float* p = places + 3 * batch_width * b;
     const Lanes3 place{load(p), load(p + batch_width), load(p + 2 * batch_width)};
     for (size_t g = 0; g < count; ++g)
-      sums[g] += load(value + batch_width * g) * place;
+      sums[g] += load_upper_halves(value + batch_width * g) * place;
     value += batch_width * front.columns(b);
   }
   for (size_t g = 0; g < count; ++g)
@@ -91,7 +91,7 @@ void go_back(const Panels& panels, const Panels::Front& front, float* values, fl
     store(to + 2 * batch_width, place.z);
   }
   float* const own = values + 4 * static_cast<size_t>(front.first);
-  const float* value = panels.value + front.values;
+  const uint16_t* value = panels.value + front.values;
   // Columns of one block of own rows at a time: blocks before it do not have them.
   for (uint32_t block = 0, first = 0; first < front.width; ++block, first += batch_width) {
     const uint32_t end = front.columns(block);

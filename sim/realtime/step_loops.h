@@ -42,9 +42,9 @@ double collect(const Unknowns& u, const float* moved, const float* damped, float
   return static_cast<double>(sum[0]) + static_cast<double>(sum[1]) + static_cast<double>(sum[2]);
 }
 
-void scale(const float* factors, float* list, size_t count) {
+void scale(const float* factors, const float* list, float* out, size_t count) {
   for (size_t i = 0; i < count; i += batch_width)
-    store(list + i, load(factors + i) * load(list + i));
+    store(out + i, load(factors + i) * load(list + i));
 }
 
 constexpr float farthest = 0.0015F;  // metres a node may go in one take_steps
@@ -53,21 +53,74 @@ constexpr float least_step_scale = 0.02F;
 constexpr float inertia_steady = 0.7F,
                 inertia_unsteady = 0.5F;  // share of what inertia alone would do that the first guess takes
 
+constexpr float most_growth = 1.2F, most_shrinking = 0.4F;  ///< of a step size at one iteration
+
+/// How much of the last step a node of this step size still takes: all from 1 on, nothing below three
+/// quarters.
+FASCIA_INLINE Lanes share_of_momentum(const Lanes& step_scale) {
+  return positive(4.0F * step_scale - 3.0F);
+}
+
+/// A substep's only iteration, or its first: the direction before was that of other loads, so only its sign
+/// can be judged, and that only where no later iteration judges better.
+FASCIA_INLINE Lanes scale_by_sign(const Lanes& scale, const Lanes3& way, const Lanes3& last) {
+  const Lanes none = splat(0.0F), one = splat(1.0F), squared = dot(way, way);
+  const Lanes back =
+      where_below(dot(way, last), none, where_below(splat(noise * noise), squared, one, none), none);
+  const Lanes more = lesser(1.2F * scale, one), less = greater(0.5F * scale, least_step_scale);
+  return where_below(none, back, less, more);
+}
+
+/// The step size that would have ended the last step where its direction vanishes: along that step s, taken
+/// as `scale` times the direction d then wanted, the direction has become d' = d - lambda s, so that 1 /
+/// lambda = 1 / (1 / scale - d' s / s^2).
+FASCIA_INLINE Lanes scale_by_secant(const Lanes& scale, const Lanes3& way, const Lanes3& last) {
+  const Lanes squared = dot(last, last);
+  const Lanes inverse = 1.0F / scale - dot(way, last) / greater(squared, 1e-20F);
+  const Lanes wanted = greater(1.0F / greater(inverse, 1.0F), most_shrinking * scale);
+  const Lanes bounded = greater(lesser(wanted, most_growth * scale), least_step_scale);
+  return where_below(splat(0.01F * noise * noise), squared, bounded, scale);
+}
+
+/// Chooses the nodes' step sizes; returns how many times the last steps are added to the new directions.
+float judge_steps(const NodeSteps& s, const SixteenAt& at) {
+  const Lanes none = splat(0.0F);
+  Lanes step_before = none, step_now = none, way_before = none, way_now = none;
+  for (size_t k = 0; k < s.count; k += batch_width) {  // lists of unknowns are whole batches
+    const Lanes scale = load(s.step_scale + k);
+    const Lanes3 way = gather(s.direction + 4 * k, at), last = gather(s.last + 4 * k, at);
+    if (!s.gradient_before) {
+      store(s.step_scale + k, scale_by_sign(scale, way, last));
+      continue;
+    }
+    const Lanes chosen = scale_by_secant(scale, way, last);
+    store(s.step_scale + k, chosen);
+    const Lanes weight = share_of_momentum(chosen);
+    const Lanes3 before = gather(s.gradient_before + 4 * k, at), now = gather(s.gradient + 4 * k, at);
+    step_before += weight * dot(last, before);
+    step_now += weight * dot(last, now);
+    way_before += weight * dot(way, before);
+    way_now += weight * dot(way, now);
+  }
+  if (!s.gradient_before) return 0.0F;
+  const float slope = total(step_now), curvature = slope - total(step_before),
+              conjugacy = total(way_before) - total(way_now);
+  if (!(curvature > 0.0F)) return 0.0F;
+  const float share = (conjugacy - slope) / curvature;
+  return share > 0.0F ? (share < 1.0F ? share : 1.0F) : 0.0F;
+}
+
 void take_steps(const NodeSteps& s) {
   SixteenAt at;
   for (size_t l = 0; l < batch_width; ++l)
     at[l] = static_cast<int32_t>(4 * l);
+  const float momentum = s.judges ? judge_steps(s, at) : 0.0F;
   const Lanes none = splat(0.0F), one = splat(1.0F);
-  for (size_t k = 0; k < s.count; k += batch_width) {  // lists of unknowns are whole batches
+  for (size_t k = 0; k < s.count; k += batch_width) {
     Lanes step_scale = load(s.step_scale + k);
-    const Lanes3 last = gather(s.last + 4 * k, at);
     Lanes3 way = gather(s.direction + 4 * k, at);
-    if (s.momentum > 0.0F)
-      way += (s.momentum * positive(4.0F * step_scale - 3.0F)) * gather(s.before + 4 * k, at);
-    const Lanes squared = dot(way, way), along = dot(way, last);
-    const Lanes back = where_below(along, none, where_below(splat(noise * noise), squared, one, none), none);
-    const Lanes more = lesser(1.2F * step_scale, one), less = greater(0.5F * step_scale, least_step_scale);
-    step_scale = where_below(none, back, less, more);
+    if (momentum > 0.0F) way += (momentum * share_of_momentum(step_scale)) * gather(s.last + 4 * k, at);
+    const Lanes squared = dot(way, way);
     const Lanes most = farthest / square_root(greater(squared, 1e-20F));
     step_scale = where_below(splat(farthest * farthest), squared * step_scale * step_scale, most, step_scale);
     const Lanes is_sound = where_below(squared, splat(1e6F), one, none);  // false where it is not a number
@@ -77,10 +130,9 @@ void take_steps(const NodeSteps& s) {
     store(s.step_scale + k, step_scale);
     way = step_scale * way;
     interleave(way, s.last + 4 * k);
-    interleave(way, s.direction + 4 * k);
     const size_t end = s.count - k < batch_width ? s.count : k + batch_width;
     for (size_t i = k; i < end; ++i)
-      store_quad(s.x + s.slot[i], load_quad(s.x + s.slot[i]) + load_quad(s.direction + 4 * i));
+      store_quad(s.x + s.slot[i], load_quad(s.x + s.slot[i]) + load_quad(s.last + 4 * i));
   }
 }
 

@@ -10,9 +10,10 @@
 namespace fascia::testing {
 
 /// Two seconds in which every channel goes its own slow way, jaw and lids among them, played at `rate` frames
-/// a second (a multiple of ten): displacements at every tenth of a second.
+/// a second (a multiple of ten), up to `amplitude` of its range: displacements at every tenth of a second.
 inline std::vector<std::vector<sim::Vec3f>> played(const runtime::Asset& asset, size_t level, int rate,
-                                                   const sim::realtime::StepOptions& options) {
+                                                   const sim::realtime::StepOptions& options,
+                                                   double amplitude = 0.4) {
   const size_t channels = asset.channel_names.size();
   const auto& bones = asset.bones();
   sim::realtime::Face face(asset.realtime_model(level), channels);
@@ -23,7 +24,7 @@ inline std::vector<std::vector<sim::Vec3f>> played(const runtime::Asset& asset, 
     for (size_t c = 0; c < channels; ++c) {
       const double wave =
           std::sin(2.0 * M_PI * (0.5 + 0.07 * static_cast<double>(c % 7)) * t + 2.4 * static_cast<double>(c));
-      values[c] = static_cast<float>(0.4 * std::min(1.0, t / 0.3) * wave * wave) *
+      values[c] = static_cast<float>(amplitude * std::min(1.0, t / 0.3) * wave * wave) *
                   (wave > 0.0 ? asset.channel_maximum[c] : asset.channel_minimum[c]);
     }
     const auto value = [&](int32_t channel) {

@@ -17,8 +17,11 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Heads {
-  std::shared_ptr<const runtime::Asset> whole, without_contact;
+  std::shared_ptr<const runtime::Asset> whole, without_contact, other_lids;
 };
+
+/// Gains of the other head's upper lids with gaze; they unfold over more of their height, too.
+constexpr double little = 0.1, much = 0.9;
 
 const Heads& heads() {
   static const Heads heads = [] {
@@ -28,9 +31,16 @@ const Heads& heads() {
     const formats::Scene scene = formats::read(folder / "head.obj");
     rigging::BuildResult built = rigging::build_rig(scene, formats::read_landmarks(folder / "landmarks.json"),
                                                     anatomy::load_generic());
+    anatomy::GenericAnatomy other = anatomy::load_generic();
+    other.mechanics.lids.upper_follows_up = little;
+    other.mechanics.lids.upper_follows_down = much;
+    other.mechanics.lids.unfolding = {0.0022, 0.016};
+    rigging::BuildResult changed =
+        rigging::build_rig(scene, formats::read_landmarks(folder / "landmarks.json"), other);
     fs::remove_all(folder);
     const auto source = rigging::gltf_source(scene, built.report.input_to_metres);
     Heads made;
+    made.other_lids = std::make_shared<const runtime::Asset>(rig::write(source, changed.rig));
     made.whole = std::make_shared<const runtime::Asset>(rig::write(source, built.rig));
     for (rig::TissueLevel& level : built.rig.tissue.levels) {
       level.facing_prism.clear();
@@ -93,6 +103,69 @@ TEST(Lids, AFullBlinkShutsTheEyesAndGoesNoFarther) {
   }
 }
 
+/// Skin nodes of the left upper lid, in the middle of the fissure, from its edge upwards.
+std::vector<size_t> upper_lid(const SweptFace& face, size_t level) {
+  const runtime::Asset& asset = face.asset();
+  const rig::TissueLevel& lattice = asset.rig().tissue.levels[level];
+  const Vec3 eye = asset.rig().skull.eye_left.centre.cast<double>();
+  const uint32_t close = asset.find("lid_upper_left")->index;
+  double edge = 1e9;
+  for (size_t k = 0; k < lattice.carrier_node.size(); ++k) {
+    const size_t node = lattice.carrier_node[k];
+    if (lattice.carrier_channel[k] != close || node >= lattice.columns) continue;
+    const Vec3 p = lattice.rest[node].cast<double>();
+    if (std::abs(p.x() - eye.x()) < 0.004 && p.z() > eye.z()) edge = std::min(edge, p.y());
+  }
+  std::vector<size_t> nodes;
+  for (size_t v = 0; v < lattice.columns; ++v) {
+    const Vec3 p = lattice.rest[v].cast<double>();
+    if (std::abs(p.x() - eye.x()) < 0.004 && p.z() > eye.z() && p.y() >= edge && p.y() < edge + 0.025)
+      nodes.push_back(v);
+  }
+  std::sort(nodes.begin(), nodes.end(),
+            [&](size_t a, size_t b) { return lattice.rest[a].y() < lattice.rest[b].y(); });
+  return nodes;
+}
+
+/// Metres that the lid's edge rises.
+double rise_of_the_lid(SweptFace& face, const std::string& channel, float value) {
+  face.relax();
+  face.add(channel, value);
+  face.pose();
+  return static_cast<double>(face.displacements()[upper_lid(face, 0).front()].y());
+}
+
+TEST(Lids, FollowGazeUpAndDownEachByAGainOfItsOwn) {
+  SweptFace face(embedded_head(), 0), other(heads().other_lids, 0);
+  const double up = rise_of_the_lid(other, "eye_pitch_left", 0.4F),
+               down = -rise_of_the_lid(other, "eye_pitch_left", -0.4F);
+  EXPECT_GT(up, 1e-4);
+  EXPECT_GT(down, 4.0 * up);  // nine times the turn, of a lid that skin holds back
+  EXPECT_GT(rise_of_the_lid(face, "eye_pitch_left", 0.4F), 2.0 * up);
+  EXPECT_LT(-rise_of_the_lid(face, "eye_pitch_left", -0.4F), 0.9 * down);
+}
+
+/// Metres that skin above the left upper lid's crease, 9 to 25 mm over the lid's edge, sinks at most in a
+/// blink.
+double sunk_above_the_crease(SweptFace& face) {
+  show(face, {"arkit:eyeBlinkLeft"});
+  const std::vector<size_t> nodes = upper_lid(face, 0);
+  const std::vector<rig::Vec3f>& rest = face.asset().rig().tissue.levels[0].rest;
+  EXPECT_LT(face.displacements()[nodes.front()].y(), -0.005F);
+  double most = 0.0;
+  for (const size_t v : nodes)
+    if (rest[v].y() - rest[nodes.front()].y() > 0.009F)
+      most = std::max(most, -static_cast<double>(face.displacements()[v].y()));
+  return most;
+}
+
+TEST(Lids, ABlinkUnfoldsTheLidAndLeavesTheSkinAboveItsCrease) {
+  SweptFace face(embedded_head(), 0), other(heads().other_lids, 0);
+  const double sunk = sunk_above_the_crease(face);
+  EXPECT_LT(sunk, 0.001);
+  EXPECT_GT(sunk_above_the_crease(other), 1.5 * sunk);
+}
+
 /// Every third ARKit shape, then random activations: static poses, and steps in time that jump from one to
 /// the next.
 SweptFace::State swept(SweptFace& face) {
@@ -141,10 +214,17 @@ TEST(Rates, NeitherFrameRateNorIterationsChangeTheMotion) {
   EXPECT_LT(apart(played(head, 0, 30, many), at_60).share, 0.01);
   EXPECT_LT(apart(played(head, 0, 120, many), at_60).share, 0.01);
   EXPECT_LT(apart(played(head, 0, 60, more), at_60).share, 0.01);
-  // As it runs by default.
-  const auto usual = played(head, 0, 60, {});
-  EXPECT_LT(apart(played(head, 0, 120, {}), usual).share, 0.05);
-  EXPECT_LT(apart(usual, at_60).share, 0.07);
+  // As it runs by default. Pressed hard the mouth's corners can rest in two ways, and whether one motion
+  // finds the same as another is chance: several drives in the mean.
+  double by_rate = 0.0, by_iterations = 0.0;
+  const std::vector<double> amplitudes = {0.38, 0.39, 0.4, 0.41, 0.42};
+  for (const double amplitude : amplitudes) {
+    const auto usual = played(head, 0, 60, {}, amplitude);
+    by_rate += apart(played(head, 0, 120, {}, amplitude), usual).share;
+    by_iterations += apart(usual, played(head, 0, 60, many, amplitude)).share;
+  }
+  EXPECT_LT(by_rate / static_cast<double>(amplitudes.size()), 0.05);
+  EXPECT_LT(by_iterations / static_cast<double>(amplitudes.size()), 0.07);
 }
 
 }  // namespace

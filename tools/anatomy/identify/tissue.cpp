@@ -20,8 +20,8 @@ const std::vector<std::pair<std::string, std::string>> constants = {
     {"tissue", "bending_factor"},     {"skin", "young_modulus"},     {"smas", "young_modulus"},
     {"fat", "across_modulus"},        {"fat", "shear_modulus"},      {"glide", "shear_modulus"},
     {"glide", "normal_modulus"},      {"attachment", "free_factor"}, {"attachment", "lip_share"},
-    {"attachment", "air_shear_loss"}, {"lids", "softness_share"},    {"lids", "upper_follows_pitch"},
-    {"lips", "softness_share"},       {"lips", "gum_hold"}};
+    {"attachment", "air_shear_loss"}, {"lids", "softness_share"},    {"lids", "upper_follows_up"},
+    {"lids", "upper_follows_down"},   {"lips", "softness_share"},    {"lips", "gum_hold"}};
 /// And of the attachment regions their hold on bone.
 const std::vector<std::string> regions = {
     "forehead", "forehead_lateral", "prezygomatic_space", "modiolus", "brow", "buccal_space", "chin"};
