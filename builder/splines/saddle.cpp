@@ -22,10 +22,9 @@ void SaddleSolver::reduce(const MatrixXd& polynomial) {
     reflectors_.col(j).tail(rows_ - j - 1) = qr.matrixQR().col(j).tail(rows_ - j - 1);
     const double tau = qr.hCoeffs()[j];
     triangle_(j, j) = tau;
-    if (j == 0) continue;
-    const MatrixXd along = dense::transposed_product(reflectors_.leftCols(j), reflectors_.col(j));
-    triangle_.col(j).head(j).setZero();
-    dense::add_product(-tau, triangle_.topLeftCorner(j, j), along, triangle_.col(j).head(j));
+    if (j > 0)
+      triangle_.col(j).head(j) = -tau * triangle_.topLeftCorner(j, j) *
+                                 (reflectors_.leftCols(j).transpose() * reflectors_.col(j)).eval();
   }
   const MatrixXd pivoted = qr.matrixR().topRows(rank_).triangularView<Eigen::Upper>();
   upper_ = pivoted * qr.colsPermutation().transpose();
@@ -109,7 +108,8 @@ void SaddleSolver::solve(const MatrixXd& top, const MatrixXd& bottom, MatrixXd& 
     lower.transpose().solveInPlace(part);
     local.bottomRows(free) = part;
   }
-  a = determined(turned.topRows(rank_) - dense::transposed_product(below, local.bottomRows(free)));
+  dense::add_transposed_product(-1.0, below, local.bottomRows(free), turned.topRows(rank_));
+  a = determined(turned.topRows(rank_));
   c = turn(local);
 }
 
