@@ -4,6 +4,7 @@
 
 #include "builder/rigging/gltf_source.h"
 #include "cli/common.h"
+#include "cli/landmark_units.h"
 #include "cli/picture.h"
 #include "cli/posing.h"
 #include "formats/scene.h"
@@ -79,11 +80,8 @@ void add_muscles(formats::Drawing& drawing, const rig::Rig& rig, const ToInput& 
 void write_landmarks(const std::filesystem::path& output, const rig::Rig& rig, const ToInput& to_input) {
   if (extension_of(output) != ".json")
     throw Error("'" + output.string() + "': landmarks are written as .json");
-  const double metres = 1.0 / to_input.scale();
   Json json;
-  // Only these three have a name in a landmark file; other units stand as the head file's own.
-  for (const auto& [name, value] : {std::pair{"m", 1.0}, {"cm", 0.01}, {"mm", 0.001}})
-    if (std::abs(metres / value - 1.0) < 1e-4) json["units"] = name;
+  json["units"] = landmark_units(1.0 / to_input.scale());
   const auto triple = [&](const rig::Vec3f& p) {
     const Vec3 q = to_input(p);
     return Json::array({q[0], q[1], q[2]});

@@ -11,6 +11,7 @@
 
 #include "builder/rigging/gltf_source.h"
 #include "cli/gltf_edit.h"
+#include "cli/landmark_units.h"
 #include "formats/obj_lines.h"
 #include "formats/scene.h"
 #include "geometry/error.h"
@@ -165,8 +166,7 @@ void write_reconstructed_landmarks(const std::filesystem::path& path, const std:
   const bool is_upright = extension_of(head) == ".glb";
   const double unit = is_upright ? 1.0 : result.metres;
   const Mat4 upright = scan_to_metres(result);
-  for (const auto& [name, value] : {std::pair{"m", 1.0}, {"cm", 0.01}, {"mm", 0.001}})
-    if (std::abs(unit / value - 1.0) < 1e-4) json["units"] = name;
+  json["units"] = landmark_units(unit);
   const auto triple = [&](const Vec3& scan) {
     const Vec3 p = is_upright ? transform_point(upright, scan) : Vec3(scan + offset);
     return Json::array({p[0], p[1], p[2]});

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,12 @@ void read_stl(Scene& scene);
 /// Triangles of a polygon, convex or not: quads along their shorter diagonal, others by their ears.
 void triangulate(const std::vector<Vec3>& positions, const std::vector<int>& polygon,
                  std::vector<Triangle>& triangles);
+
+/// Whether a transform turns left into right, and so every triangle over.
+inline bool is_mirroring(const Mat4& transform) {
+  const auto linear = transform.topLeftCorner<3, 3>();
+  return linear.col(0).cross(linear.col(1)).dot(linear.col(2)) < 0.0;
+}
 
 [[noreturn]] void fail(const Scene& scene, const std::string& what);
 

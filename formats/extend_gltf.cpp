@@ -354,8 +354,11 @@ void extend_primitive(Document& document, const SceneMesh& mesh, const MeshExten
       }
   Numbers order;
   order.component = mesh.positions.size() > 65535 ? uint32 : uint16;
-  for (const Triangle& t : mesh.triangles)
+  const bool mirrors = is_mirroring(mesh.to_file);
+  for (Triangle t : mesh.triangles) {
+    if (mirrors) std::swap(t[1], t[2]);  // as the file's own
     order.values.insert(order.values.end(), t.begin(), t.end());
+  }
   primitive["indices"] = document.add_new(order, "SCALAR", 34963, false);
   primitive.erase("mode");
   document.json["meshes"][static_cast<size_t>(mesh.mesh)]["primitives"][static_cast<size_t>(mesh.primitive)] =

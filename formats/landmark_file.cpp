@@ -49,7 +49,7 @@ class Reader {
 
   void read_plain(const json& content) {
     if (content.contains("units") && content["units"].is_number()) {
-      file_.units = std::to_string(content["units"].get<double>());
+      file_.units = content["units"].dump();
     } else if (content.contains("units")) {
       if (!content["units"].is_string())
         fail("'units' must be \"m\", \"cm\", \"mm\" or the metres of one unit");

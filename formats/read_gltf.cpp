@@ -127,10 +127,13 @@ void read_primitive(const tinygltf::Model& model, const tinygltf::Primitive& pri
   }
   if (primitive.material >= 0 && primitive.material < static_cast<int>(model.materials.size()))
     mesh.material = model.materials[static_cast<size_t>(primitive.material)].name;
+  // A node that mirrors turns its triangles over (glTF 2.0, section 3.7.4).
+  const bool mirrors = is_mirroring(mesh.to_file);
   for (const gltf::Triangle& t : gltf::decode_triangles(model, primitive, mesh.positions.size(), path)) {
     // Degenerate triangles of strips are stitching, not surface.
     if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
-    mesh.triangles.push_back({static_cast<int>(t[0]), static_cast<int>(t[1]), static_cast<int>(t[2])});
+    mesh.triangles.push_back(
+        {static_cast<int>(t[0]), static_cast<int>(t[mirrors ? 2 : 1]), static_cast<int>(t[mirrors ? 1 : 2])});
   }
 }
 

@@ -1,5 +1,6 @@
 #include "builder/rigging/shape_places.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -88,6 +89,34 @@ bool can_be_a_face(const std::array<Vec3, place_count>& places) {
          down < 5.0 * eyes;
 }
 
+/// The middle of the surface near the places, as far as a head reaches.
+Vec3 middle_of_head(const formats::Scene& scene, const std::array<Vec3, place_count>& places) {
+  const Vec3 face = 0.25 * (places[0] + places[1] + places[2] + places[3]);
+  const double reach = 3.0 * (places[eye_left] - places[eye_right]).norm();
+  Vec3 sum = Vec3::Zero();
+  double total = 0.0;
+  for (const formats::SceneMesh& mesh : scene.meshes)
+    for (const Triangle& t : mesh.triangles) {
+      const Vec3 &a = mesh.positions[static_cast<size_t>(t[0])],
+                 &b = mesh.positions[static_cast<size_t>(t[1])],
+                 &c = mesh.positions[static_cast<size_t>(t[2])], middle = (a + b + c) / 3.0;
+      const double area = (b - a).cross(c - a).norm();
+      if (!((middle - face).norm() < reach) || !std::isfinite(area)) continue;
+      sum += area * middle;
+      total += area;
+    }
+  return total > 0.0 ? Vec3(sum / total) : face;
+}
+
+/// Whether left is called right, as in a head that was mirrored, or whose sides are the viewer's: the face
+/// would then look into the head.
+bool are_sides_swapped(const formats::Scene& scene, const std::array<Vec3, place_count>& places) {
+  const Vec3 left = places[eye_left] - places[eye_right],
+             up = places[eye_left] + places[eye_right] - places[corner_left] - places[corner_right];
+  const Vec3 face = 0.25 * (places[0] + places[1] + places[2] + places[3]);
+  return left.cross(up).dot(face - middle_of_head(scene, places)) < 0.0;
+}
+
 }  // namespace
 
 bool ShapePlaces::agree(const landmarks::Placement& placement) const {
@@ -122,9 +151,14 @@ std::optional<ShapePlaces> places_by_shapes(const formats::Scene& scene,
   for (size_t k = 0; k < place_count; ++k) {
     if (!(means[k].weight > 0.0)) return std::nullopt;
     places[k] = means[k].sum / means[k].weight;
-    result.anchors.push_back({(*generic)[k], places[k], 1.0});
   }
   if (!can_be_a_face(places)) return std::nullopt;
+  if (are_sides_swapped(scene, places)) {
+    std::swap(places[eye_left], places[eye_right]);
+    std::swap(places[corner_left], places[corner_right]);
+  }
+  for (size_t k = 0; k < place_count; ++k)
+    result.anchors.push_back({(*generic)[k], places[k], 1.0});
   result.mesh = means[eye_left].mesh;
   return result;
 }

@@ -106,7 +106,8 @@ void aim(std::vector<LandmarkPair>& pairs, const std::vector<Mat3>& jacobians, d
 }
 
 double placement_deviation(double confidence) {
-  return 0.004 * (1 / confidence - 1);
+  constexpr double least_confidence = 1e-3;  // metres of deviation say no more than metres
+  return 0.004 * (1 / std::max(confidence, least_confidence) - 1);
 }
 
 std::vector<Observation> landmark_observations(const std::vector<LandmarkPair>& pairs) {

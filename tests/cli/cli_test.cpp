@@ -271,6 +271,19 @@ TEST_F(Tool, LandmarksGoOutAndComeBackIn) {
   const Outcome again = run("build " + at("head.obj") + " --landmarks " + at("out_landmarks.json") +
                             " --detail low -o " + at("again.glb"));
   EXPECT_EQ(again.code, 0) << again.err;
+
+  // Of units without a name the metres are said.
+  ASSERT_EQ(run("build " + at("head.obj") + " --landmarks " + at("landmarks.json") +
+                " --units 0.00109 --detail low -o " + at("odd.glb"))
+                .code,
+            0);
+  ASSERT_EQ(run("export " + at("odd.glb") + " --part landmarks -o " + at("odd_landmarks.json")).code, 0);
+  const json odd = json::parse(text_of(at("odd_landmarks.json")));
+  ASSERT_TRUE(odd["units"].is_number()) << odd["units"];
+  EXPECT_NEAR(odd["units"].get<double>(), 0.00109, 1e-8);
+  const Outcome as_written = run("build " + at("head.obj") + " --landmarks " + at("odd_landmarks.json") +
+                                 " --detail low -o " + at("again.glb"));
+  EXPECT_EQ(as_written.code, 0) << as_written.err;
 }
 
 TEST_F(Tool, PlaysCurvesIntoWeightsAndPointers) {

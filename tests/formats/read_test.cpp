@@ -246,6 +246,15 @@ TEST(ReadGltf, AppliesNodeTransformsInOrder) {
   EXPECT_NEAR((scene.meshes[0].positions[1] - Vec3(0, 7, 0)).norm(), 0, 1e-6);
 }
 
+TEST(ReadGltf, ANodeThatMirrorsTurnsItsTrianglesOver) {
+  for (const auto& [scale, is_mirrored] : {std::pair{"[-1,1,1]", true}, {"[-1,-1,1]", false}}) {
+    const Scene scene =
+        read("mirrored.gltf", bytes_of(gltf_with(std::string(R"([{"mesh":0,"scale":)") + scale + "}]")));
+    ASSERT_EQ(scene.meshes[0].triangles.size(), 1u);
+    EXPECT_EQ(scene.meshes[0].triangles[0], is_mirrored ? (Triangle{0, 2, 1}) : (Triangle{0, 1, 2}));
+  }
+}
+
 TEST(ReadGltf, RefusesACycleAndARangeError) {
   EXPECT_NE(
       message_of("cycle.gltf", gltf_with(R"([{"children":[1]},{"mesh":0,"children":[0]}])")).find("cycle"),

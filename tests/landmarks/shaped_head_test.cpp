@@ -103,6 +103,15 @@ TEST(ShapedHead, PlacesAreThoseTheShapesMove) {
   }
 }
 
+TEST(ShapedHead, SidesMayBeTheViewers) {
+  const MadeHead plain = made_head(anatomy_of_tests(), "plain", [](const Vec3& p) { return p; });
+  const auto places = rigging::places_by_shapes(
+      with_shapes(plain, {"eyeBlinkRight", "eyeBlinkLeft", "mouthSmileRight", "mouthSmileLeft"}).scene,
+      anatomy_of_tests());
+  ASSERT_TRUE(places);
+  EXPECT_TRUE(places->agree({}));
+}
+
 TEST(ShapedHead, ThreePlacesTellNothing) {
   const MadeHead plain = made_head(anatomy_of_tests(), "plain", [](const Vec3& p) { return p; });
   EXPECT_FALSE(rigging::places_by_shapes(plain.scene, anatomy_of_tests()));
