@@ -17,20 +17,20 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 std::vector<double> ways(const Skin& skin, const Vec3& from, const std::vector<bool>& within) {
   const TriangleMesh& mesh = skin.rest();
   std::vector<double> length(mesh.vertices.size(), infinite);
-  size_t nearest = 0;
+  size_t start = 0;
   double least = infinite;
   for (size_t v = 0; v < within.size(); ++v) {
     if (!within[v]) continue;
     const double distance = (mesh.vertices[v] - from).norm();
     if (distance >= least) continue;
     least = distance;
-    nearest = v;
+    start = v;
   }
   if (least == infinite) return length;
   using Entry = std::pair<double, size_t>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-  length[nearest] = least;
-  queue.push({least, nearest});
+  length[start] = least;
+  queue.push({least, start});
   const Connectivity& links = skin.links();
   while (!queue.empty()) {
     const auto [way, v] = queue.top();

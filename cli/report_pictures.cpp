@@ -9,7 +9,7 @@ namespace fascia::cli {
 
 namespace {
 
-constexpr int picture_size = 460;  // pixels
+constexpr int report_picture_size = 460;  // pixels
 
 /// A small cross on the skin for each landmark, in three colours: given, found, found with low confidence.
 void add_crosses(view::DrawList& list, const rig::Rig& rig, const rigging::BuildReport& report) {
@@ -40,7 +40,7 @@ std::vector<StagePictures> stage_pictures(const std::filesystem::path& path,
                                           const rigging::BuildReport& report) {
   const Face face(path, {FASCIA_SPACE_METRES, "own", ""});
   const rig::RigFile file = rig::read(formats::read_bytes(path), path.string());
-  const view::Renderer renderer(picture_size, picture_size);
+  const view::Renderer renderer(report_picture_size, report_picture_size);
   const Bounds box = face_box(file.rig);
   std::vector<StagePictures> all;
   const auto add = [&](const char* title, const char* caption, const view::DrawList& list) {

@@ -8,6 +8,7 @@
 #include "fit/live/bounded_step.h"
 #include "fit/live/dearness.h"
 #include "geometry/alignment.h"
+#include "geometry/dense.h"
 #include "geometry/error.h"
 
 namespace fascia::fit {
@@ -109,7 +110,7 @@ void Fitter::gather_sliding() {
     for (Eigen::Index c = 0; c < count; ++c)
       scaled.block<3, 1>(3 * static_cast<Eigen::Index>(i), c) = weighted(used[i], rows.col(c));
   }
-  hessian_.noalias() = slopes.transpose() * scaled;
+  hessian_ = dense::transposed_product(slopes, scaled);
 }
 
 bool Fitter::linearise(const std::vector<float>& values) {
@@ -132,8 +133,9 @@ bool Fitter::linearise(const std::vector<float>& values) {
   for (int axis = 0; axis < 3; ++axis) {
     const Eigen::MatrixXd columns = axis_rows(node_columns_, axis), jaw = axis_rows(jaw_slopes_, axis);
     const Eigen::MatrixXd gathered = between * columns;
-    hessian_.noalias() += columns.transpose() * gathered;
-    const Eigen::MatrixXd across = columns.transpose() * (trusted * jaw);
+    dense::add_transposed_product(1.0, columns, gathered, hessian_);
+    const Eigen::MatrixXd pulled = trusted * jaw;
+    const Eigen::MatrixXd across = dense::transposed_product(columns, pulled);
     hessian_.rightCols<3>() += across;
     hessian_.bottomRows<3>() += across.transpose();
     hessian_.bottomRightCorner<3, 3>() += jaw.transpose() * vertex_weights_.asDiagonal() * jaw;

@@ -6,6 +6,10 @@ started=$SECONDS
 scripts/setup.sh --demo
 cmake --preset release -DFASCIA_BUILD_TESTS=OFF >/dev/null
 # What the demonstration runs, and no more; scripts/test.sh builds the rest.
-cmake --build build --target fascia
+if [ -t 1 ]; then
+  NINJA_STATUS='@%f %t %e@ ' cmake --build build --target fascia | scripts/build_progress.sh
+else
+  cmake --build build --target fascia
+fi
 echo "demo: set up and built in $((SECONDS - started)) s"
 build/bin/fascia demo --out out

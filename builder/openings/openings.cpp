@@ -94,8 +94,8 @@ std::vector<int> hole_at(const TriangleMesh& skin, const MeetingLine& line) {
 
 bool are_lips_closed(const prepare::PreparedHead& head, const MeetingLine& line, OpenedHead& opened) {
   if (!is_fused(head.skin, connectivity(head.skin), *head.surface, line)) return false;
-  constexpr double least_bend = 0.15;  // radians in the mean: a furrow that can be seen
-  if (line.clearness > least_bend) return true;
+  constexpr double visible_bend = 0.15;  // radians in the mean: a furrow that can be seen
+  if (line.clearness > visible_bend) return true;
   opened.warnings.emplace_back(
       "the mouth is closed and was not parted: there is no furrow where the lips would meet; give its "
       "corners "

@@ -3,6 +3,7 @@
 #include <Eigen/QR>
 
 #include "builder/splines/simd.h"
+#include "geometry/dense.h"
 
 namespace fascia::splines {
 
@@ -27,15 +28,18 @@ void SaddleSolver::reduce(const MatrixXd& polynomial) {
   }
   const MatrixXd pivoted = qr.matrixR().topRows(rank_).triangularView<Eigen::Upper>();
   upper_ = pivoted * qr.colsPermutation().transpose();
-  square_inverse_ = (upper_ * upper_.transpose()).inverse();
+  const MatrixXd lower = upper_.transpose();
+  square_inverse_ = MatrixXd(dense::product(upper_, lower)).inverse();
 }
 
 MatrixXd SaddleSolver::turn(const MatrixXd& x) const {
-  return x - reflectors_ * (triangle_ * (reflectors_.transpose() * x));
+  return x -
+         dense::product(reflectors_, dense::product(triangle_, dense::transposed_product(reflectors_, x)));
 }
 
 MatrixXd SaddleSolver::turn_back(const MatrixXd& x) const {
-  return x - reflectors_ * (triangle_.transpose() * (reflectors_.transpose() * x));
+  return x - dense::product(reflectors_,
+                            dense::transposed_product(triangle_, dense::transposed_product(reflectors_, x)));
 }
 
 bool SaddleSolver::compute(MatrixXd kernel, const MatrixXd& polynomial, bool definite) {
@@ -54,8 +58,10 @@ bool SaddleSolver::compute(MatrixXd kernel, const MatrixXd& polynomial, bool def
   reduce(polynomial);
   // Q^T K Q = K - X V^T - V X^T with X = W - V (T^T V^T W) / 2 and W = K V T: one pass over K.
   reduced_ = std::move(kernel);
-  MatrixXd X = reduced_.selfadjointView<Eigen::Lower>() * reflectors_ * triangle_;
-  X -= 0.5 * reflectors_ * (triangle_.transpose() * (reflectors_.transpose() * X)).eval();
+  const MatrixXd moved = reduced_.selfadjointView<Eigen::Lower>() * reflectors_;
+  MatrixXd X = dense::product(moved, triangle_);
+  const MatrixXd half = dense::transposed_product(triangle_, dense::transposed_product(reflectors_, X));
+  dense::add_product(-0.5, reflectors_, half, X);
   MatrixXd left(rows_, 2 * rank_), right(rows_, 2 * rank_);
   left << X, reflectors_;
   right << reflectors_, X;
@@ -72,7 +78,7 @@ bool SaddleSolver::compute(MatrixXd kernel, const MatrixXd& polynomial, bool def
 
 // Of all a with R a = x the shortest.
 MatrixXd SaddleSolver::determined(const MatrixXd& x) const {
-  return upper_.transpose() * (square_inverse_ * x);
+  return dense::transposed_product(upper_, dense::product(square_inverse_, x));
 }
 
 void SaddleSolver::solve(const MatrixXd& top, const MatrixXd& bottom, MatrixXd& c, MatrixXd& a) const {
@@ -90,10 +96,10 @@ void SaddleSolver::solve(const MatrixXd& top, const MatrixXd& bottom, MatrixXd& 
   MatrixXd turned = turn_back(top);
   MatrixXd local = MatrixXd::Zero(rows_, top.cols());
   if (bottom.rows() > 0) {
-    local.topRows(rank_) = square_inverse_ * (upper_ * bottom);
-    turned.bottomRows(free) -= below * local.topRows(rank_);
+    local.topRows(rank_) = dense::product(square_inverse_, dense::product(upper_, bottom));
+    dense::add_product(-1.0, below, local.topRows(rank_), turned.bottomRows(free));
     const MatrixXd corner = reduced_.topLeftCorner(rank_, rank_).selfadjointView<Eigen::Lower>();
-    turned.topRows(rank_) -= corner * local.topRows(rank_);
+    dense::add_product(-1.0, corner, local.topRows(rank_), turned.topRows(rank_));
   }
   if (free > 0) {
     const auto lower = reduced_.bottomRightCorner(free, free).triangularView<Eigen::Lower>();
@@ -102,7 +108,8 @@ void SaddleSolver::solve(const MatrixXd& top, const MatrixXd& bottom, MatrixXd& 
     lower.transpose().solveInPlace(part);
     local.bottomRows(free) = part;
   }
-  a = determined(turned.topRows(rank_) - below.transpose() * local.bottomRows(free));
+  dense::add_transposed_product(-1.0, below, local.bottomRows(free), turned.topRows(rank_));
+  a = determined(turned.topRows(rank_));
   c = turn(local);
 }
 

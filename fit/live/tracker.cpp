@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "fit/live/dearness.h"
+#include "geometry/dense.h"
 #include "geometry/error.h"
 
 namespace fascia::fit {
@@ -47,10 +48,10 @@ struct Tracker::System {
   using HeadVector = Eigen::Matrix<double, head, 1>;
 
   Eigen::MatrixXd rows, weighted;  ///< 3 #landmarks x #fitted: what the camera sees of the Jacobian
-  Eigen::Matrix<double, Eigen::Dynamic, head> head_rows, head_weighted;
+  Eigen::MatrixXd head_rows, head_weighted;
   Eigen::VectorXd missing;  ///< 3 #landmarks
   Eigen::MatrixXd curvature;
-  Eigen::Matrix<double, head, Eigen::Dynamic> across, solved;
+  Eigen::MatrixXd across, solved;
   Eigen::VectorXd slope, move, pull;
 
   System(Eigen::Index landmarks, Eigen::Index channels)
@@ -270,15 +271,23 @@ double Tracker::step(std::span<const Vec3> points, std::span<const double> weigh
     s.weighted.middleRows<3>(row) = weight * s.rows.middleRows<3>(row);
     s.head_weighted.middleRows<3>(row) = weight * s.head_rows.middleRows<3>(row);
   }
-  s.curvature.noalias() = s.rows.transpose() * s.weighted;
-  s.across.noalias() = s.head_rows.transpose() * s.weighted;
-  s.slope.noalias() = -s.rows.transpose() * s.missing;
-  const System::HeadMatrix head = System::with_floor(s.head_rows.transpose() * s.head_weighted);
-  const System::HeadVector head_slope = -s.head_rows.transpose() * s.missing;
-  const Eigen::LDLT<System::HeadMatrix> factor(head);
-  s.solved.noalias() = factor.solve(s.across);
-  s.curvature.noalias() -= s.across.transpose() * s.solved;
-  s.slope.noalias() -= s.solved.transpose() * head_slope;
+  s.curvature.setZero();
+  s.across.setZero();
+  s.slope.setZero();
+  System::HeadMatrix head = System::HeadMatrix::Zero();
+  System::HeadVector head_slope = System::HeadVector::Zero();
+  dense::add_transposed_product(1.0, s.rows, s.weighted, s.curvature);
+  dense::add_transposed_product(1.0, s.head_rows, s.weighted, s.across);
+  dense::add_transposed_product(-1.0, s.rows, s.missing, s.slope);
+  dense::add_transposed_product(1.0, s.head_rows, s.head_weighted, head);
+  dense::add_transposed_product(-1.0, s.head_rows, s.missing, head_slope);
+  const Eigen::LDLT<System::HeadMatrix> factor(System::with_floor(head));
+  for (Eigen::Index i = 0; i < s.across.cols(); ++i) {
+    const System::HeadVector column = s.across.col(i);
+    s.solved.col(i) = factor.solve(column);
+  }
+  dense::add_transposed_product(-1.0, s.across, s.solved, s.curvature);
+  dense::add_transposed_product(-1.0, s.solved, head_slope, s.slope);
   for (size_t i = 0; i < fitted_.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
     const double value = values_[fitted_[i]];
@@ -292,7 +301,8 @@ double Tracker::step(std::span<const Vec3> points, std::span<const double> weigh
       [&](Eigen::Index i) -> const StepBound& { return bounds_[static_cast<size_t>(i)]; },
       [&](Eigen::Index i) { return static_cast<double>(values_[fitted_[static_cast<size_t>(i)]]); }, s.move,
       s.pull, 1e-4);
-  const System::HeadVector head_move = -factor.solve(head_slope) - s.solved * s.move;
+  System::HeadVector head_move = -factor.solve(head_slope);
+  dense::add_product(-1.0, s.solved, s.move, head_move);
   head_.move(head_move.head<3>(), head_move.segment<3>(3), head_move[6]);
   double largest = 0.0;
   for (size_t i = 0; i < fitted_.size(); ++i) {
