@@ -166,6 +166,31 @@ TEST(Lids, ABlinkUnfoldsTheLidAndLeavesTheSkinAboveItsCrease) {
   EXPECT_GT(sunk_above_the_crease(other), 1.5 * sunk);
 }
 
+/// Metres that the red of the upper and of the lower lip part at the midline.
+double parting(const SweptFace& face) {
+  const rig::Rig& rig = face.asset().rig();
+  const auto rise = [&](const std::string& name) {
+    const auto landmark = std::find_if(rig.skull.landmarks.begin(), rig.skull.landmarks.end(),
+                                       [&](const rig::Landmark& one) { return one.name == name; });
+    const rig::TissueLevel& level = rig.tissue.levels[0];
+    size_t best = 0;
+    for (size_t v = 0; v < level.columns; ++v)
+      if ((level.rest[v] - landmark->skin).norm() < (level.rest[best] - landmark->skin).norm()) best = v;
+    return static_cast<double>(face.displacements()[best].y());
+  };
+  return rise("labiale_superius") - rise("labiale_inferius");
+}
+
+TEST(Lips, AreKeptTogetherByTheSealOfADimple) {
+  SweptFace face(embedded_head(), 0);
+  show(face, {"arkit:mouthDimpleLeft", "arkit:mouthDimpleRight"});
+  const double sealed = parting(face);
+  for (const char* seal : {"lip_seal_left", "lip_seal_right"})
+    face.add(seal, -1.0F);
+  face.pose();
+  EXPECT_GT(parting(face), sealed + 0.0003);
+}
+
 /// Every third ARKit shape, then random activations: static poses, and steps in time that jump from one to
 /// the next.
 SweptFace::State swept(SweptFace& face) {
