@@ -177,6 +177,18 @@ void pair_eyes(prepare::PreparedHead& head, const spatial::MirrorPlane& plane) {
   left.radius = right.radius = 0.5 * (left.radius + right.radius);
 }
 
+/// The pupils lie on the globes, not on the skin: before each one's centre, as it looks, as sure as the
+/// corner of the lids beside it.
+void place_pupils(FoundLandmarks& result, const formats::LandmarkFile& given) {
+  for (const auto& [side, eye] :
+       {std::pair("left", result.head.eye_left), std::pair("right", result.head.eye_right)}) {
+    const std::string name = std::string("pupilla_") + side;
+    const auto corner = result.landmarks.find(std::string("endocanthion_") + side);
+    if (!eye || given.points.count(name) || corner == result.landmarks.end()) continue;
+    result.landmarks[name] = {eye->centre + eye->radius * eye->gaze, corner->second.confidence, false};
+  }
+}
+
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
@@ -211,6 +223,7 @@ FoundLandmarks find_landmarks(const formats::Scene& file, const formats::Landmar
     if (mirror->is_exact) pair_eyes(result.head, mirror->plane);
     set_upright(result, *mirror);
   }
+  place_pupils(result, given);
   result.seconds = {located_at - started, prepared_at - located_at, now() - prepared_at};
   return result;
 }
