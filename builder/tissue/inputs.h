@@ -44,7 +44,7 @@ struct LevelOptions {
   std::string name = "medium";
   int columns = 2000;
   /// Edge length at the mouth's corners over that along the lips. The corner opens like a crack, wider the
-  /// finer its tip is cut: medium and high cut it alike, at some 0.9 mm.
+  /// finer its tip is cut: medium and high cut it alike, at some 0.9 mm, low at 1.8.
   double corner_ratio = 0.5;
 };
 
@@ -52,7 +52,7 @@ struct LevelOptions {
 struct TissueOptions {
   /// Contact with bones, teeth and the other lip, and one-sided ligaments. The bones must be closed surfaces.
   bool contact = true;
-  std::vector<LevelOptions> levels = {{"low", 700}, {"medium", 2000, 0.32}, {"high", 5000}};
+  std::vector<LevelOptions> levels = {{"low", 700, 0.45}, {"medium", 2000, 0.32}, {"high", 5000}};
   double lining = 0.010;         ///< how far the simulated skin goes on over lips and lids into the openings
   double edge_ratio = 2.7;       ///< edge length far from lips and lids over that at them
   double edge_growth = 0.045;    ///< distance over which it grows

@@ -125,7 +125,7 @@ TEST_F(DressedHead, LashesBrowsAndHairGoWithTheSkinAtTheirRoots) {
     return motion;
   };
   const std::vector<Vec3> lash = moved(face, lashes);
-  EXPECT_LT(skin_at(rest(lashes, 0)).y(), -1.2) << "the lid closes";
+  EXPECT_LT(skin_at(rest(lashes, 0)).y(), -1.0) << "the lid closes";
   for (size_t card = 0; card < 3; ++card)
     for (size_t v = 0; v < 6; ++v) {
       EXPECT_LT((lash[6 * card + v] - skin_at(rest(lashes, 6 * card))).norm(), 2.0) << "card " << card;

@@ -1,5 +1,6 @@
 // The embedded head under many drives: nothing passes through anything, and closed eyes are closed.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "builder/rigging/build_rig.h"
 #include "builder/rigging/embedded_head.h"
@@ -25,7 +26,8 @@ constexpr double little = 0.1, much = 0.9;
 
 const Heads& heads() {
   static const Heads heads = [] {
-    const fs::path folder = fs::temp_directory_path() / "fascia_sweep";
+    const fs::path folder =
+        fs::temp_directory_path() / ("fascia_sweep_" + std::to_string(getpid()));  // tests run side by side
     fs::create_directories(folder);
     rigging::write_embedded_head(folder / "head.obj", folder / "landmarks.json");
     const formats::Scene scene = formats::read(folder / "head.obj");
