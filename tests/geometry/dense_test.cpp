@@ -27,7 +27,7 @@ double largest_difference(const dense::Matrix& a, const dense::Matrix& b) {
   return a.rows() == b.rows() && a.cols() == b.cols() ? (a - b).cwiseAbs().maxCoeff() : 1e300;
 }
 
-TEST(Dense, products_are_sums_of_products_at_every_size) {
+TEST(Dense, ProductsAreSumsOfProductsAtEverySize) {
   for (const Eigen::Index n : {1, 3, 7, 40}) {
     const dense::Matrix a = some_matrix(n + 2, n, 1), b = some_matrix(n, 5, 2), c = some_matrix(n + 2, 5, 3);
     EXPECT_LT(largest_difference(dense::product(a, b), sum_of_products(a, b)), 1e-13) << n;
@@ -36,7 +36,7 @@ TEST(Dense, products_are_sums_of_products_at_every_size) {
   }
 }
 
-TEST(Dense, products_are_added_to_parts_of_matrices) {
+TEST(Dense, ProductsAreAddedToPartsOfMatrices) {
   const dense::Matrix a = some_matrix(6, 4, 4), b = some_matrix(4, 3, 5), before = some_matrix(9, 8, 6);
   dense::Matrix out = before;
   dense::add_product(-0.5, a.topRows(5), b.rightCols(2), out.block(1, 2, 5, 2));
@@ -50,7 +50,7 @@ TEST(Dense, products_are_added_to_parts_of_matrices) {
             1e-14);
 }
 
-TEST(Dense, products_of_nothing_are_zero) {
+TEST(Dense, ProductsOfNothingAreZero) {
   EXPECT_EQ(dense::product(dense::Matrix(3, 0), dense::Matrix(0, 2)),
             dense::Matrix(dense::Matrix::Zero(3, 2)));
   EXPECT_EQ(dense::transposed_product(dense::Matrix(4, 0), dense::Matrix(4, 2)).rows(), 0);
