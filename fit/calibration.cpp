@@ -85,9 +85,11 @@ class Calibrator {
     Evidence out{Eigen::MatrixXd::Zero(count, count), Eigen::VectorXd::Zero(count), pose.mean_square,
                  pose.target_square};
     // d activation / d gain is what the table gives the channel.
-    std::vector<double> given;
+    std::vector<double> given;  // an eye turns as far as it turns: only muscles and the jaw have gains
     for (uint32_t c : pose.channels)
-      given.push_back(static_cast<double>(cases_[i].activations[c] - subject_.channels()[c].rest));
+      given.push_back(subject_.channels()[c].group == "eye"
+                          ? 0.0
+                          : static_cast<double>(cases_[i].activations[c] - subject_.channels()[c].rest));
     for (size_t a = 0; a < given.size(); ++a) {
       if (given[a] == 0.0) continue;
       const auto row = static_cast<Eigen::Index>(pose.channels[a]);

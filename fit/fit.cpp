@@ -16,6 +16,7 @@ namespace {
 
 constexpr double square_mm = 1e6;       // of a square metre
 constexpr double along_surface = 0.03;  // what a vertex that may slide costs along the surface, of across it
+constexpr double unseen_gaze = 50.0;  // cost of turning an eye that only its lids tell of, of a common muscle
 
 using RowsByAxis = Eigen::Map<const Eigen::MatrixXd, 0, Eigen::Stride<Eigen::Dynamic, 3>>;
 
@@ -32,9 +33,10 @@ Fitter::Fitter(Subject& subject, const FitOptions& options)
       sensitivity_(subject.model()),
       dearness_(dearness_of(subject.file().rig.actuation)) {
   for (uint32_t c = 0; c < subject.channels().size(); ++c)
-    if (subject.channels()[c].group != "eye" && subject.channels()[c].group != "jaw" &&
-        sensitivity_.listens(c))
+    if (subject.channels()[c].group != "jaw" && sensitivity_.listens(c)) {
       driven_.push_back(c);
+      if (is_eye(c)) dearness_[c] = unseen_gaze;
+    }
   fitted_ = driven_;
   for (const char* name : {"jaw_open", "jaw_forward", "jaw_lateral"}) {
     const int32_t at = subject.channel(name);
@@ -46,9 +48,20 @@ Fitter::Fitter(Subject& subject, const FitOptions& options)
 
 void Fitter::set_options(const FitOptions& options) {
   options_ = options;
+  hold(std::array<bool, 2>{false, false});
+}
+
+bool Fitter::is_eye(uint32_t channel) const {
+  return subject_->channels()[channel].group == "eye";
+}
+
+void Fitter::hold(const std::array<bool, 2>& eyes) {
   is_held_.assign(subject_->channels().size(), false);
   for (const uint32_t channel : options_.held)
     is_held_.at(channel) = true;
+  for (const uint32_t channel : driven_)
+    if (is_eye(channel) && eyes[subject_->channels()[channel].name.ends_with("_left") ? 0 : 1])
+      is_held_[channel] = true;
 }
 
 FitResult Fitter::fit(const Target& target) {
@@ -144,15 +157,18 @@ bool Fitter::linearise(const std::vector<float>& values) {
   return true;
 }
 
-/// Turns each eye as its vertices turn, by the rotation of least squares about its centre (Kabsch 1976).
-void Fitter::find_eyes(const Target& target, std::vector<float>& values) const {
+/// Turns each eye as its vertices turn, by the rotation of least squares about its centre (Kabsch 1976). One
+/// that is not seen is left to the fit: lids follow the gaze.
+void Fitter::find_eyes(const Target& target, std::vector<float>& values) {
   const rig::Skull& skull = subject_->file().rig.skull;
+  std::array<bool, 2> seen = {false, false};
   for (const uint8_t eye : {uint8_t{1}, uint8_t{2}}) {
     const Vec3 centre = (eye == 1 ? skull.eye_left : skull.eye_right).centre.cast<double>();
     Mat3 sum = Mat3::Zero();
     double most = 0.0;
     for (size_t v = 0; v < subject_->vertex_count(); ++v) {
       if (subject_->eyes()[v] != eye || target.trust[v] <= 0.0) continue;
+      seen[eye - 1U] = true;
       const auto at = static_cast<Eigen::Index>(3 * v);
       const Vec3 arm = subject_->rest().segment<3>(at) - centre, moved = target.displacements.segment<3>(at);
       sum += (arm + moved) * arm.transpose();
@@ -171,6 +187,7 @@ void Fitter::find_eyes(const Target& target, std::vector<float>& values) const {
           std::clamp(static_cast<float>(angle), channel.minimum, channel.maximum);
     }
   }
+  hold(seen);
 }
 
 /// The step of least half-objective in the channels' ranges, by coordinate descent: `slope` is half the
@@ -348,13 +365,17 @@ void Fitter::finish(const Target& target, FitResult& result) {
   misses.write(result);
   result.spread.assign(result.activations.size(), 0.0);
   if (hessian_.size() == 0) return;
+  constexpr double held_curvature = 1e12;
   Eigen::MatrixXd curvature = hessian_;
   for (Eigen::Index i = 0; i < curvature.rows(); ++i)
-    curvature(i, i) += options_.ridge * dearness_[fitted_[static_cast<size_t>(i)]] + 1e-12;
+    curvature(i, i) += is_held_[fitted_[static_cast<size_t>(i)]]
+                           ? held_curvature
+                           : options_.ridge * dearness_[fitted_[static_cast<size_t>(i)]] + 1e-12;
   const Eigen::MatrixXd inverse =
       curvature.ldlt().solve(Eigen::MatrixXd::Identity(curvature.rows(), curvature.cols()));
   constexpr double rise_mm = 0.05;
   for (Eigen::Index i = 0; i < inverse.rows(); ++i) {
+    if (is_held_[fitted_[static_cast<size_t>(i)]]) continue;
     const rig::Channel& channel = subject_->channels()[fitted_[static_cast<size_t>(i)]];
     result.spread[fitted_[static_cast<size_t>(i)]] =
         std::min(static_cast<double>(channel.maximum - channel.minimum),

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -75,7 +76,7 @@ struct Linearised {
 /// by the adjoint of the equilibrium.
 ///
 /// Channels that only move the mandible, as its own three do, stay at rest, so that the answer is one; the
-/// eyes turn as their meshes do.
+/// eyes turn as their meshes do, or as their lids show where nothing is known of the meshes.
 class Fitter {
  public:
   explicit Fitter(Subject& subject, const FitOptions& options = {});
@@ -102,7 +103,10 @@ class Fitter {
                    Eigen::VectorXd& difference);
   double cost(const std::vector<float>& values) const;
   bool linearise(const std::vector<float>& values);
-  void find_eyes(const Target& target, std::vector<float>& values) const;
+  bool is_eye(uint32_t channel) const;
+  /// Keeps the options' channels, and the gaze of each eye that is seen (left, right), where they are.
+  void hold(const std::array<bool, 2>& eyes);
+  void find_eyes(const Target& target, std::vector<float>& values);
   /// Half the Hessian of the mean squared error where vertices may slide along a surface.
   void gather_sliding();
   Vec3 weighted(Eigen::Index vertex, const Vec3& difference) const;
@@ -112,7 +116,7 @@ class Fitter {
   Subject* subject_;
   FitOptions options_;
   sim::Sensitivity sensitivity_;
-  std::vector<uint32_t> driven_;    ///< channels fitted that tissue listens to
+  std::vector<uint32_t> driven_;    ///< channels fitted that tissue listens to, eyes among them by their lids
   std::vector<uint32_t> fitted_;    ///< those, then the jaw's
   std::vector<bool> is_held_;       ///< by channel
   std::vector<double> dearness_;    ///< by channel: cost beside that of a common one

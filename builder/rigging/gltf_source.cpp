@@ -1,5 +1,7 @@
 #include "builder/rigging/gltf_source.h"
 
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <cmath>
 
 #include "formats/material_library.h"
@@ -20,13 +22,48 @@ size_t add(gltf::Appendix& data, const std::vector<Point>& points, bool bounds) 
   return data.add_floats(values, n, bounds, gltf::vertex_target);
 }
 
-gltf::Json primitive_of(gltf::Appendix& data, const formats::SceneMesh& mesh, int material) {
+/// Tangents for a normal map, xyz and handedness a vertex: where the first texture coordinate grows, square
+/// to the unit `normals`, averaged over the triangles about a vertex (Lengyel 2001, Computing tangent space
+/// basis vectors for an arbitrary mesh). The second grows downward in glTF, its bitangent points upward.
+std::vector<Eigen::Vector4d> texture_tangents(const formats::SceneMesh& mesh,
+                                              const std::vector<Vec3>& normals) {
+  std::vector<Vec3> along(mesh.positions.size(), Vec3::Zero()), upward = along;
+  for (const Triangle& t : mesh.triangles) {
+    const auto corner = [&](int k) { return static_cast<size_t>(t[static_cast<size_t>(k)]); };
+    Eigen::Matrix<double, 3, 2> edges;
+    Eigen::Matrix2d texture;
+    for (int k = 0; k < 2; ++k) {
+      edges.col(k) = mesh.positions[corner(k + 1)] - mesh.positions[corner(0)];
+      texture.col(k) = mesh.uvs[corner(k + 1)] - mesh.uvs[corner(0)];
+    }
+    if (!(std::abs(texture.determinant()) > 1e-20)) continue;
+    const Eigen::Matrix<double, 3, 2> slopes = edges * texture.inverse();
+    const double area = edges.col(0).cross(edges.col(1)).norm();
+    for (int k = 0; k < 3; ++k) {
+      along[corner(k)] += area * slopes.col(0).stableNormalized();
+      upward[corner(k)] -= area * slopes.col(1).stableNormalized();
+    }
+  }
+  std::vector<Eigen::Vector4d> tangents(along.size());
+  for (size_t v = 0; v < along.size(); ++v) {
+    const Vec3 square = along[v] - normals[v].dot(along[v]) * normals[v];
+    const Vec3 tangent =
+        square.norm() > 1e-12 * along[v].norm() ? Vec3(square.normalized()) : normals[v].unitOrthogonal();
+    tangents[v] << tangent, normals[v].cross(tangent).dot(upward[v]) < 0.0 ? -1.0 : 1.0;
+  }
+  return tangents;
+}
+
+gltf::Json primitive_of(gltf::Appendix& data, const formats::SceneMesh& mesh, int material,
+                        bool has_normal_map) {
   gltf::Json attributes;
   attributes["POSITION"] = add<Vec3, 3>(data, mesh.positions, true);
   std::vector<Vec3> normals = vertex_normals({mesh.positions, mesh.triangles});
   for (Vec3& n : normals)
     if (n.squaredNorm() == 0) n = Vec3::UnitZ();
   attributes["NORMAL"] = add<Vec3, 3>(data, normals, false);
+  if (has_normal_map && mesh.uvs.size() == mesh.positions.size())
+    attributes["TANGENT"] = add<Eigen::Vector4d, 4>(data, texture_tangents(mesh, normals), false);
   if (mesh.uvs.size() == mesh.positions.size())
     attributes["TEXCOORD_0"] = add<Vec2, 2>(data, mesh.uvs, false);
   if (mesh.colours.size() == mesh.positions.size())
@@ -125,8 +162,9 @@ rig::GltfSource gltf_source(const formats::Scene& scene, const Mat4& input_to_me
   add_materials(json, data, library);
   for (size_t m = 0; m < scene.meshes.size(); ++m) {
     const formats::SceneMesh& mesh = scene.meshes[m];
-    const gltf::Json primitive =
-        primitive_of(data, mesh, m < library.of_mesh.size() ? library.of_mesh[m] : -1);
+    const int look = m < library.of_mesh.size() ? library.of_mesh[m] : -1;
+    const bool has_normal_map = look >= 0 && library.materials[static_cast<size_t>(look)].normal_map;
+    const gltf::Json primitive = primitive_of(data, mesh, look, has_normal_map);
     json["meshes"].push_back({{"name", mesh.name}, {"primitives", gltf::Json::array({primitive})}});
     json["nodes"].push_back({{"name", mesh.name}, {"mesh", json["meshes"].size() - 1}});
     json["nodes"][0]["children"].push_back(json["nodes"].size() - 1);

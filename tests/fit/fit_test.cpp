@@ -117,6 +117,30 @@ TEST_F(Fit, JawAndEyesAreFound) {
   }
 }
 
+/// A scan without eyeballs: lids follow the gaze, and tell it.
+TEST_F(Fit, TheGazeOfEyesThatAreNotSeenIsReadFromTheLids) {
+  for (const char* name : {"eye_yaw_left", "eye_pitch_left"}) {
+    std::vector<float> values = rest();
+    set(values, name, 0.4F);
+    Target target = target_of(values);
+    for (size_t v = 0; v < target.trust.size(); ++v)
+      if (subject->eyes()[v] != 0) target.trust[v] = 0.0;
+    Fitter fitter(*subject);
+    const FitResult result = fitter.fit(target);
+    EXPECT_NEAR(result.activations[static_cast<size_t>(subject->channel(name))], 0.4F, 0.1F) << name;
+    EXPECT_GT(result.share, 0.9) << name;
+    EXPECT_NEAR(result.activations[static_cast<size_t>(subject->channel("eye_yaw_right"))], 0.0F, 0.02F)
+        << name;
+    // Where the eyeballs are seen at rest, they count: the lids do not turn them.
+    for (size_t v = 0; v < target.trust.size(); ++v)
+      if (subject->eyes()[v] != 0) {
+        target.trust[v] = 1.0;
+        target.displacements.segment<3>(static_cast<Eigen::Index>(3 * v)).setZero();
+      }
+    EXPECT_EQ(fitter.fit(target).activations[static_cast<size_t>(subject->channel(name))], 0.0F) << name;
+  }
+}
+
 TEST_F(Fit, VerticesNobodyTrustsDoNotCount) {
   std::vector<float> values = rest();
   set(values, "zygomaticus_minor_left", 0.6F);
