@@ -92,8 +92,7 @@ void fit_head(const SculptedHead& head, const FitRequest& request) {
   if (count == 0) return;
   std::printf("%-16s mean of %d shapes: row %.3f, linear %.3f, fit %.3f, %.2f mm; %d steps, %.1f s\n",
               head.name.c_str(), count, by_row / count, linear / count, by_fit / count, error / count,
-              iterations, seconds); %d steps, %.1f s\n", head.name.c_str(),
-              count, by_row / count, by_fit / count, error / count, iterations, seconds);
+              iterations, seconds);
   if (request.calibrate) calibrate_head(face, table);
 }
 
