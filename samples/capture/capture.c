@@ -1,4 +1,5 @@
-/* From a stream of 68 landmarks to muscles: capture RIG.glb STREAM.csv|- [-o CURVES.csv] [--no-neutral]
+/* From a stream of landmarks to muscles: capture RIG.glb STREAM.csv|STREAM.jsonl|- [-o CURVES.csv]
+ * [--no-neutral]
  *
  * Prints milliseconds a frame and what is left between points and fitted face. */
 #define _POSIX_C_SOURCE 199309L
@@ -10,7 +11,14 @@
 #include <string.h>
 #include <time.h>
 
-enum { points = 68, numbers = 3 * points };
+enum { most_points = 478 };
+
+/* A frame of the stream: 68 points of iBUG or 478 of MediaPipe, NAN where one was not seen. */
+typedef struct {
+  double seconds;
+  int points;
+  float xyz[3 * most_points];
+} frame_of_points;
 
 /* The whole of a file; NULL when it cannot be read. */
 static unsigned char* read_file(const char* path, size_t* size) {
@@ -63,67 +71,136 @@ static double now_ms(void) {
   return 1e3 * (double)time.tv_sec + 1e-6 * (double)time.tv_nsec;
 }
 
-/* A line of the stream: seconds, then the points, NAN where a field is empty. 0 when it is none. */
-static int parse(char* line, double* seconds, float* to) {
-  char *at = line, *end;
-  int i;
-  *seconds = strtod(at, &end);
-  if (end == at) return 0;
-  for (i = 0; i < numbers; ++i) {
-    at = end;
-    if (*at != ',') return 0;
-    to[i] = (float)strtod(++at, &end);
-    if (end == at) to[i] = NAN;
+static int is_known(int points) {
+  return points == 68 || points == most_points;
+}
+
+/* Seconds, then x, y, z of every point with commas between, empty where it was not seen. 0 when it is not
+ * that. */
+static int parse_table_line(char* line, frame_of_points* to) {
+  char *at, *end;
+  int count = 0;
+  to->seconds = strtod(line, &end);
+  if (end == line) return 0;
+  while (*end == ',' && count < 3 * most_points) {
+    at = end + 1;
+    to->xyz[count] = (float)strtod(at, &end);
+    if (end == at) to->xyz[count] = NAN;
+    ++count;
   }
   while (*end == '\r' || *end == '\n' || *end == ' ')
     ++end;
-  return *end == '\0';
+  to->points = count / 3;
+  return *end == '\0' && count % 3 == 0 && is_known(to->points);
+}
+
+static char* past_space(char* at) {
+  while (*at == ' ' || *at == '\t' || *at == '\r' || *at == '\n')
+    ++at;
+  return at;
+}
+
+/* Where the value of a member begins in a line of JSON whose names occur once; NULL without it. */
+static char* member(char* line, const char* quoted_name) {
+  char* at = strstr(line, quoted_name);
+  if (at == NULL) return NULL;
+  at = past_space(at + strlen(quoted_name));
+  return *at == ':' ? past_space(at + 1) : NULL;
+}
+
+/* {"time": 0.033, "points": [[x, y, z], null, ...]}, as `fascia fit` takes the frames of a file; null is a
+ * point that was not seen. 0 when it is not that. */
+static int parse_json_line(char* line, frame_of_points* to) {
+  char *at = member(line, "\"time\""), *end;
+  int k;
+  if (at == NULL) return 0;
+  to->seconds = strtod(at, &end);
+  if (end == at || (at = member(line, "\"points\"")) == NULL || *at != '[') return 0;
+  at = past_space(at + 1);
+  for (to->points = 0; *at != ']'; ++to->points) {
+    float* point = to->xyz + 3 * to->points;
+    if (to->points == most_points) return 0;
+    if (strncmp(at, "null", 4) == 0) {
+      point[0] = point[1] = point[2] = NAN;
+      at = past_space(at + 4);
+    } else {
+      for (k = 0; k < 3; ++k) {
+        if (*at != (k == 0 ? '[' : ',')) return 0;
+        point[k] = (float)strtod(at + 1, &end);
+        if (end == at + 1) return 0;
+        at = past_space(end);
+      }
+      if (*at != ']') return 0;
+      at = past_space(at + 1);
+    }
+    if (*at == ',') at = past_space(at + 1);
+  }
+  return is_known(to->points);
 }
 
 /* Plays the stream; what it is called in messages is `name`. */
-static int play(FILE* stream, const char* name, fascia_fit* fit, const fascia_channels* channels,
+static int play(FILE* stream, const char* name, fascia_asset* asset, const fascia_channels* channels,
                 FILE* curves, int has_neutral) {
-  static char line[1 << 14];
-  static float frame[numbers];
+  static char line[1 << 17];
+  static frame_of_points frame;
+  fascia_fit_landmarks landmarks = {0};
   fascia_fit_result result = {0};
-  double seconds, before, took, total = 0, slowest = 0, residual = 0;
-  int number = 0, frames = 0;
+  fascia_fit* fit = NULL;
+  double before, took, total = 0, slowest = 0, residual = 0;
+  int number = 0, frames = 0, points = 0, status = 0;
   uint32_t c;
   result.struct_size = sizeof result;
-  while (fgets(line, sizeof line, stream) != NULL) {
+  landmarks.struct_size = sizeof landmarks;
+  while (status == 0 && fgets(line, sizeof line, stream) != NULL) {
     ++number;
-    if (!parse(line, &seconds, frame)) {
+    if (!(*past_space(line) == '{' ? parse_json_line(line, &frame) : parse_table_line(line, &frame))) {
       if (number == 1) continue; /* the heading */
-      fprintf(stderr, "capture: %s, line %d: not a time and 68 points of x, y, z\n", name, number);
-      return 1;
+      fprintf(stderr, "capture: %s, line %d: not a time and 68 or 478 points of x, y, z\n", name, number);
+      status = 1;
+      break;
     }
-    if (frames == 0 && has_neutral && fascia_fit_set_neutral(fit, frame, NULL) != FASCIA_OK)
-      return fail("the first frame", fascia_last_message());
+    if (fit == NULL) {
+      points = frame.points;
+      landmarks.set = points == 68 ? "ibug68" : "mediapipe478";
+      if (fascia_fit_create(asset, &landmarks, NULL, &fit) != FASCIA_OK)
+        status = fail(name, fascia_last_message());
+      if (status == 0 && has_neutral && fascia_fit_set_neutral(fit, frame.xyz, NULL) != FASCIA_OK)
+        status = fail("the first frame", fascia_last_message());
+      if (status != 0) break;
+    }
+    if (frame.points != points) {
+      fprintf(stderr, "capture: %s, line %d: %d points, %d before\n", name, number, frame.points, points);
+      status = 1;
+      break;
+    }
     before = now_ms();
-    if (fascia_fit_push(fit, frame, NULL, &result) != FASCIA_OK) return fail(name, fascia_last_message());
+    if (fascia_fit_push(fit, frame.xyz, NULL, &result) != FASCIA_OK) {
+      status = fail(name, fascia_last_message());
+      break;
+    }
     took = now_ms() - before;
     if (frames > 0) total += took; /* the first frame has the face to find */
     if (frames > 0 && took > slowest) slowest = took;
     residual += result.residual;
     ++frames;
     if (curves == NULL) continue;
-    fprintf(curves, "%.6g", seconds);
+    fprintf(curves, "%.6g", frame.seconds);
     for (c = 0; c < channels->count; ++c)
       fprintf(curves, ",%.5g", result.values[c]);
     fprintf(curves, "\n");
   }
-  if (frames < 2) return fail(name, "fewer than two frames");
-  printf("%d frames: %.2f ms a frame, slowest %.2f ms, %.3f mm left\n", frames, total / (frames - 1), slowest,
-         1e3 * residual / frames);
-  return 0;
+  if (status == 0 && frames < 2) status = fail(name, "fewer than two frames");
+  if (status == 0)
+    printf("%d frames: %.2f ms a frame, slowest %.2f ms, %.3f mm left\n", frames, total / (frames - 1),
+           slowest, 1e3 * residual / frames);
+  fascia_fit_release(fit);
+  return status;
 }
 
 int main(int argc, char** argv) {
   const char *rig = NULL, *stream_path = NULL, *curves_path = NULL;
   char* part = NULL;
   fascia_asset* asset = NULL;
-  fascia_fit* fit = NULL;
-  fascia_fit_landmarks landmarks = {0};
   fascia_channels channels = {0};
   FILE *stream, *curves = NULL;
   unsigned char* bytes;
@@ -142,7 +219,7 @@ int main(int argc, char** argv) {
       stream_path = argv[i];
   }
   if (rig == NULL || stream_path == NULL) {
-    fprintf(stderr, "usage: capture RIG.glb STREAM.csv|- [-o CURVES.csv] [--no-neutral]\n");
+    fprintf(stderr, "usage: capture RIG.glb STREAM.csv|STREAM.jsonl|- [-o CURVES.csv] [--no-neutral]\n");
     return 2;
   }
   bytes = read_file(rig, &size);
@@ -151,10 +228,6 @@ int main(int argc, char** argv) {
   free(bytes);
   channels.struct_size = sizeof channels;
   if (fascia_asset_get_channels(asset, &channels) != FASCIA_OK) return fail(rig, fascia_last_message());
-
-  landmarks.struct_size = sizeof landmarks;
-  landmarks.set = "ibug68";
-  if (fascia_fit_create(asset, &landmarks, NULL, &fit) != FASCIA_OK) return fail(rig, fascia_last_message());
 
   stream = strcmp(stream_path, "-") == 0 ? stdin : fopen(stream_path, "r");
   if (stream == NULL) return fail(stream_path, "cannot be read");
@@ -166,12 +239,11 @@ int main(int argc, char** argv) {
       fprintf(curves, ",%s", channels.names[c]);
     fprintf(curves, "\n");
   }
-  status = play(stream, stream_path, fit, &channels, curves, has_neutral);
+  status = play(stream, stream_path, asset, &channels, curves, has_neutral);
 
   if (stream != stdin) fclose(stream);
   if (curves != NULL) status = put_in_place(curves, part, curves_path, status);
   free(part);
-  fascia_fit_release(fit);
   fascia_asset_release(asset);
   return status;
 }

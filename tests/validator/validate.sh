@@ -1,10 +1,12 @@
 #!/usr/bin/env bash
 # What is written, as others read it: the Khronos glTF validator finds no error and no warning in rigs and in what is
-# made from them, and three.js draws the vertices where our own PLY has them. Node.js, and npm's registry for both.
+# made from them, and three.js draws the vertices where our own PLY has them. Node.js, and npm's registry for both: ends
+# with 77 where one is not at hand.
 #   tests/validator/validate.sh PATH_OF_FASCIA [HEAD.glb|.gltf|.obj|...]...
 # Without heads: the embedded one, and the cases beside the checkout (FASCIA_CASES) when they are there.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
+command -v npm >/dev/null || { echo "skipped: Node.js with npm is not installed" >&2; exit 77; }
 fascia=$(cd "$(dirname "$1")" && pwd)/$(basename "$1")
 shift
 work=$(mktemp -d)
@@ -13,10 +15,10 @@ cp "$here/validate.mjs" "$here/package.json" "$work/"
 mkdir "$work/three"
 cp "$here/../three/load.mjs" "$here/../three/package.json" "$work/three/"
 for folder in "$work" "$work/three"; do
-  (cd "$folder" && npm install --silent --no-audit --no-fund) || { echo "skipped: npm's registry is not reached" >&2; exit 0; }
+  (cd "$folder" && npm install --silent --no-audit --no-fund --prefer-offline) || { echo "skipped: npm's registry is not reached" >&2; exit 77; }
 done
 
-check_head() {  # head file, local|world: everything that can be made from it
+check_head() {  # head file, local|world: everything that can be made from it; 1 at the first thing that is wrong
   local head=$1 space=$2 out="$work/out"
   rm -rf "$out" && mkdir "$out"
   if ! "$fascia" build "$head" --detail low -o "$out/rig.glb" --quiet 2>"$out/why"; then
@@ -24,15 +26,15 @@ check_head() {  # head file, local|world: everything that can be made from it
     return 1
   fi
   printf 'time,jaw_open\n0,0\n0.1,0.6\n' >"$out/curves.csv"
-  "$fascia" play "$out/rig.glb" --curves "$out/curves.csv" -o "$out/play.glb" --quiet
-  "$fascia" bake "$out/rig.glb" --shapes arkit -o "$out/arkit.glb" --quiet
-  "$fascia" pose "$out/rig.glb" --set arkit:jawOpen=1 -o "$out/pose.glb" --quiet
-  "$fascia" pose "$out/rig.glb" --set arkit:jawOpen=1 -o "$out/pose.ply" --quiet
-  "$fascia" export "$out/rig.glb" --part all -o "$out/all.glb" --quiet
-  (cd "$work" && node validate.mjs out/rig.glb out/play.glb out/arkit.glb out/pose.glb out/all.glb)
+  { "$fascia" play "$out/rig.glb" --curves "$out/curves.csv" -o "$out/play.glb" --quiet &&
+    "$fascia" bake "$out/rig.glb" --shapes arkit -o "$out/arkit.glb" --quiet &&
+    "$fascia" pose "$out/rig.glb" --set arkit:jawOpen=1 -o "$out/pose.glb" --quiet &&
+    "$fascia" pose "$out/rig.glb" --set arkit:jawOpen=1 -o "$out/pose.ply" --quiet &&
+    "$fascia" export "$out/rig.glb" --part all -o "$out/all.glb" --quiet; } || return 1
+  (cd "$work" && node validate.mjs out/rig.glb out/play.glb out/arkit.glb out/pose.glb out/all.glb) || return 1
   (cd "$work/three" && node load.mjs ../out/pose.glb - ../out/pose.ply "$space" &&
     node load.mjs ../out/arkit.glb jawOpen ../out/pose.ply "$space" &&
-    node load.mjs ../out/play.glb && node load.mjs ../out/rig.glb && node load.mjs ../out/all.glb)
+    node load.mjs ../out/play.glb && node load.mjs ../out/rig.glb && node load.mjs ../out/all.glb) || return 1
 }
 
 space_of() { case "$1" in *.glb | *.gltf | *.vrm) echo world ;; *) echo local ;; esac; }
