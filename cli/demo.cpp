@@ -151,7 +151,7 @@ void film(const Common& common, Studio& with, const std::filesystem::path& curve
   view::Video video(output, size, size, frames_per_second);
   const std::set<std::string> layers = layers_from("skin,eyes");
   view::Look look = studio_look();
-  look.samples = 4;
+  look.samples = 2;
   const int count = static_cast<int>(curves.duration() * frames_per_second) + 1;
   Progress progress(common, "frame", static_cast<size_t>(count));
   for (int f = 0; f < count; ++f) {

@@ -226,7 +226,9 @@ void add_render(const Command& tool, Common& common) {
       .one_of({"studio", "soft", "dramatic", "outdoor", "flat"});
   command.option("--background", &request->background, "studio (a lit wall), white, black or #RRGGBB")
       .value("COLOUR");
-  command.option("--samples", &request->samples, "Samples a pixel, in steps of four").range(1, 64);
+  command.option("--samples", &request->samples, "Samples a pixel: 1, 2, or more in steps of four")
+      .range(1, 64)
+      .default_text("8, for films 2");
   add_solver_option(command, request->solver);
   add_level_option(command, request->level);
   command.option("--size", &request->size, "Width and height in pixels: 900 or 1280x720").value("WxH");

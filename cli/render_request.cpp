@@ -8,6 +8,7 @@
 
 #include "geometry/error.h"
 #include "view/environment.h"
+#include "view/video.h"
 
 namespace fascia::cli {
 
@@ -57,7 +58,7 @@ view::Look look_from(const RenderRequest& request) {
   view::Look look;
   look.light = request.light;
   view::environment(request.light);  // throws for an unknown one before anything is simulated
-  look.samples = request.samples;
+  look.samples = request.samples ? request.samples : view::is_film(request.output) ? 2 : 8;
   look.has_backdrop = request.background == "studio";
   look.background = look.has_backdrop ? view::Colour{52, 56, 62} : colour_from(request.background);
   return look;

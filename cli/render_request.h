@@ -19,7 +19,7 @@ struct RenderRequest {
   std::string size = "900", background = "studio", camera, light = "studio", reveal, colours = "flesh";
   std::optional<double> at;
   double frames_per_second = 30.0;
-  int samples = 8;
+  int samples = 0;  ///< a pixel; 0: 8, or 2 for films
   bool is_beside_rest = false, is_plain = false;
 };
 

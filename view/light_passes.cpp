@@ -170,7 +170,7 @@ void LightPasses::set_shadows(const Program& program, const Shot& shot, double t
 
 void LightPasses::set(const Program& program, const Shot& shot, double turn) const {
   set_shadows(program, shot, turn);
-  program.set("screen_scale", 1.0 / screen_divisor(shot.look));
+  program.set("screen_scale", 1.0 / (screen_divisor(shot.look) * shot.enlargement));
   bind_texture(shadow_unit, GL_TEXTURE_2D, shadow_map_.depth());
   bind_texture(screen_unit, GL_TEXTURE_2D, smooth_light_.colour());
 }

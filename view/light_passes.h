@@ -43,7 +43,8 @@ struct Shot {
   const Environment& room;
   const Camera& camera;
   const Look& look;
-  int width, height;  // pixels
+  int width, height;         // pixels
+  double enlargement = 1.0;  // pixels that surfaces are drawn at to one of the picture's, each way
 
   double aspect() const { return static_cast<double>(width) / height; }
 };

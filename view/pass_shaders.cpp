@@ -91,10 +91,16 @@ std::string copy_fragment_shader() {
 in vec2 place;
 uniform sampler2D picture;
 uniform float grain;
+uniform vec2 spread;   // from the pixel's middle to the four places that are averaged
 out vec4 pixel;
 void main() {
   float noise = fract(52.9829189 * fract(dot(floor(gl_FragCoord.xy), vec2(0.06711056, 0.00583715))));
-  pixel = vec4(texture(picture, place).rgb + grain * (noise - 0.5) / 255.0, 1.0);
+  vec3 colour = texture(picture, place).rgb;
+  if (spread.x > 0.0)
+    colour = 0.25 * (texture(picture, place + spread).rgb + texture(picture, place - spread).rgb +
+                     texture(picture, place + vec2(spread.x, -spread.y)).rgb +
+                     texture(picture, place + vec2(-spread.x, spread.y)).rgb);
+  pixel = vec4(colour + grain * (noise - 0.5) / 255.0, 1.0);
 })";
 }
 

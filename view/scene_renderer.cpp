@@ -47,7 +47,8 @@ struct SceneRenderer::State {
   std::map<std::pair<Shading, bool>, std::unique_ptr<Program>> surfaces;  // by shading and holes
   LightPasses light_passes;
   Screen screen;
-  std::unique_ptr<Canvas> drawn;
+  std::unique_ptr<Canvas> drawn;  // several samples a pixel
+  Canvas enlarged{GL_RGBA8, Canvas::Depth::buffer, 0, GL_LINEAR};
   Canvas resolved{GL_RGBA8, Canvas::Depth::none, 0}, gathered{GL_RGBA16F, Canvas::Depth::none, 0};
   std::vector<std::unique_ptr<VertexBuffers>> surface_buffers, line_buffers;
   TextureCache textures;
@@ -67,6 +68,8 @@ struct SceneRenderer::State {
   void draw_backdrop(const Shot& shot);
   void resolve(int width, int height);
   void gather(int width, int height, double share);
+  GLuint draw_enlarged(const Shot& shot);
+  GLuint draw_multisampled(const Shot& shot);
 };
 
 SceneRenderer::State::State() {
@@ -203,7 +206,7 @@ void SceneRenderer::State::draw_round(const Shot& shot, const Mat4& to_clip, dou
     lines.set("to_clip", to_clip);
     for (size_t i = 0; i < list.lines.size(); ++i) {
       if (list.lines[i].is_on_top != on_top) continue;
-      glLineWidth(static_cast<float>(list.lines[i].width));
+      glLineWidth(static_cast<float>(list.lines[i].width * shot.enlargement));
       line_buffers[i]->draw_lines();
     }
   };
@@ -247,6 +250,7 @@ void SceneRenderer::State::gather(int width, int height, double share) {
   gathered.bind(width, height);
   copy.use();
   copy.set("grain", 0.0);
+  glUniform2f(copy.place("spread"), 0.0F, 0.0F);
   copy.set("picture", 0);
   bind_texture(0, GL_TEXTURE_2D, resolved.colour());
   glEnable(GL_BLEND);
@@ -254,6 +258,36 @@ void SceneRenderer::State::gather(int width, int height, double share) {
   glBlendFunc(GL_CONSTANT_ALPHA, GL_ONE_MINUS_CONSTANT_ALPHA);
   screen.draw();
   glDisable(GL_BLEND);
+}
+
+/// One sample a pixel of a picture as large as asked for, or larger; the texture it is in.
+GLuint SceneRenderer::State::draw_enlarged(const Shot& shot) {
+  enlarged.bind(static_cast<int>(std::lround(shot.width * shot.enlargement)),
+                static_cast<int>(std::lround(shot.height * shot.enlargement)));
+  draw_round(shot, clip_matrix(shot.camera, shot.aspect()) * eye_matrix(shot.camera), 0.0);
+  return enlarged.colour();
+}
+
+/// Rounds of several samples a pixel; the texture that holds their mean.
+GLuint SceneRenderer::State::draw_multisampled(const Shot& shot) {
+  const int samples = std::min(4, most_samples),
+            rounds = std::max(1, shot.look.samples / std::max(1, samples));
+  if (!drawn) drawn = std::make_unique<Canvas>(GL_RGBA8, Canvas::Depth::buffer, samples);
+  for (int r = 0; r < rounds; ++r) {
+    // Rounds are set a fraction of a pixel apart, along a sequence that fills the pixel evenly (R2, Roberts
+    // 2018).
+    Mat4 nudge = Mat4::Identity();
+    if (rounds > 1) {
+      nudge(0, 3) = (std::fmod(0.5 + 0.7548776662 * r, 1.0) - 0.5) * 1.0 / shot.width;
+      nudge(1, 3) = (std::fmod(0.5 + 0.5698402910 * r, 1.0) - 0.5) * 1.0 / shot.height;
+    }
+    drawn->bind(shot.width, shot.height);
+    draw_round(shot, nudge * clip_matrix(shot.camera, shot.aspect()) * eye_matrix(shot.camera),
+               static_cast<double>(r) / rounds);
+    resolve(shot.width, shot.height);
+    if (rounds > 1) gather(shot.width, shot.height, 1.0 / (r + 1));
+  }
+  return rounds == 1 ? resolved.colour() : gathered.colour();
 }
 
 void SceneRenderer::draw(const DrawList& list, const Camera& camera, const Target& target, const Look& look) {
@@ -266,32 +300,20 @@ void SceneRenderer::draw(const DrawList& list, const Camera& camera, const Targe
   s.textures.tidy();
   s.upload(list);
   s.use_light(look.light);
-  const Shot shot{list, s.surface_buffers, s.room, camera, look, width, height};
+  const double enlargement = look.samples == 2 || look.samples == 3 ? 1.5 : 1.0;
+  const Shot shot{list, s.surface_buffers, s.room, camera, look, width, height, enlargement};
   s.light_passes.draw(shot, s.textures);
 
-  const int samples = std::min({4, s.most_samples, std::max(1, look.samples)});
-  const int rounds = std::max(1, look.samples / std::max(1, samples));
-  if (!s.drawn) s.drawn = std::make_unique<Canvas>(GL_RGBA8, Canvas::Depth::buffer, samples);
-  for (int r = 0; r < rounds; ++r) {
-    // Rounds are set a fraction of a pixel apart, along a sequence that fills the pixel evenly (R2, Roberts
-    // 2018).
-    Mat4 nudge = Mat4::Identity();
-    if (rounds > 1) {
-      nudge(0, 3) = (std::fmod(0.5 + 0.7548776662 * r, 1.0) - 0.5) * 1.0 / width;
-      nudge(1, 3) = (std::fmod(0.5 + 0.5698402910 * r, 1.0) - 0.5) * 1.0 / height;
-    }
-    s.drawn->bind(width, height);
-    s.draw_round(shot, nudge * clip_matrix(camera, shot.aspect()) * eye_matrix(camera),
-                 static_cast<double>(r) / rounds);
-    s.resolve(width, height);
-    if (rounds > 1) s.gather(width, height, 1.0 / (r + 1));
-  }
+  const GLuint picture = look.samples < 4 ? s.draw_enlarged(shot) : s.draw_multisampled(shot);
   glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
   glViewport(target.x, target.y, width, height);
   s.copy.use();
   s.copy.set("grain", look.has_backdrop ? 1.0 : 0.0);
   s.copy.set("picture", 0);
-  bind_texture(0, GL_TEXTURE_2D, rounds == 1 ? s.resolved.colour() : s.gathered.colour());
+  const float spread = enlargement > 1.0 ? 0.25F : 0.0F;
+  glUniform2f(s.copy.place("spread"), spread / static_cast<float>(width),
+              spread / static_cast<float>(height));
+  bind_texture(0, GL_TEXTURE_2D, picture);
   s.screen.draw();
   glDisable(GL_CULL_FACE);
 }

@@ -111,6 +111,28 @@ vec4 screen_light(vec3 p) {
 }
 )";
 
+// The share of the room that is left in a mirror inside a mouth: 0 where lips, teeth or cheeks stand before
+// it. Followed along the ray over the picture's distances (McGuire & Mara 2014, Efficient GPU screen-space
+// ray tracing, in even steps).
+const char* mirror_source = R"(
+uniform mat4 to_clip;
+float mirrored_share_of_room(vec3 p, vec3 direction) {
+  const int count = 10;
+  ivec2 size = textureSize(screen_map, 0);
+  float share = 1.0, offset = grain(gl_FragCoord.xy);
+  for (int i = 0; i < count; ++i) {
+    float along = (float(i) + offset + 0.2) / float(count);
+    vec3 q = p + 0.07 * along * sqrt(along) * direction;
+    vec4 c = to_clip * vec4(q, 1.0);
+    ivec2 at = ivec2(floor((0.5 + 0.5 * c.xy / c.w) * vec2(size)));
+    if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, size))) break;
+    float there = texelFetch(screen_map, at, 0).y;
+    if (there > 0.0) share = min(share, 1.0 - smoothstep(0.0005, 0.004, dot(q - camera, view_direction) - there));
+  }
+  return share;
+}
+)";
+
 // Ambient occlusion: McGuire, Mara & Luebke 2012, Scalable ambient obscurance, equation 1.
 const char* screen_light_source = R"(uniform sampler2D geometry;
 uniform vec2 size;        // pixels
@@ -133,7 +155,8 @@ float open_share(vec3 p, vec3 n, float distance_here) {
     float share = (float(i) + 0.5) / float(count);
     vec2 at = gl_FragCoord.xy + max(reach * share, 1.0 + float(i) * 0.2) * toward;
     toward = on * toward;
-    float distance = texelFetch(geometry, ivec2(clamp(at, vec2(0.0), size - 1.0)), 0).w;
+    if (any(lessThan(at, vec2(0.0))) || any(greaterThanEqual(at, size))) continue;
+    float distance = texelFetch(geometry, ivec2(at), 0).w;
     if (distance <= 0.0) continue;
     vec3 v = eye_position(at, distance) - p;
     float vv = dot(v, v), vn = dot(v, n) - 0.0004;
@@ -264,6 +287,11 @@ void main() {
 #else
   vec4 screen = screen_light(place);
   float open = screen.x, lit = screen.z, thickness = screen.w;
+#if MOUTH
+  float mirrored = mirrored_share_of_room(place, reflect(-v, n));
+#else
+  float mirrored = 1.0;
+#endif
 #if HAIR
   lit = lit_share(place, n, thickness);   // what lies behind a card of hair says nothing about its own shadow
 #endif
@@ -283,9 +311,11 @@ void main() {
   light += colour * irradiance(mix(m, n, 0.5)) * tinted(open, colour);
   // Two lobes for the key; the room, wide as it is, is mirrored once at their mean.
   light += (key_gloss(m, v, vec3(0.028), rough, lit) * 0.80 + key_gloss(m, v, vec3(0.028), rough * 0.58, lit) * 0.20 +
-            room_gloss(m, v, vec3(0.028), rough * 0.92, open)) * specular;
+            mirrored * room_gloss(m, v, vec3(0.028), rough * 0.92, open)) * specular;
 #if WET
-  light += gloss(normalize(mix(n, m, 0.6)), v, vec3(0.035), 0.16, lit, open) * 0.9;
+  vec3 film = normalize(mix(n, m, 0.6));
+  light += (key_gloss(film, v, vec3(0.035), 0.16, lit) +
+            mirrored * room_gloss(film, v, vec3(0.035), 0.22, open)) * 0.9;
 #endif
 #elif EYE
   float iris_share = 0.0;
@@ -304,9 +334,10 @@ void main() {
   vec3 diffuse = colour * (1.0 - metal);
   float slope = clamp((nl + WRAP) / (1.0 + WRAP), 0.0, 1.0);
   light = diffuse * (key_irradiance * slope * lit + irradiance(m) * tinted(open, diffuse));
-  light += gloss(m, v, f0, rough, lit, open);
+  light += key_gloss(m, v, f0, rough, lit) + mirrored * room_gloss(m, v, f0, rough, open);
 #if WET
-  light += gloss(normalize(mix(n, m, 0.5)), v, vec3(0.04), 0.14, lit, open) * 0.8;
+  vec3 film = normalize(mix(n, m, 0.5));
+  light += (key_gloss(film, v, vec3(0.04), 0.14, lit) + mirrored * room_gloss(film, v, vec3(0.04), 0.14, open)) * 0.8;
 #endif
 #endif
   if (is_back) light *= 0.5;
@@ -323,9 +354,10 @@ const char* definitions(Shading shading) {
     case Shading::skin:
       return "#define SKIN 1\n#define SOFTNESS 1.0\n#define TRANSLUCENCY 1.0\n";
     case Shading::mucosa:
-      return "#define SKIN 1\n#define WET 1\n#define SOFTNESS 1.2\n#define TRANSLUCENCY 0.3\n";
+      return "#define SKIN 1\n#define WET 1\n#define MOUTH 1\n#define SOFTNESS 1.2\n#define TRANSLUCENCY "
+             "0.3\n";
     case Shading::tooth:
-      return "#define WET 1\n#define WRAP 0.30\n";
+      return "#define WET 1\n#define MOUTH 1\n#define WRAP 0.30\n";
     case Shading::eye:
       return "#define EYE 1\n";
     case Shading::hair:
@@ -372,7 +404,8 @@ void main() {
 std::string surface_fragment_shader(Shading shading, bool has_holes) {
   return std::string("#version 330 core\n") + definitions(shading) + (has_holes ? "#define HOLES 1\n" : "") +
          shadow_definitions(7, 12) + shadow_source + declarations + screen_source + light_source +
-         (shading == Shading::eye ? eye_source : "") + main_source;
+         (shading == Shading::eye ? eye_source : "") +
+         (shading == Shading::mucosa || shading == Shading::tooth ? mirror_source : "") + main_source;
 }
 
 std::string screen_light_fragment_shader() {

@@ -49,7 +49,7 @@ void FacePicture::draw(const view::DrawList& list, const view::Camera& camera, v
   const auto started = std::chrono::steady_clock::now();
   look.has_shadows = care != Care::quick;
   look.has_occlusion = care == Care::full;
-  look.samples = care == Care::full ? 8 : 4;
+  look.samples = care == Care::full ? 8 : 2;
   renderer_.draw(list, camera, {framebuffer_, x, 0, std::max(columns, 1), height_}, look);
   // The time counts when the picture is there, not when it is ordered.
   glFinish();

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <numeric>
 
@@ -128,6 +129,61 @@ TEST(Scene, OcclusionDarkensAFold) {
   look.has_occlusion = false;
   const Image without = renderer().draw_with(list, near_camera(), look);
   EXPECT_LT(brightness(with, size / 2, size / 2), 0.95 * brightness(without, size / 2, size / 2));
+}
+
+TEST(Scene, APlaneIsAsOpenAtThePicturesEdgeAsInItsMiddle) {
+  DrawSurface wall = square(0, 1.0);
+  for (Vec3& p : wall.positions)
+    p = Eigen::AngleAxisd(EIGEN_PI / 4, Vec3::UnitY()) * p;
+  DrawList list;
+  list.surfaces = {wall};
+  Look look;
+  look.light = "flat";
+  look.has_shadows = false;
+  const Image with = renderer().draw_with(list, near_camera(), look);
+  look.has_occlusion = false;
+  const Image without = renderer().draw_with(list, near_camera(), look);
+  for (const int x : {0, 2, size / 2, size - 3, size - 1})
+    EXPECT_GT(brightness(with, x, size / 2), 0.95 * brightness(without, x, size / 2)) << x;
+}
+
+TEST(Scene, AMouthMirrorsNoRoomThatItsLipsHide) {
+  // A wet floor that mirrors the room above the onlooker, and a lip that comes between.
+  DrawSurface tongue = square(0, 0.03, Shading::mucosa);
+  for (Vec3& p : tongue.positions)
+    p = Eigen::AngleAxisd(-EIGEN_PI / 5, Vec3::UnitX()) * p;
+  tongue.colour = Vec3(0.02, 0.02, 0.02);
+  DrawSurface lip = square(0.03, 0.1);
+  for (Vec3& p : lip.positions)
+    p[1] += 0.115;
+  Look look;
+  look.has_shadows = look.has_occlusion = false;
+  DrawList list;
+  list.surfaces = {tongue};
+  const double open = brightness(renderer().draw_with(list, near_camera(), look), size / 2, size / 2);
+  list.surfaces.push_back(lip);
+  const double hidden = brightness(renderer().draw_with(list, near_camera(), look), size / 2, size / 2);
+  EXPECT_LT(hidden, 0.8 * open);
+}
+
+TEST(Scene, TwoSamplesSmoothEdgesAsEightDo) {
+  DrawList list;
+  list.surfaces = {sphere(0.07, Shading::plain)};
+  Look look;
+  look.background = {0, 0, 0};
+  const auto drawn = [&](int samples) {
+    look.samples = samples;
+    return renderer().draw_with(list, near_camera(), look);
+  };
+  const auto distance = [](const Image& a, const Image& b) {
+    double sum = 0.0;
+    for (size_t i = 0; i < a.pixels.size(); ++i)
+      sum += std::abs(a.pixels[i] - b.pixels[i]);
+    return sum / static_cast<double>(a.pixels.size());
+  };
+  const Image eight = drawn(8);
+  EXPECT_LT(distance(drawn(2), eight), 0.7 * distance(drawn(1), eight));
+  EXPECT_LT(distance(drawn(4), eight), 0.7 * distance(drawn(1), eight));
 }
 
 TEST(Scene, MapsColourAndCutHoles) {
