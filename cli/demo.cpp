@@ -104,8 +104,9 @@ std::vector<SheetPose> sheet_poses() {
   };
 }
 
-view::Look studio_look() {
+view::Look studio_look(int samples) {
   view::Look look;
+  look.samples = samples;
   look.background = {52, 56, 62};
   look.has_backdrop = true;
   return look;
@@ -118,7 +119,7 @@ struct Studio {
   view::Renderer renderer;
 
   Studio(const std::filesystem::path& path, const rig::Rig& read_rig)
-      : rig(read_rig), face(path, {FASCIA_SPACE_METRES, "own", "low"}), renderer(16, 16) {}
+      : rig(read_rig), face(path, {FASCIA_SPACE_METRES, "own", ""}), renderer(16, 16) {}
 };
 
 view::Image contact_sheet(const Common& common, Studio& with) {
@@ -134,7 +135,7 @@ view::Image contact_sheet(const Common& common, Studio& with) {
       face.set(name, value);
     face.pose();
     tiles.push_back({renderer.draw_with(draw_face(face, rig, layers_from(pose.layers)),
-                                        view::named_camera(pose.view, face_box(rig), 0.98), studio_look()),
+                                        view::named_camera(pose.view, face_box(rig), 0.98), studio_look(4)),
                      pose.caption});
   }
   return view::contact_sheet(tiles, 4);
@@ -150,8 +151,7 @@ void film(const Common& common, Studio& with, const std::filesystem::path& curve
   face.reset();
   view::Video video(output, size, size, frames_per_second);
   const std::set<std::string> layers = layers_from("skin,eyes");
-  view::Look look = studio_look();
-  look.samples = 2;
+  const view::Look look = studio_look(2);
   const int count = static_cast<int>(curves.duration() * frames_per_second) + 1;
   Progress progress(common, "frame", static_cast<size_t>(count));
   for (int f = 0; f < count; ++f) {
