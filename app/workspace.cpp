@@ -207,6 +207,7 @@ void Workspace::submit(double seconds) {
       inputs.touches.push_back({poke_->part, vertex, (share / sum * force).cast<float>()});
   }
   inputs.wants_compression = settings.layers.strain;
+  inputs.wants_nodes = settings.layers.fat || settings.layers.lattice;
   inputs.resets = resets_;
   (void)seconds;
   simulation->submit(inputs);

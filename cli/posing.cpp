@@ -1,5 +1,6 @@
 #include "cli/posing.h"
 
+#include <fascia/research.h>
 #include <fascia/fascia.hpp>
 
 #include <cmath>
@@ -211,6 +212,22 @@ std::map<std::string, double> Face::effective_values() const {
   for (size_t i = 0; values && i < names.size(); ++i)
     all[names[i]] = values[i];
   return all;
+}
+
+view::Lattice Face::lattice() const {
+  auto facts = sized<fascia_lattice>();
+  check(fascia_asset_lattice(asset_.get(), static_cast<uint32_t>(level_), &facts), "the lattice");
+  auto nodes = sized<fascia_vectors>();
+  check(fascia_face_nodes(face_.get(), &nodes), "the lattice's nodes");
+  view::Lattice lattice;
+  lattice.columns = facts.column_count;
+  for (uint32_t n = 0; n < nodes.count; ++n)
+    lattice.nodes.emplace_back(nodes.data[3 * n], nodes.data[3 * n + 1], nodes.data[3 * n + 2]);
+  for (uint32_t t = 0; t < facts.triangle_count; ++t)
+    lattice.prisms.push_back({static_cast<int>(facts.triangles[3 * t]),
+                              static_cast<int>(facts.triangles[3 * t + 1]),
+                              static_cast<int>(facts.triangles[3 * t + 2])});
+  return lattice;
 }
 
 Mat4 Face::jaw() const {

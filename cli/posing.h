@@ -12,6 +12,7 @@
 
 #include "cli/common.h"
 #include "geometry/mesh.h"
+#include "view/face/lattice_layers.h"
 
 namespace fascia::cli {
 
@@ -75,6 +76,8 @@ class Face {
   /// Fibres as they stand, grouped by muscle, in metres.
   std::vector<std::pair<std::string, std::vector<std::vector<Vec3>>>> fibres() const;
   Mat4 jaw() const;
+  /// The nodes of the face's level as they stand, in metres, and what connects them.
+  view::Lattice lattice() const;
 
   fascia_face* handle() const { return face_.get(); }
   fascia_asset* asset() const { return asset_.get(); }

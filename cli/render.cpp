@@ -194,9 +194,9 @@ void add_render(const Command& tool, Common& common) {
       .value("SECONDS")
       .default_text("the beginning");
   command
-      .option(
-          "--layers", &request->layers,
-          "Any of skin, eyes, teeth, skull, smas, muscles, ligaments, landmarks, strain, with commas between")
+      .option("--layers", &request->layers,
+              "Any of skin, eyes, teeth, skull, fat, smas, muscles, ligaments, lattice, landmarks, strain, "
+              "with commas between")
       .value("LAYER,...");
   command.option(
       "--view", &request->view,

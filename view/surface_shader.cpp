@@ -280,7 +280,7 @@ void main() {
   pixel = vec4(pow(clamp(colour, 0.0, 1.0), vec3(1.0 / 2.2)) * form * (is_back ? 0.6 : 1.0), alpha);
 #elif XRAY
   float edge = 1.0 - abs(dot(n, v));
-  float density = mix(0.10, 1.0, pow(edge, 2.0));
+  float density = mix(mix(0.10, 1.0, smoothstep(0.65, 1.0, alpha)), 1.0, pow(edge, 2.0));
   vec3 light = colour * (irradiance(n) + 0.35 * key_irradiance * max(dot(n, key_direction), 0.0)) +
                gloss(n, v, vec3(0.03), 0.35, 0.5, 1.0);
   pixel = vec4(finished(light), clamp(alpha * density * 1.6, 0.0, 1.0));

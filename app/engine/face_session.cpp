@@ -1,5 +1,7 @@
 #include "app/engine/face_session.h"
 
+#include <fascia/research.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -81,6 +83,10 @@ FaceAsset::FaceAsset(const std::vector<uint8_t>& bytes, const std::string& name)
   fibre_offsets.assign(fibres.offsets, fibres.offsets + fibres.fibre_count + 1);
   fibre_channels.assign(fibres.channels, fibres.channels + fibres.fibre_count);
   fibre_muscles.assign(fibres.muscles, fibres.muscles + fibres.fibre_count);
+  auto lattice = described<fascia_lattice>();
+  check(fascia_asset_lattice(loaded, info.level_count - 1, &lattice), name);
+  lattice_columns = lattice.column_count;
+  lattice_prisms = triangles_of(lattice.triangles, lattice.triangle_count);
   read_parts(info.mesh_count);
 }
 
@@ -125,7 +131,7 @@ FaceSession::FaceSession(std::shared_ptr<const FaceAsset> asset, fascia_solver s
   fascia_face* made = nullptr;
   check(fascia_face_create(asset_->handle(), &options, &made), "face");
   face_.reset(made);
-  read_frame(false);
+  read_frame({});
 }
 
 void FaceSession::apply(const FaceInputs& inputs) {
@@ -160,15 +166,15 @@ void FaceSession::advance(const FaceInputs& inputs, double seconds) {
   frame_.was_reset = result == FASCIA_ERROR_DIVERGED;
   frame_.step_milliseconds =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - started).count();
-  read_frame(inputs.wants_compression);
+  read_frame(inputs);
 }
 
-void FaceSession::read_frame(bool wants_compression) {
+void FaceSession::read_frame(const FaceInputs& inputs) {
   fascia_face* face = face_.get();
   const auto count = static_cast<uint32_t>(asset_->parts.size());
   frame_.positions.resize(count);
   frame_.normals.resize(count);
-  frame_.compression.resize(wants_compression ? count : 0);
+  frame_.compression.resize(inputs.wants_compression ? count : 0);
   float motion = 0.0F;
   for (uint32_t m = 0; m < count; ++m) {
     auto vectors = described<fascia_vectors>();
@@ -183,13 +189,18 @@ void FaceSession::read_frame(bool wants_compression) {
     copy(vectors, positions);
     check(fascia_face_normals(face, m, &vectors), "normals");
     copy(vectors, frame_.normals[m]);
-    if (!wants_compression) continue;
+    if (!inputs.wants_compression) continue;
     check(fascia_face_compression(face, m, &vectors), "compression");
     copy(vectors, frame_.compression[m]);
   }
   auto points = described<fascia_vectors>();
   check(fascia_face_fibre_points(face, &points), "fibres");
   copy(points, frame_.fibre_points);
+  frame_.nodes.clear();
+  if (inputs.wants_nodes) {
+    check(fascia_face_nodes(face, &points), "nodes");
+    copy(points, frame_.nodes);
+  }
   const float* values = fascia_face_effective_values(face);
   frame_.values.assign(values, values + asset_->channels.size());
   check(fascia_face_jaw(face, frame_.jaw.data()), "jaw");

@@ -56,6 +56,8 @@ class FaceAsset {
   std::vector<uint32_t> fibre_offsets;
   std::vector<std::string> fibre_muscles;  ///< one a fibre
   std::vector<uint32_t> fibre_channels;    ///< one a fibre
+  size_t lattice_columns = 0;              ///< of the finest level
+  std::vector<Triangle> lattice_prisms;
   Mat4 input_to_metres = Mat4::Identity();
 
   /// Index of a channel by name, or -1.
@@ -88,8 +90,9 @@ struct FaceInputs {
   std::vector<Touch> touches;          ///< at most 64
   Eigen::Vector3f acceleration = Eigen::Vector3f::Zero();  ///< that loose tissue feels, m/s^2
   Eigen::Matrix4f head = Eigen::Matrix4f::Identity();      ///< where the head stands in the world
-  bool wants_compression = false;                          ///< whether frames say how the skin is compressed
-  uint32_t resets = 0;  ///< counts up: the face is put to rest when it changes
+  bool wants_nodes = false;        ///< whether frames say where the lattice's nodes are
+  bool wants_compression = false;  ///< whether frames say how the skin is compressed
+  uint32_t resets = 0;             ///< counts up: the face is put to rest when it changes
 
   bool operator==(const FaceInputs&) const = default;
 };
@@ -99,6 +102,7 @@ struct FaceFrame {
   std::vector<std::vector<float>> positions, normals;  ///< one a part, 3 numbers a vertex
   std::vector<std::vector<float>> compression;         ///< see fascia_face_compression; empty unless wanted
   std::vector<float> fibre_points;
+  std::vector<float> nodes;   ///< of the lattice; empty unless wanted
   std::vector<float> values;  ///< of the channels, as they were used
   Eigen::Matrix4f jaw = Eigen::Matrix4f::Identity();
   double step_milliseconds = 0.0;
@@ -123,7 +127,7 @@ class FaceSession {
     void operator()(fascia_face* face) const { fascia_face_release(face); }
   };
   void apply(const FaceInputs& inputs);
-  void read_frame(bool wants_compression);
+  void read_frame(const FaceInputs& inputs);
 
   std::shared_ptr<const FaceAsset> asset_;
   std::unique_ptr<fascia_face, Release> face_;

@@ -41,7 +41,7 @@ const std::vector<ScriptVerb>& script_verbs() {
       {"wait", 1, 1,
        "wait FRAMES|idle: let frames pass, or wait for builds and exports, and for the face to rest"},
       {"view", 1, 1, "view front|left|right|three-quarter|back|below"},
-      {"layers", 1, 1, "layers skin,muscles,smas,skull,landmarks,strain"},
+      {"layers", 1, 1, "layers skin,fat,smas,muscles,ligaments,skull,lattice,landmarks,strain"},
       {"panel", 1, 1, "panel pose|landmarks|muscles|warnings|compare|live|export"},
       {"set", 2, 2, "set NAME VALUE: a channel or set:member"},
       {"click", 1, 1, "click ITEM: a button or tab by its name"},

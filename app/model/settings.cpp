@@ -36,14 +36,18 @@ Layers layers_of(const std::string& names) {
   layers.skin = false;
   std::istringstream words(names);
   for (std::string word; std::getline(words, word, ',');) {
-    if (word == "skin") layers.skin = true;
-    if (word == "muscles") layers.muscles = true;
-    if (word == "smas") layers.smas = true;
-    if (word == "skull") layers.skull = true;
-    if (word == "landmarks") layers.landmarks = true;
-    if (word == "strain") layers.strain = true;
+    for (const auto& [name, layer] : {std::pair("skin", &layers.skin),
+                                      {"fat", &layers.fat},
+                                      {"smas", &layers.smas},
+                                      {"muscles", &layers.muscles},
+                                      {"ligaments", &layers.ligaments},
+                                      {"skull", &layers.skull},
+                                      {"lattice", &layers.lattice},
+                                      {"landmarks", &layers.landmarks},
+                                      {"strain", &layers.strain}})
+      if (word == name) *layer = true;
   }
-  if (layers.skin && (layers.muscles || layers.smas || layers.skull)) layers.skin_opacity = 0.35;
+  if (layers.skin && layers.has_depth()) layers.skin_opacity = 0.35;
   return layers;
 }
 
@@ -51,8 +55,11 @@ std::string names_of(const Layers& layers) {
   std::string names;
   for (const auto& [is_on, name] : {std::pair(layers.skin, "skin,eyes"),
                                     {layers.skull, "skull"},
+                                    {layers.fat, "fat"},
                                     {layers.smas, "smas"},
                                     {layers.muscles, "muscles"},
+                                    {layers.ligaments, "ligaments"},
+                                    {layers.lattice, "lattice"},
                                     {layers.landmarks, "landmarks"}})
     if (is_on) names += (names.empty() ? "" : ",") + std::string(name);
   return names.empty() ? "eyes" : names;

@@ -12,10 +12,13 @@ namespace fascia::app {
 
 /// What of the anatomy is drawn.
 struct Layers {
-  bool skin = true, muscles = false, smas = false, skull = false, landmarks = false, strain = false;
+  bool skin = true, fat = false, smas = false, muscles = false, ligaments = false, skull = false,
+       lattice = false, landmarks = false, strain = false;
   bool has_textures = true;   ///< the head's own materials, where it has any and the skin is whole
   double skin_opacity = 1.0;  ///< below 1 what lies beneath shows through
 
+  /// Whether anything beneath the skin is drawn.
+  bool has_depth() const { return fat || smas || muscles || ligaments || skull || lattice; }
   bool operator==(const Layers&) const = default;
 };
 

@@ -22,9 +22,8 @@ void act_on_views(Workspace& work, Screen& screen) {
                                    {GLFW_KEY_K, &layers.skull},
                                    {GLFW_KEY_L, &layers.landmarks}})
     if (ImGui::IsKeyPressed(key, false)) *layer = !*layer;
-  if (layers.skin && (layers.muscles || layers.skull) && layers.skin_opacity > 0.99)
-    layers.skin_opacity = 0.35;
-  if (!layers.muscles && !layers.skull && !layers.smas) layers.skin_opacity = 1.0;
+  if (layers.skin && layers.has_depth() && layers.skin_opacity > 0.99) layers.skin_opacity = 0.35;
+  if (!layers.has_depth()) layers.skin_opacity = 1.0;
 }
 
 void act_on_timeline(Workspace& work) {

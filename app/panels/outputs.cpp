@@ -45,9 +45,9 @@ void show_compare_panel(Workspace& work, Screen& screen) {
       {Reference::none, "Nothing", "the face alone"},
       {Reference::rest, "Rest", "how far every point has moved"},
       {Reference::before, "Before the edits", "the rig as it was built the time before"},
-      {Reference::bullet, "Bullet", "the same lattice in the solver games know"},
+      {Reference::bullet, "Bullet", "the same lattice, another solver"},
       {Reference::converged, "Converged", "double precision, every step to the end"},
-      {Reference::file, "A file", "a mesh of the same head: a scan, a sculpt, another tool's shape"},
+      {Reference::file, "A file", "a scan or a sculpt of this head"},
   }};
   ui::hint("Show the face beside another, or its distance from it.");
   for (const Entry& entry : entries) {

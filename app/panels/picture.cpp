@@ -12,14 +12,14 @@ namespace {
 std::string key_of(const Workspace& work, const Area& area, const view::Camera& camera) {
   const Layers& l = work.settings.layers;
   char text[400];
-  std::snprintf(text, sizeof text,
-                "%g %g %.6f %.6f %.6f %.6f %.6f %.6f %d%d%d%d%d %.3f %d%d%d %.2f %d %llu %s ",
-                static_cast<double>(area.width), static_cast<double>(area.height), camera.target[0],
-                camera.target[1], camera.target[2], camera.distance, camera.yaw, camera.pitch, l.skin,
-                l.muscles, l.smas, l.skull, l.strain, l.has_textures ? l.skin_opacity : -l.skin_opacity,
-                static_cast<int>(work.comparison.reference), work.comparison.has_heat,
-                work.comparison.is_side_by_side, work.comparison.scale_mm, work.settings.is_light,
-                static_cast<unsigned long long>(work.picture_stamp()), work.selected_muscle.c_str());
+  std::snprintf(
+      text, sizeof text, "%g %g %.6f %.6f %.6f %.6f %.6f %.6f %d%d%d%d%d%d%d%d %.3f %d%d%d %.2f %d %llu %s ",
+      static_cast<double>(area.width), static_cast<double>(area.height), camera.target[0], camera.target[1],
+      camera.target[2], camera.distance, camera.yaw, camera.pitch, l.skin, l.fat, l.muscles, l.ligaments,
+      l.lattice, l.smas, l.skull, l.strain, l.has_textures ? l.skin_opacity : -l.skin_opacity,
+      static_cast<int>(work.comparison.reference), work.comparison.has_heat, work.comparison.is_side_by_side,
+      work.comparison.scale_mm, work.settings.is_light, static_cast<unsigned long long>(work.picture_stamp()),
+      work.selected_muscle.c_str());
   std::string key = text;
   for (const std::string& name : work.hidden_muscles)
     key += name + ",";
@@ -69,10 +69,11 @@ struct Pictured {
   bool is_divided = false;
 };
 
-Pictured pictured(Workspace& work, Screen& screen) {
+Pictured pictured(Workspace& work, Screen& screen, bool is_careful) {
   renew_scenes(work, screen);
   SceneOptions options;
   options.layers = work.settings.layers;
+  options.has_round_fibres = is_careful;
   options.selected_muscle = work.selected_muscle;
   options.hidden_muscles = work.hidden_muscles;
   options.scale = 1e-3 * work.comparison.scale_mm;
@@ -111,7 +112,7 @@ void renew_still(Workspace& work, Screen& screen, const std::string& key, const 
     return;
   }
   if (screen.since_motion < calm || screen.stills.ordered() == key) return;
-  Pictured shown = pictured(work, screen);
+  Pictured shown = pictured(work, screen, true);
   if (shown.is_divided) return;
   screen.stills.order(
       {key, std::move(shown.face), camera, look_of(work), screen.picture.width(), screen.picture.height()});
@@ -134,7 +135,7 @@ void renew_picture(Workspace& work, Screen& screen, const Area& area) {
   const ImVec2 pixels = ImGui::GetIO().DisplayFramebufferScale;
   const int width = static_cast<int>(area.width * pixels.x);
   screen.picture.resize(width, static_cast<int>(area.height * pixels.y));
-  const Pictured shown = pictured(work, screen);
+  const Pictured shown = pictured(work, screen, care == FacePicture::Care::full);
   if (shown.is_divided) {
     screen.picture.draw(shown.reference, camera, look_of(work), care, 0, width / 2);
     screen.picture.draw(shown.face, camera, look_of(work), care, width / 2, width - width / 2);

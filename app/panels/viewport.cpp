@@ -160,23 +160,31 @@ void use_mouse(Workspace& work, Screen& screen, const Area& area, bool is_hovere
 void show_layer_chips(Workspace& work, const Area& area) {
   Layers& l = work.settings.layers;
   ImGui::SetCursorScreenPos({area.x + scaled(14), area.y + scaled(12)});
+  // Rows as wide as the picture.
+  const float left = area.x + scaled(14), right = area.x + area.width - scaled(14);
   const auto chip = [&](const char* name, bool& is_on) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float width = ImGui::CalcTextSize(name, nullptr, true).x + scaled(22);
+    if (at.x > left && at.x + width > right) ImGui::SetCursorScreenPos({left, at.y + scaled(34)});
     ui::chip(name, is_on);
     ImGui::SameLine(0, scaled(6));
   };
-  const bool had_depth = l.muscles || l.smas || l.skull;
+  const bool had_depth = l.has_depth();
   chip("Skin##layer", l.skin);
+  chip("Fat##layer", l.fat);
   chip("SMAS##layer", l.smas);
   chip("Muscles##layer", l.muscles);
+  chip("Ligaments##layer", l.ligaments);
   chip("Skull##layer", l.skull);
+  chip("Lattice##layer", l.lattice);
   chip("Landmarks##layer", l.landmarks);
   chip("Compression##layer", l.strain);
   if (work.rig->appearance) chip("Textures##layer", l.has_textures);
-  const bool has_depth = l.muscles || l.smas || l.skull;
+  const bool has_depth = l.has_depth();
   if (has_depth && !had_depth && l.skin_opacity > 0.99) l.skin_opacity = 0.35;
   if (!has_depth && had_depth) l.skin_opacity = 1.0;
   if (!l.skin || !has_depth) return;
-  ImGui::SetCursorScreenPos({area.x + scaled(16), area.y + scaled(48)});
+  ImGui::SetCursorScreenPos({area.x + scaled(16), ImGui::GetCursorScreenPos().y + scaled(36)});
   auto opacity = static_cast<float>(l.skin_opacity);
   bool has_ended = false;
   ui::SliderLook look{0.05F, 1.0F, 0.35F, palette().accent, "", "%.2f"};

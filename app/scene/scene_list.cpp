@@ -6,6 +6,8 @@
 #include <cmath>
 #include <memory>
 
+#include "view/face/fibre_tubes.h"
+#include "view/face/lattice_layers.h"
 #include "view/smooth_normals.h"
 
 namespace fascia::app {
@@ -13,7 +15,8 @@ namespace fascia::app {
 namespace {
 
 const Vec3 skin_colour(0.86, 0.69, 0.59), bone_colour(0.90, 0.86, 0.75), tooth_colour(0.95, 0.94, 0.90),
-    mucosa_colour(0.72, 0.38, 0.36), hair_colour(0.20, 0.15, 0.12), smas_colour(0.86, 0.62, 0.52);
+    mucosa_colour(0.72, 0.38, 0.36), hair_colour(0.20, 0.15, 0.12), smas_colour(0.86, 0.62, 0.52),
+    selected_colour(1.0, 0.85, 0.35);
 
 std::vector<Vec3> points_of(const std::vector<float>& flat) {
   std::vector<Vec3> points;
@@ -103,7 +106,7 @@ Vec3 muscle_colour(double activation) {
 }
 
 SceneStore::SceneStore(const FaceAsset& asset, const rig::Rig& rig, const view::Appearance* appearance)
-    : asset_(asset) {
+    : asset_(asset), rig_(rig) {
   if (appearance && std::any_of(asset.parts.begin(), asset.parts.end(), [&](const FacePart& part) {
         return appearance->of(part.mesh, part.primitive).has_material;
       })) {
@@ -167,7 +170,8 @@ void SceneStore::add_skin(view::DrawList& list, const FaceFrame& frame, const Sc
     }
   }
   if (!has_heat && !has_strain && options.layers.skin_opacity < 0.999) {
-    surface.opacity = options.layers.skin_opacity;
+    surface.shading = view::Shading::xray;
+    surface.opacity = std::sqrt(options.layers.skin_opacity);
     surface.is_two_sided = false;
   }
   list.surfaces.push_back(std::move(surface));
@@ -184,26 +188,66 @@ void SceneStore::add_part(view::DrawList& list, size_t part, const FaceFrame& fr
   list.surfaces.push_back(std::move(surface));
 }
 
-void SceneStore::add_muscles(view::DrawList& list, const FaceFrame& frame,
-                             const SceneOptions& options) const {
-  std::map<std::string, std::pair<view::DrawLines, double>> muscles;
+std::map<std::string, SceneStore::ContractingMuscle> SceneStore::muscles_of(
+    const FaceFrame& frame, const SceneOptions& options) const {
+  std::map<std::string, ContractingMuscle> muscles;
   for (size_t f = 0; f + 1 < asset_.fibre_offsets.size(); ++f) {
     const std::string& name = asset_.fibre_muscles[f];
     if (options.hidden_muscles.count(name)) continue;
     const uint32_t channel = asset_.fibre_channels[f];
-    auto& [lines, activation] = muscles[name];
-    activation = channel < frame.values.size() ? static_cast<double>(frame.values[channel]) : 0.0;
-    lines.lines.emplace_back();
+    ContractingMuscle& muscle = muscles[name];
+    muscle.activation = channel < frame.values.size()
+                            ? std::clamp(static_cast<double>(frame.values[channel]), 0.0, 1.0)
+                            : 0.0;
+    muscle.fibres.emplace_back();
     for (size_t k = asset_.fibre_offsets[f]; k < asset_.fibre_offsets[f + 1]; ++k)
-      lines.lines.back().push_back(
+      muscle.fibres.back().push_back(
           Eigen::Map<const Eigen::Vector3f>(frame.fibre_points.data() + 3 * k).cast<double>());
   }
-  for (auto& [name, muscle] : muscles) {
+  return muscles;
+}
+
+void SceneStore::add_fibre_lines(view::DrawList& list, const FaceFrame& frame,
+                                 const SceneOptions& options) const {
+  for (auto& [name, muscle] : muscles_of(frame, options)) {
     const bool is_selected = name == options.selected_muscle;
-    muscle.first.colour = is_selected ? Vec3(1.0, 0.85, 0.35) : muscle_colour(muscle.second);
-    muscle.first.width = is_selected ? 5.0 : 3.0 + 2.0 * std::clamp(muscle.second, 0.0, 1.0);
-    list.lines.push_back(std::move(muscle.first));
+    view::DrawLines lines;
+    lines.lines = std::move(muscle.fibres);
+    lines.colour = is_selected ? selected_colour : muscle_colour(muscle.activation);
+    lines.width = is_selected ? 5.0 : 3.0 + 2.0 * muscle.activation;
+    list.lines.push_back(std::move(lines));
   }
+}
+
+void SceneStore::add_flesh(view::DrawList& list, const FaceFrame& frame, const SceneOptions& options) const {
+  view::DrawSurface slack;
+  slack.shading = view::Shading::muscle;
+  for (const auto& [name, muscle] : muscles_of(frame, options)) {
+    const bool is_selected = name == options.selected_muscle;
+    view::FibreTubeOptions look;
+    if (!is_selected && muscle.activation < 0.01) {
+      view::add_fibre_tubes(muscle.fibres, look, slack);
+      continue;
+    }
+    view::DrawSurface bright;
+    bright.shading = view::Shading::muscle;
+    if (is_selected) look.tendon = selected_colour;
+    look.flesh += (is_selected ? 1.0 : muscle.activation) *
+                  ((is_selected ? selected_colour : muscle_colour(1.0)) - look.flesh);
+    view::add_fibre_tubes(muscle.fibres, look, bright);
+    bright.glow = muscle.activation * Vec3(0.62, 0.20, 0.06);
+    list.surfaces.push_back(std::move(bright));
+  }
+  if (!slack.triangles.empty()) list.surfaces.push_back(std::move(slack));
+}
+
+void SceneStore::add_lattice(view::DrawList& list, const FaceFrame& frame, const Layers& layers) const {
+  if (!layers.fat && !layers.lattice) return;
+  const view::Lattice lattice{asset_.lattice_columns, points_of(frame.nodes), asset_.lattice_prisms};
+  if (layers.fat)
+    if (view::DrawSurface fat = view::fat_surface(lattice); !fat.triangles.empty())
+      list.surfaces.push_back(std::move(fat));
+  if (layers.lattice) view::add_lattice(lattice, list);
 }
 
 view::DrawList SceneStore::list(const FaceFrame& frame, const SceneOptions& options) const {
@@ -227,7 +271,10 @@ view::DrawList SceneStore::list(const FaceFrame& frame, const SceneOptions& opti
   if (layers.smas)
     add_surface(list, asset_.smas, still, view::Shading::mucosa, smas_colour,
                 layers.muscles || layers.skull ? 0.5 : 1.0);
-  if (layers.muscles) add_muscles(list, frame, options);
+  if (layers.muscles && options.has_round_fibres) add_flesh(list, frame, options);
+  if (layers.muscles && !options.has_round_fibres) add_fibre_lines(list, frame, options);
+  if (layers.ligaments) view::add_ligaments(rig_.smas, list);
+  add_lattice(list, frame, layers);
   return list;
 }
 

@@ -17,7 +17,8 @@ namespace fascia::app {
 /// What the picture shows besides the face itself.
 struct SceneOptions {
   Layers layers;
-  std::string selected_muscle;           ///< drawn bright; empty: none
+  bool has_round_fibres = false;  ///< muscles as flesh, for pictures that may take their time; else lines
+  std::string selected_muscle;    ///< drawn bright; empty: none
   std::set<std::string> hidden_muscles;  ///< by the name of the muscle
   /// Distances to colour the skin by, metres, one list a part; empty: as skin.
   const std::vector<std::vector<float>>* distances = nullptr;
@@ -41,13 +42,23 @@ class SceneStore {
   view::DrawList list(const FaceFrame& frame, const SceneOptions& options) const;
 
  private:
+  struct ContractingMuscle {
+    std::vector<std::vector<Vec3>> fibres;
+    double activation = 0.0;
+  };
   bool is_painted(const SceneOptions& options) const;
   void add_painted(view::DrawList& list, const FaceFrame& frame) const;
   void add_skin(view::DrawList& list, const FaceFrame& frame, const SceneOptions& options) const;
   void add_part(view::DrawList& list, size_t part, const FaceFrame& frame) const;
-  void add_muscles(view::DrawList& list, const FaceFrame& frame, const SceneOptions& options) const;
+  std::map<std::string, ContractingMuscle> muscles_of(const FaceFrame& frame,
+                                                      const SceneOptions& options) const;
+
+  void add_fibre_lines(view::DrawList& list, const FaceFrame& frame, const SceneOptions& options) const;
+  void add_flesh(view::DrawList& list, const FaceFrame& frame, const SceneOptions& options) const;
+  void add_lattice(view::DrawList& list, const FaceFrame& frame, const Layers& layers) const;
 
   const FaceAsset& asset_;
+  const rig::Rig& rig_;
   std::optional<view::FaceScene> painted_;          ///< where the file gives any part a look of its own
   std::vector<std::vector<Vec3>> eye_coordinates_;  ///< one list a part
   /// The parts that are skin as one surface: groups of a file share their borders' normals.

@@ -236,5 +236,13 @@ TEST(Autosave, IsThereAfterACrashAndGoneAfterAGoodEnd) {
   std::filesystem::remove(file);
 }
 
+TEST(Layers, AreNamedAsTheToolNamesThem) {
+  for (const char* names :
+       {"skin,eyes", "skin,eyes,skull,fat,smas,muscles,ligaments,lattice,landmarks", "muscles", "eyes"})
+    EXPECT_EQ(names_of(layers_of(names)), names);
+  EXPECT_LT(layers_of("skin,fat").skin_opacity, 0.5) << "what lies beneath shows through";
+  EXPECT_EQ(layers_of("skin,landmarks").skin_opacity, 1.0);
+}
+
 }  // namespace
 }  // namespace fascia::app

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "builder/rigging/embedded_head.h"
 #include "formats/scene.h"
@@ -317,6 +318,19 @@ TEST_F(Tool, Draws) {
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_GT(fs::file_size(at("picture.png")), 2000u);
   }
+}
+
+TEST_F(Tool, DrawsEveryLayerAnotherWay) {
+  std::set<std::string> pictures;
+  const std::vector<std::string> layers = {"skin",    "eyes",      "teeth",   "skull",     "fat",   "smas",
+                                           "muscles", "ligaments", "lattice", "landmarks", "strain"};
+  for (const std::string& layer : layers) {
+    const Outcome outcome = run("render " + at("rig.glb") + " --layers " + layer +
+                                " --size 64 --samples 1 -o " + at("layer.png"));
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    pictures.insert(text_of(at("layer.png")));
+  }
+  EXPECT_EQ(pictures.size(), layers.size());
 }
 
 }  // namespace

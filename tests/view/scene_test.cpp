@@ -9,6 +9,7 @@
 #include "view/face/appearance.h"
 #include "view/face/fibre_tubes.h"
 #include "view/face/heat_map.h"
+#include "view/face/lattice_layers.h"
 #include "view/renderer.h"
 #include "view/smooth_normals.h"
 #include "view/text.h"
@@ -268,6 +269,41 @@ TEST(HeatMap, StrainOfAStretchIsItsAreaLessOne) {
   EXPECT_GT(heat_colour(scale, -1)[2], heat_colour(scale, -1)[0]);
   EXPECT_EQ(heat_colour(scale, 7), heat_colour(scale, 1));
   EXPECT_TRUE(heat_colour(scale, NAN).allFinite());
+}
+
+TEST(Lattice, FatLiesBetweenSkinAndSmas) {
+  Lattice lattice;
+  lattice.columns = 3;
+  for (const double z : {0.01, 0.004, 0.0})
+    for (const Vec3& p : {Vec3(0, 0, z), Vec3(0.01, 0, z), Vec3(0, 0.01, z)})
+      lattice.nodes.push_back(p);
+  lattice.prisms = {{0, 1, 2}};
+  const DrawSurface fat = fat_surface(lattice);
+  ASSERT_EQ(fat.positions.size(), 3U);
+  EXPECT_EQ(fat.triangles, lattice.prisms);
+  for (const Vec3& p : fat.positions) {
+    EXPECT_LT(p.z(), 0.0095);
+    EXPECT_GT(p.z(), 0.0045);
+  }
+  DrawList list;
+  add_lattice(lattice, list);
+  size_t lines = 0;
+  for (const DrawLines& layer : list.lines)
+    lines += layer.lines.size();
+  EXPECT_EQ(lines, 9U) << "three edges in each of two layers, three columns";
+
+  lattice.nodes.pop_back();
+  EXPECT_TRUE(fat_surface(lattice).triangles.empty());
+}
+
+TEST(FibreTubes, AShortFibreHasFleshBetweenItsTendons) {
+  FibreTubeOptions options;
+  DrawSurface surface;
+  add_fibre_tubes({{Vec3(0, 0, 0), Vec3(0.003, 0, 0)}}, options, surface);
+  double reddest = 0.0;
+  for (const Vec3& c : surface.vertex_colours)
+    reddest = std::max(reddest, c[0] - c[2]);
+  EXPECT_NEAR(reddest, options.flesh[0] - options.flesh[2], 1e-9);
 }
 
 TEST(FibreTubes, CloseAroundTheirFibre) {

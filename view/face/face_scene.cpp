@@ -53,7 +53,7 @@ bool is_drawn(const std::string& part, const std::set<std::string>& layers) {
 
 bool has_depth(const std::set<std::string>& layers) {
   return layers.count("skull") || layers.count("smas") || layers.count("muscles") || layers.count("teeth") ||
-         layers.count("ligaments");
+         layers.count("ligaments") || layers.count("fat") || layers.count("lattice");
 }
 
 std::vector<Vec3> points_of(std::span<const float> flat) {
@@ -89,6 +89,25 @@ void add_surface(DrawList& list, const rig::Surface& from, Shading shading, cons
   surface.shading = shading;
   surface.colour = colour;
   list.surfaces.push_back(std::move(surface));
+}
+
+/// A sphere about `centre`, appended with a colour a vertex.
+void add_ball(const Vec3& centre, double radius, const Vec3& colour, DrawSurface& surface) {
+  const int rows = 6, columns = 10, first = static_cast<int>(surface.positions.size());
+  for (int r = 0; r <= rows; ++r)
+    for (int c = 0; c < columns; ++c) {
+      const double down = EIGEN_PI * r / rows, around = 2.0 * EIGEN_PI * c / columns;
+      const Vec3 out(std::sin(down) * std::sin(around), std::cos(down), std::sin(down) * std::cos(around));
+      surface.positions.push_back(centre + radius * out);
+      surface.normals.push_back(out);
+      surface.vertex_colours.push_back(colour);
+    }
+  for (int r = 0; r < rows; ++r)
+    for (int c = 0; c < columns; ++c) {
+      const int here = first + r * columns + c, next = first + r * columns + (c + 1) % columns;
+      surface.triangles.push_back({here, here + columns, next + columns});
+      surface.triangles.push_back({here, next + columns, next});
+    }
 }
 
 void apply(const PrimitiveLook& look, DrawSurface& surface) {
@@ -132,9 +151,23 @@ Vec3 muscle_colour(const std::string& name) {
   return Vec3(channel(5.0), channel(3.0), channel(1.0));
 }
 
+void add_ligaments(const rig::Smas& smas, DrawList& list) {
+  DrawSurface bands;
+  bands.shading = Shading::bone;
+  FibreTubeOptions options;
+  options.flesh = ligament_colour;
+  options.has_tendons = false;
+  options.thinnest = options.thickest = 0.0005;
+  std::vector<std::vector<Vec3>> lines;
+  for (const rig::Ligament& ligament : smas.ligaments)
+    lines.push_back({ligament.bone.cast<double>(), ligament.skin.cast<double>()});
+  add_fibre_tubes(lines, options, bands);
+  if (!bands.triangles.empty()) list.surfaces.push_back(std::move(bands));
+}
+
 const std::set<std::string>& FaceScene::layer_names() {
-  static const std::set<std::string> names = {"skin",    "eyes",      "teeth",     "skull", "smas",
-                                              "muscles", "ligaments", "landmarks", "strain"};
+  static const std::set<std::string> names = {"skin",    "eyes",      "teeth",   "skull",     "fat",   "smas",
+                                              "muscles", "ligaments", "lattice", "landmarks", "strain"};
   return names;
 }
 
@@ -166,7 +199,12 @@ DrawList FaceScene::list(const FaceState& state, const FaceView& view) const {
   add_parts(state, view, list);
   add_bones(state, view, list);
   add_muscles(state, view, list);
-  add_points(view, list);
+  if (view.layers.count("fat"))
+    if (DrawSurface fat = fat_surface(state.lattice); !fat.triangles.empty())
+      list.surfaces.push_back(std::move(fat));
+  if (view.layers.count("lattice")) add_lattice(state.lattice, list);
+  if (view.layers.count("ligaments")) add_ligaments(rig_->smas, list);
+  if (view.layers.count("landmarks")) add_landmarks(list);
   return list;
 }
 
@@ -255,6 +293,8 @@ void FaceScene::add_muscles(const FaceState& state, const FaceView& view, DrawLi
   if (!view.layers.count("muscles")) return;
   DrawSurface flesh;
   flesh.shading = Shading::muscle;
+  // Fibres that cross the border would stick out of the skin's half.
+  if (view.reveal && view.layers.count("skin")) flesh.cut = -*view.reveal;
   for (const auto& [name, lines] : state.fibres) {
     if (!view.muscles.empty() &&
         std::find(view.muscles.begin(), view.muscles.end(), name) == view.muscles.end())
@@ -266,6 +306,7 @@ void FaceScene::add_muscles(const FaceState& state, const FaceView& view, DrawLi
     if (pull > 0.01) {
       DrawSurface working;
       working.shading = Shading::muscle;
+      working.cut = flesh.cut;
       options.flesh += pull * (Vec3(0.98, 0.34, 0.16) - options.flesh);
       add_fibre_tubes(lines, options, working);
       working.glow = pull * Vec3(0.62, 0.20, 0.06);
@@ -277,24 +318,22 @@ void FaceScene::add_muscles(const FaceState& state, const FaceView& view, DrawLi
   if (!flesh.triangles.empty()) list.surfaces.push_back(std::move(flesh));
 }
 
-void FaceScene::add_points(const FaceView& view, DrawList& list) const {
-  if (view.layers.count("ligaments")) {
-    DrawSurface bands;
-    bands.shading = Shading::bone;
-    FibreTubeOptions options;
-    options.flesh = ligament_colour;
-    options.has_tendons = false;
-    options.thinnest = options.thickest = 0.0005;
-    std::vector<std::vector<Vec3>> lines;
-    for (const rig::Ligament& ligament : rig_->smas.ligaments)
-      lines.push_back({ligament.bone.cast<double>(), ligament.skin.cast<double>()});
-    add_fibre_tubes(lines, options, bands);
-    if (!bands.triangles.empty()) list.surfaces.push_back(std::move(bands));
+/// A ball at each point on the skin at rest, green where it is certain and red where it is not, and a line to
+/// its partner on the bone.
+void FaceScene::add_landmarks(DrawList& list) const {
+  const double radius = 0.0016;  // m
+  DrawSurface balls;
+  balls.shading = Shading::data;
+  DrawLines depths{{}, Vec3(0.55, 0.75, 0.85), 2.0, false};
+  const Vec3 sure(0.36, 0.74, 0.42), doubtful(0.90, 0.33, 0.26);
+  for (const rig::Landmark& landmark : rig_->skull.landmarks) {
+    const Vec3 centre = landmark.skin.cast<double>();
+    const double certainty = std::clamp(2.0 * static_cast<double>(landmark.confidence) - 1.0, 0.0, 1.0);
+    add_ball(centre, radius, doubtful + certainty * (sure - doubtful), balls);
+    depths.lines.push_back({centre, landmark.bone.cast<double>()});
   }
-  if (view.layers.count("landmarks"))
-    for (const auto& landmark : rig_->skull.landmarks)
-      list.lines.push_back(
-          {{{landmark.skin.cast<double>(), landmark.bone.cast<double>()}}, Vec3(0.1, 0.8, 0.9), 3.0});
+  if (!balls.triangles.empty()) list.surfaces.push_back(std::move(balls));
+  list.lines.push_back(std::move(depths));
 }
 
 }  // namespace fascia::view

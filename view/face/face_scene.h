@@ -12,6 +12,7 @@
 #include "view/face/appearance.h"
 #include "view/face/heat_map.h"
 #include "view/face/joint_normals.h"
+#include "view/face/lattice_layers.h"
 #include "view/scene.h"
 
 namespace fascia::view {
@@ -34,6 +35,7 @@ struct FaceState {
   Mat4 jaw = Mat4::Identity();                    ///< of the mandible
   Fibres fibres;                                  ///< by muscle; only for the layer `muscles`
   std::map<std::string, double> activations;      ///< 0..1 by muscle: those that pull glow; may be empty
+  Lattice lattice;                                ///< only for the layers `fat` and `lattice`
 };
 
 /// What to show of a face.
@@ -52,7 +54,7 @@ class FaceScene {
  public:
   FaceScene(const rig::Rig& rig, std::vector<FacePart> parts, Appearance appearance);
 
-  /// skin, eyes, teeth, skull, smas, muscles, ligaments, landmarks, strain.
+  /// skin, eyes, teeth, skull, fat, smas, muscles, ligaments, lattice, landmarks, strain.
   static const std::set<std::string>& layer_names();
 
   /// `state` must fit the parts. With deeper layers the skin is glass, unless `reveal` cuts it.
@@ -65,7 +67,7 @@ class FaceScene {
   void add_parts(const FaceState& state, const FaceView& view, DrawList& list) const;
   void add_bones(const FaceState& state, const FaceView& view, DrawList& list) const;
   void add_muscles(const FaceState& state, const FaceView& view, DrawList& list) const;
-  void add_points(const FaceView& view, DrawList& list) const;
+  void add_landmarks(DrawList& list) const;
 
   const rig::Rig* rig_;
   std::vector<FacePart> parts_;
@@ -75,6 +77,9 @@ class FaceScene {
   std::vector<size_t> skin_parts_;
   std::optional<JointNormals> skin_normals_;  ///< of `skin_parts_`
 };
+
+/// The retaining ligaments at rest, as bands from bone to skin.
+void add_ligaments(const rig::Smas& smas, DrawList& list);
 
 /// A colour of its own for each muscle, the same for both sides; sRGB.
 Vec3 muscle_colour(const std::string& name);

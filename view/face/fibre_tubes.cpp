@@ -30,6 +30,16 @@ bool is_closed(const std::vector<Vec3>& line) {
   return (line.front() - line.back()).norm() < 1e-5;
 }
 
+/// The same line with points between, where it has too few to tell its belly from its ends.
+std::vector<Vec3> with_belly(const std::vector<Vec3>& line) {
+  const size_t pieces = line.size() >= 6 ? 1 : (8 + line.size() - 2) / (line.size() - 1);
+  std::vector<Vec3> finer = {line.front()};
+  for (size_t i = 1; i < line.size(); ++i)
+    for (size_t k = 1; k <= pieces; ++k)
+      finer.push_back(line[i - 1] + (double(k) / double(pieces)) * (line[i] - line[i - 1]));
+  return finer;
+}
+
 /// Shares of the whole length, 0 at the first point.
 std::vector<double> shares_along(const std::vector<Vec3>& line) {
   std::vector<double> along = {0.0};
@@ -46,8 +56,9 @@ std::vector<double> shares_along(const std::vector<Vec3>& line) {
 void add_fibre_tubes(const std::vector<std::vector<Vec3>>& fibres, const FibreTubeOptions& options,
                      DrawSurface& surface) {
   const double radius = radius_of(fibres, options);
-  for (const std::vector<Vec3>& line : fibres) {
-    if (line.size() < 2) continue;
+  for (const std::vector<Vec3>& fibre : fibres) {
+    if (fibre.size() < 2) continue;
+    const std::vector<Vec3> line = options.has_tendons ? with_belly(fibre) : fibre;
     const std::vector<double> along = shares_along(line);
     const bool has_ends = options.has_tendons && !is_closed(line);
     const int first = static_cast<int>(surface.positions.size()), sides = options.sides;
