@@ -39,6 +39,10 @@ target_include_directories(fascia_options INTERFACE
 # Contraction into fused multiply-add changes values between machines; snapshots would differ.
 target_compile_options(fascia_options INTERFACE
   $<BUILD_INTERFACE:-Wall;-Wextra;-Wpedantic;-Wshadow;-ffp-contract=off>)
+# Eigen cuts large products to the processor's caches, and the order of sums with them: fixed sizes give the same bits
+# on every processor.
+target_compile_definitions(fascia_options INTERFACE
+  $<BUILD_INTERFACE:EIGEN_NO_CPUID;EIGEN_DEFAULT_L2_CACHE_SIZE=524288>)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # False alarms of g++ 12 in std::string's operator+.
   target_compile_options(fascia_options INTERFACE

@@ -13,6 +13,7 @@ constexpr size_t stations = 33;
 constexpr double first = 0.05;       // of the fissure: nearer to a canthus both lids are one
 constexpr double overlap = 0.03;     // radians that a closed upper lid is to reach over the lower one
 constexpr double touching = -0.012;  // radians: more is a slit, for edges are polygons between stations
+constexpr double doubtful = 0.012;   // radians above `touching` within which a slit counts in part
 constexpr double slope = 0.06;       // radians a station: how steeply what is added may change along a lid
 
 /// The edges of the head's own mesh that lie along an eye's fissure, and the lid each is of.
@@ -94,6 +95,7 @@ struct Eye {
   bool widen(const std::vector<Vec3>& places) {
     constexpr double least_use = 0.08;  // radians closed, of one that was added
     constexpr double most_gain = 2.0;
+    constexpr double least_given = 0.02;  // radians: of less it cannot be told what it did
     const auto gaps = edges.gaps(places);
     const auto ragged = ragged_stations(gaps);
     bool any = false;
@@ -101,13 +103,15 @@ struct Eye {
       if (ragged[k]) continue;
       const double place = static_cast<double>(k) / (stations - 1);
       if (gaps[k] == LidEdges::none || place < first || place > 1.0 - first) continue;
-      if (given[k] > 0.0) {
+      if (given[k] > least_given) {
         const double use = (before[k] - gaps[k]) / given[k];
         if (use < least_use) in_vain[k] = true;
         gain[k] = std::clamp(1.0 / std::max(use, 1e-3), 1.0, most_gain);
       }
       if (in_vain[k]) own[k] = 0.0;
-      given[k] = in_vain[k] || gaps[k] <= touching ? 0.0 : gain[k] * (gaps[k] + overlap);
+      // In proportion near the bound, lest a last digit of the pose decide over a whole step.
+      const double slit = std::clamp((gaps[k] - touching) / doubtful, 0.0, 1.0);
+      given[k] = in_vain[k] ? 0.0 : slit * gain[k] * (gaps[k] + overlap);
       before[k] = gaps[k];
       if (given[k] == 0.0) continue;
       own[k] = std::min(added[k] + given[k], most_added(place));
