@@ -3,6 +3,7 @@
 
 #include "anatomy/anatomy.h"
 #include "cli/common.h"
+#include "cli/posing.h"
 #include "formats/scene.h"
 #include "geometry/error.h"
 #include "rig/read/read.h"
@@ -91,6 +92,13 @@ void check_tissue(const rig::Rig& rig, const std::string& name) {
   }
 }
 
+/// Throws what a host would hear when it loads the rig.
+void check_load(const std::vector<uint8_t>& bytes, const std::string& name) {
+  fascia_asset* asset = nullptr;
+  check(fascia_asset_load(bytes.data(), bytes.size(), &asset), "'" + name + "'");
+  fascia_asset_release(asset);
+}
+
 /// The table of other programs' names, which needs no rig.
 void list_names(const Common& common) {
   const Json table = Json::parse(anatomy::embedded_file("aliases.json"));
@@ -123,6 +131,7 @@ void run(const Common& common, const InfoRequest& request) {
   if (request.channels) json["channel_list"] = channel_list(file.rig);
   if (request.validate) {
     check_tissue(file.rig, request.rig.string());
+    check_load(bytes, request.rig.string());
     json["valid"] = true;
   }
   say(common, json, file.rig, request);

@@ -55,8 +55,10 @@ void check_size(const Scene& scene, const Bounds& box) {
   if (!(size > 1e-9) || !(far < 1e12)) {
     char text[96];
     std::snprintf(text, sizeof text, "it is %.3g units large, as far as %.3g from the origin", size, far);
-    detail::fail(scene, std::string(text) +
-                            "; scale it so that a head is between a millionth and a million units large");
+    detail::fail(
+        scene,
+        std::string(text) +
+            "; scale it so that a head is between a millionth and a million units large, near the origin");
   }
 }
 

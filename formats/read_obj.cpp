@@ -31,6 +31,30 @@ std::vector<double> coordinates(const Scene& scene, std::string_view text) {
   return all;
 }
 
+/// Numbers of vertices that an int does not hold: tinyobjloader cuts them short and takes another vertex.
+void refuse_long_indices(const Scene& scene, std::string_view plain) {
+  constexpr size_t most_digits = 9;
+  for (size_t at = 0; at < plain.size();) {
+    const size_t end = std::min(plain.find('\n', at), plain.size());
+    const std::string_view line = plain.substr(at, end - at);
+    at = end + 1;
+    const size_t keyword = line.find_first_not_of(" \t");
+    if (keyword == line.npos || line.size() < keyword + 2 || line[keyword] != 'f' ||
+        (line[keyword + 1] != ' ' && line[keyword + 1] != '\t'))
+      continue;
+    for (size_t i = keyword + 1; i < line.size();) {
+      const size_t first = line.find_first_of("0123456789", i);
+      if (first == line.npos) break;
+      i = std::min(line.find_first_not_of("0123456789", first), line.size());
+      const size_t digits = std::min(line.find_first_not_of('0', first), i);
+      if (i - digits > most_digits)
+        fail(scene, "a face names vertex " +
+                        std::string(line.substr(digits, std::min<size_t>(i - digits, 40))) +
+                        ", which no file has; export it again");
+    }
+  }
+}
+
 /// Vertices of one object, taken in the order in which its faces first name them.
 struct ObjectVertices {
   std::map<std::pair<int, int>, int> index;  // (position, texture coordinate) -> vertex
@@ -88,7 +112,9 @@ void read_obj(Scene& scene) {
   const std::string_view text(reinterpret_cast<const char*>(scene.bytes.data()), scene.bytes.size());
   const std::vector<double> places = coordinates(scene, text);
   // Materials are the file's own business; only the geometry is read.
-  if (!reader.ParseFromString(plain_obj(text), "", config))
+  const std::string plain = plain_obj(text);
+  refuse_long_indices(scene, plain);
+  if (!reader.ParseFromString(plain, "", config))
     fail(scene, "it is not a readable OBJ file: " + gltf::as_utf8(reader.Error()));
   tinyobj::attrib_t attributes = reader.GetAttrib();
   if (attributes.vertices.size() != places.size()) fail(scene, "its 'v' lines are damaged");

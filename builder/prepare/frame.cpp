@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cmath>
+#include <cstdio>
 
 #include "builder/spatial/surface_query.h"
 #include "geometry/alignment.h"
@@ -29,10 +30,16 @@ double declared_metres(const std::string& units) {
               "' are unknown: give auto, m, cm, mm or the metres of one unit as a number");
 }
 
+std::string as_text(double number) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", number);
+  return text;
+}
+
 std::string unit_name(double metres) {
   for (const Unit& unit : known_units)
     if (std::abs(std::log(metres / unit.metres)) < 1e-9) return unit.name;
-  return std::to_string(metres);
+  return as_text(metres);
 }
 
 struct Similarity {
@@ -73,7 +80,7 @@ double snapped_unit(double scale, std::vector<std::string>& warnings) {
     if (std::abs(std::log(scale / unit.metres)) < std::log(1.45)) return unit.metres;
   warnings.push_back(
       "the landmarks fit none of m, dm, cm, mm and inch; the head was scaled to adult size (one unit = " +
-      std::to_string(scale) + " m); give --units to set it");
+      as_text(scale) + " m); give --units to set it");
   return scale;
 }
 

@@ -13,10 +13,10 @@ struct WeldedScene {
   int component_count = 0;
 };
 
-/// Joins and welds. Only vertices on open edges are merged, within one glTF mesh, among the objects of an OBJ,
-/// and between meshes whose rims run along each other: texture seams close and a head in pieces becomes one,
-/// lips and lids that merely touch stay two. A vertex that no triangle uses becomes one with the used one in
-/// its place.
+/// Joins and welds. Only vertices on open edges are merged, within one glTF mesh, among the objects of an
+/// OBJ, and between meshes whose rims run along each other: texture seams close and a head in pieces becomes
+/// one, lips and lids that merely touch stay two. A vertex that no triangle uses becomes one with the used
+/// one in its place.
 WeldedScene weld_scene(const formats::Scene& scene, const Mat4& input_to_metres);
 
 /// What every connected component of `welded` is, and the eyeballs among them: by shape and place first, by
@@ -30,5 +30,10 @@ struct Parts {
 };
 Parts recognise_parts(const formats::Scene& scene, const WeldedScene& welded,
                       const std::map<std::string, Vec3>& landmarks, const PrepareOptions& options);
+
+/// Adds a warning when a surface beside the skin is as large as it and of its proportions: a second head, of
+/// which nothing is built.
+void warn_of_other_heads(const formats::Scene& scene, const WeldedScene& welded, const Parts& parts,
+                         std::vector<std::string>& warnings);
 
 }  // namespace fascia::prepare

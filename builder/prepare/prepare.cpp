@@ -64,6 +64,7 @@ PreparedHead prepare(const formats::Scene& scene, const formats::LandmarkFile& g
 
   const WeldedScene welded = weld_scene(scene, head.input_to_metres);
   const Parts parts = recognise_parts(scene, welded, landmarks, options);
+  warn_of_other_heads(scene, welded, parts, head.warnings);
   head.eye_left = parts.eye_left;
   head.eye_right = parts.eye_right;
 

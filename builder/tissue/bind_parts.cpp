@@ -173,6 +173,7 @@ std::vector<float> between_the_jaws(const PartMesh& part, const TissueInputs& in
   std::array<std::vector<DistanceSeed>, 2> seeds;
   for (const PartMesh& teeth : inputs.parts) {
     if (teeth.part != "teeth_upper" && teeth.part != "teeth_lower") continue;
+    if (teeth.triangles.empty()) continue;  // a copy, of which none counts
     const spatial::SurfaceQuery query(TriangleMesh{teeth.vertices, teeth.triangles});
     for (int v = 0; v < welded.vertex_count(); ++v)
       if (query.closest(welded.vertices[static_cast<size_t>(v)], 0.002).found())

@@ -1,6 +1,7 @@
 #include "cli/take/curves.h"
 
 #include <algorithm>
+#include <set>
 
 #include "formats/scene.h"
 #include "geometry/error.h"
@@ -52,9 +53,9 @@ MatchedNames match(const Common& common, const Curves& curves, const Face& face,
                    const std::filesystem::path& path) {
   MatchedNames names;
   names.unmatched = curves.unmatched(face);
+  const std::set<std::string> unmatched(names.unmatched.begin(), names.unmatched.end());
   for (const std::string& name : curves.names())
-    if (std::find(names.unmatched.begin(), names.unmatched.end(), name) == names.unmatched.end())
-      names.matched.push_back(name);
+    if (unmatched.count(name) == 0) names.matched.push_back(name);
   for (const std::string& note : curves.notes())
     common.warn("'" + path.filename().string() + "': " + note);
   if (names.matched.empty())

@@ -6,6 +6,7 @@
 #include "geometry/error.h"
 #include "gltf/edit/decompress.h"
 #include "gltf/edit/uri.h"
+#include "gltf/edit/whole_numbers.h"
 #include "gltf/read/container.h"
 #include "gltf/read/text.h"
 
@@ -215,7 +216,8 @@ Document self_contained(Document document, const Resolver& resolve, const std::s
   Json root = parsed(document.json, name, &repaired);
   if (repaired) heard.push_back("the glTF file's JSON is not UTF-8; names in it were read as Latin-1");
   try {
-    if (!repaired && is_whole(document, root)) return document;
+    const bool has_decimals = make_whole_numbers(root);
+    if (!repaired && !has_decimals && is_whole(document, root)) return document;
     return joined(document, std::move(root), resolve, heard);
   } catch (const nlohmann::json::exception& exception) {
     throw Error(name + ": the glTF file's JSON is malformed: " + exception.what());

@@ -41,7 +41,8 @@ std::string text_of(const Json& json);
 ///
 /// A picture that is missing, on the web or refused keeps its URI, and a line in `warnings` says so. Throws
 /// fascia::Error, beginning with `name`, when the JSON is malformed, a buffer is missing or cut short, or
-/// compressed data are damaged.
+/// compressed data are damaged, or an index, offset or count is no whole number or too large. Whole ones that
+/// are written as decimals become integers.
 Document self_contained(Document document, const Resolver& resolve, const std::string& name,
                         std::vector<std::string>* warnings = nullptr);
 

@@ -191,6 +191,16 @@ Primitive bound_primitive(const tinygltf::Model& model, const Binding& binding, 
   return result;
 }
 
+/// Throws when a binding's map carries its first vertex out of the rig's surroundings: single precision would
+/// lose the shape there. `positions` in the mesh's units.
+void check_place(const Binding& binding, const std::vector<Vec3f>& positions, const std::string& path) {
+  constexpr float farthest = 1e4F;  // metres
+  if (positions.empty()) return;
+  const Vec3f first = (binding.to_rig * positions[0].homogeneous()).head<3>();
+  if (!(first.cwiseAbs().maxCoeff() < farthest))
+    throw Error(path + ": it carries the mesh kilometres away from the rig");
+}
+
 void read_primitives(const tinygltf::Model& model, RigFile& file, const std::string& path) {
   for (std::size_t level = 0; level < file.rig.tissue.bindings.size(); ++level)
     for (std::size_t b = 0; b < file.rig.tissue.bindings[level].size(); ++b) {
@@ -202,6 +212,7 @@ void read_primitives(const tinygltf::Model& model, RigFile& file, const std::str
       } else if (file.primitives[known].positions.size() != binding.vertex_count) {
         throw Error(at + "/vertexCount: disagrees with another level's");
       }
+      check_place(binding, file.primitives[known].positions, at + "/toRig");
     }
 }
 
@@ -224,6 +235,9 @@ void check_ranges(const Rig& rig, const std::string& name) {
       check_map(binding.to_rig, path + "/bindings/toRig");
       for (const float weight : binding.weights)
         if (!(std::abs(weight) < 100.0F)) throw Error(path + "/bindings/weights: a weight is above 100");
+      for (const float weight : binding.jaw_weights)
+        if (!(weight >= -0.01F && weight <= 1.01F))
+          throw Error(path + "/bindings/jawWeights: a weight is not within 0..1");
     }
   }
 }

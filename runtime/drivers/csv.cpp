@@ -15,7 +15,7 @@ namespace fascia::runtime {
 namespace {
 
 std::string where(std::size_t row, std::string_view column) {
-  return "curves: row " + std::to_string(row) + ", column " + std::string(column) + ": ";
+  return "curves: row " + std::to_string(row) + ", column " + shown(column) + ": ";
 }
 
 /// Seconds in one unit of a column of times, by the column's name; 0 when it is none.
@@ -85,8 +85,8 @@ void refuse_repeated_columns(const Table& table) {
     const auto [before, is_new] = seen.emplace(key, c);
     if (!is_new)
       throw Error("curves: row 1: columns " + std::to_string(before->second + 1) + " (" +
-                  table.header[before->second] + ") and " + std::to_string(c + 1) + " (" + table.header[c] +
-                  ") are the same: take one of them out");
+                  shown(table.header[before->second]) + ") and " + std::to_string(c + 1) + " (" +
+                  shown(table.header[c]) + ") are the same: take one of them out");
   }
 }
 
@@ -95,7 +95,7 @@ std::vector<double> timecode_column(const Table& table, std::size_t column, doub
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
     const auto code = timecode(table.rows[row][column]);
     if (!code)
-      throw Error(where(table.lines[row], table.header[column]) + "\"" + table.rows[row][column] +
+      throw Error(where(table.lines[row], table.header[column]) + "\"" + shown(table.rows[row][column]) +
                   "\" is not hours:minutes:seconds:frame");
     codes.push_back(*code);
   }
@@ -120,7 +120,7 @@ std::vector<double> plain_column(const Table& table, std::size_t column) {
     const std::string& cell = table.rows[row][column];
     const auto time = cell_number(cell);
     if (!time)
-      throw Error(where(table.lines[row], table.header[column]) + "\"" + cell + "\" is not a number");
+      throw Error(where(table.lines[row], table.header[column]) + "\"" + shown(cell) + "\" is not a number");
     times.push_back(*time);
   }
   return times;
@@ -216,7 +216,7 @@ Curve read_column(const Table& table, std::size_t c, const std::vector<std::size
       continue;
     }
     const auto value = cell_number(cell);
-    if (!value) throw Error(where(table.lines[row], curve.name) + "\"" + cell + "\" is not a number");
+    if (!value) throw Error(where(table.lines[row], curve.name) + "\"" + shown(cell) + "\" is not a number");
     curve.times.push_back(times[row]);
     curve.values.push_back(static_cast<float>(*value));
   }

@@ -34,7 +34,7 @@ void refuse_absurd_values(const Curves& curves) {
     for (const auto* list : {&curve.values, &curve.tangents_in, &curve.tangents_out})
       for (const float value : *list)
         if (!(std::abs(value) <= most))
-          throw Error("curves: a value of " + curve.name +
+          throw Error("curves: a value of " + shown(curve.name) +
                       " is beyond a thousand million: is the column another thing's?");
 }
 

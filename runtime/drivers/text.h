@@ -19,6 +19,9 @@ std::vector<std::string_view> lines_of(std::string_view text);
 /// `text` without blanks and tabs at its ends.
 std::string_view trimmed(std::string_view text);
 
+/// `text` as a message shows it: what is longer than 60 bytes is cut short, between characters.
+std::string shown(std::string_view text);
+
 /// ASCII letters of `text` in lower case.
 std::string lower_ascii(std::string_view text);
 

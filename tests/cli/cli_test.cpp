@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -201,6 +202,27 @@ TEST_F(Tool, InfoKnowsChannelsAndSoundness) {
   EXPECT_EQ(info["valid"], true);
   EXPECT_EQ(info["sets"]["arkit"], 52);
   EXPECT_EQ(info["channel_list"].size(), info["channels"].get<size_t>());
+}
+
+TEST_F(Tool, InfoCallsNothingSoundThatAHostWouldRefuse) {
+  // The knots at which a member's response is given have to rise: the first is put behind the others.
+  std::string file = text_of(at("rig.glb"));
+  uint32_t json_length = 0;
+  std::memcpy(&json_length, file.data() + 12, sizeof json_length);
+  const json root = json::parse(file.substr(20, json_length));
+  for (const json& set : root["extensions"]["FASCIA_actuation"]["sets"])
+    if (set.contains("responseWeights")) {
+      const json& knots = root["accessors"][set["responseWeights"].get<size_t>()];
+      const json& view = root["bufferViews"][knots["bufferView"].get<size_t>()];
+      const float behind = 0.99F;
+      std::memcpy(file.data() + 28 + json_length + view.value("byteOffset", 0) + knots.value("byteOffset", 0),
+                  &behind, sizeof behind);
+      break;
+    }
+  std::ofstream(at("unsound.glb"), std::ios::binary) << file;
+  const Outcome outcome = run("info " + at("unsound.glb") + " --validate");
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_NE(outcome.err.find("response"), std::string::npos) << outcome.err;
 }
 
 /// The lines of two texts that differ, as pairs.

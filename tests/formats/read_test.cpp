@@ -50,6 +50,14 @@ TEST(ReadObj, NamesAFaceBeyondTheVertices) {
             std::string::npos);
 }
 
+TEST(ReadObj, ANumberThatWouldWrapIsNoVertex) {
+  for (const char* face : {"f 4294967297 2 3", "f 1 2 18446744073709551617", "\tf 1/1 2/1 -4294967298/1"}) {
+    const std::string message =
+        message_of("wrap.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\n" + std::string(face) + "\n");
+    EXPECT_NE(message.find("which no file has"), std::string::npos) << face << ": " << message;
+  }
+}
+
 TEST(Read, RefusesWhatIsNoMesh) {
   EXPECT_NE(message_of("empty.obj", "").find("is empty"), std::string::npos);
   EXPECT_NE(message_of("points.obj", "v 0 0 0\n").find("no triangles"), std::string::npos);
@@ -283,6 +291,29 @@ TEST(ReadGltf, AnOffsetThatWrapsIsAnErrorNotACrash) {
   std::string many = gltf_with(R"([{"mesh":0}])");
   many.replace(many.find("\"count\":3"), 9, "\"count\":1000000000");
   EXPECT_NE(message_of("many.gltf", many), "");
+}
+
+TEST(ReadGltf, IndicesAndOffsetsAreWholeNumbersAndNoneIsCutShort) {
+  const auto changed = [](const std::string& from, const std::string& to) {
+    std::string text = gltf_with(R"([{"mesh":0}])");
+    text.replace(text.find(from), from.size(), to);
+    return text;
+  };
+  const std::string view = R"("bufferView":0,)";
+  for (const char* wrong : {R"("bufferView":4294967296,)", R"("bufferView":0,"byteOffset":-12,)",
+                            R"("bufferView":0,"byteOffset":0.5,)", R"("bufferView":1e300,)"})
+    EXPECT_NE(message_of("w.gltf", changed(view, wrong)).find("accessors/0/"), std::string::npos) << wrong;
+  EXPECT_NE(message_of("w.gltf", changed(R"("mesh":0}])", R"("mesh":4294967296}])")).find("nodes/0/mesh"),
+            std::string::npos);
+  EXPECT_NE(message_of("w.gltf", changed(R"("POSITION":0)", R"("POSITION":-1)")).find("attributes/POSITION"),
+            std::string::npos);
+  // Whole, but written as decimals: what is meant is read.
+  EXPECT_EQ(
+      read("w.gltf", bytes_of(changed(view, R"("bufferView":0.0,"byteOffset":0.0,)"))).meshes[0].positions[1],
+      Vec3(1, 0, 0));
+  EXPECT_NE(
+      message_of("w.gltf", changed(view, R"("bufferView":0,"byteOffset":12.0,)")).find("reaches beyond"),
+      std::string::npos);
 }
 
 TEST(ReadGltf, DefaultWeightsOfMorphTargetsAreSeen) {

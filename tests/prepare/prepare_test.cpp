@@ -159,6 +159,23 @@ TEST(Prepare, TouchingLipsStayTwo) {
   EXPECT_NE(touching.vertex_map[0][30], touching.vertex_map[1][40]);
 }
 
+TEST(Prepare, SaysThatAFileHoldsASecondHead) {
+  formats::Scene scene = scene_in(Mat4::Identity());
+  const auto says = [&] {
+    for (const std::string& warning :
+         prepare(scene, landmarks_in(Mat4::Identity(), 1.0, ""), reference(), {}).warnings)
+      if (warning.find("another head ('twin')") != std::string::npos) return true;
+    return false;
+  };
+  EXPECT_FALSE(says());
+  scene.meshes.push_back(seamed_sphere("twin", Vec3(0.4, 0, 0), 0.1));
+  EXPECT_TRUE(says());
+  scene.meshes.back() = seamed_sphere("twin", Vec3(0.4, 0, 0), 0.05);  // smaller by half: something else
+  EXPECT_FALSE(says());
+  scene.meshes.back() = seamed_sphere("twin", Vec3(0, 0.01, 0), 0.115);  // about the head, as hair is
+  EXPECT_FALSE(says());
+}
+
 TEST(Prepare, SaysWhatIsWrong) {
   const Mat4 to_file = Mat4::Identity();
   const formats::Scene scene = scene_in(to_file);

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -46,6 +47,26 @@ Json& accessor_of(Json& root, const Json& index) {
 
 TEST(Refusal, NothingIsWrongWithTheUnchangedFile) {
   EXPECT_EQ(refusal([](Json&) {}), "");
+}
+
+TEST(Refusal, AMeshFarFromItsRig) {
+  EXPECT_SAYS(refusal([](Json& root) {
+                extension(root, "FASCIA_tissue")["levels"][0]["bindings"][0]["toRig"][12] = -1e10;
+              }),
+              "toRig: it carries the mesh");
+}
+
+TEST(Refusal, JawWeightsBeyondOne) {
+  rig::GltfSource file = rig::glb_source(test::tiny_rig_file());
+  const Json root = Json::parse(file.json);
+  const Json& weights =
+      root["accessors"]
+          [root["extensions"]["FASCIA_tissue"]["levels"][0]["bindings"][0]["jawWeights"].get<std::size_t>()];
+  const Json& view = root["bufferViews"][weights["bufferView"].get<std::size_t>()];
+  const float far = 1e5F;
+  std::memcpy(file.bin.data() + view.value("byteOffset", 0) + weights.value("byteOffset", 0), &far,
+              sizeof far);
+  EXPECT_SAYS(message_of([&] { rig::read(gltf::glb_bytes(file.json, file.bin), "head.glb"); }), "jawWeights");
 }
 
 TEST(Refusal, UnknownVersion) {
