@@ -31,8 +31,8 @@ struct Parts {
 Parts recognise_parts(const formats::Scene& scene, const WeldedScene& welded,
                       const std::map<std::string, Vec3>& landmarks, const PrepareOptions& options);
 
-/// Adds a warning when a surface beside the skin is as large as it and of its proportions: a second head, of
-/// which nothing is built.
+/// Adds a warning when a surface beside the skin is as large as it and of its proportions, a second head of
+/// which nothing is built, or when it is the skin over again.
 void warn_of_other_heads(const formats::Scene& scene, const WeldedScene& welded, const Parts& parts,
                          std::vector<std::string>& warnings);
 
