@@ -3,28 +3,19 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <functional>
 #include <limits>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <random>
 
 #include "anatomy/anatomy.h"
-#include "gltf/read/container.h"
+#include "tests/builder/pieces_file.h"
+#include "tests/builder/taken_apart.h"
 
 namespace fascia::testing {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Random = std::mt19937;
-
-/// A mesh and the node that shows it.
-struct Piece {
-  std::string name;
-  TriangleMesh mesh;
-  Vec3 scale = Vec3::Ones();  ///< of the node
-};
 
 struct Made {
   std::vector<Piece> pieces;
@@ -50,44 +41,6 @@ size_t any(Random& random, size_t count) {
   return static_cast<size_t>(random()) % count;
 }
 
-Vec3 middle_of(const TriangleMesh& mesh, const Triangle& t) {
-  return (mesh.vertices[static_cast<size_t>(t[0])] + mesh.vertices[static_cast<size_t>(t[1])] +
-          mesh.vertices[static_cast<size_t>(t[2])]) /
-         3.0;
-}
-
-/// The skin taken apart by a label a triangle: vertices of different labels are no longer shared.
-std::vector<TriangleMesh> taken_apart(const TriangleMesh& mesh,
-                                      const std::function<int(const Triangle&)>& label) {
-  std::map<int, TriangleMesh> parts;
-  std::map<int, std::map<int, int>> maps;
-  for (const Triangle& t : mesh.triangles) {
-    const int l = label(t);
-    Triangle own;
-    for (size_t k = 0; k < 3; ++k) {
-      const auto [at, is_new] = maps[l].try_emplace(t[k], parts[l].vertex_count());
-      if (is_new) parts[l].vertices.push_back(mesh.vertices[static_cast<size_t>(t[k])]);
-      own[k] = at->second;
-    }
-    parts[l].triangles.push_back(own);
-  }
-  std::vector<TriangleMesh> all;
-  for (auto& [l, part] : parts)
-    all.push_back(std::move(part));
-  return all;
-}
-
-TriangleMesh joined(const std::vector<TriangleMesh>& parts) {
-  TriangleMesh all;
-  for (const TriangleMesh& part : parts) {
-    const int base = all.vertex_count();
-    all.vertices.insert(all.vertices.end(), part.vertices.begin(), part.vertices.end());
-    for (const Triangle& t : part.triangles)
-      all.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
-  }
-  return all;
-}
-
 /// Which of some places, strewn by chance about the head, is nearest.
 std::function<int(const Triangle&)> islands_of(const TriangleMesh& mesh, Random& random, size_t count) {
   std::vector<Vec3> seeds;
@@ -101,19 +54,6 @@ std::function<int(const Triangle&)> islands_of(const TriangleMesh& mesh, Random&
                                              }) -
                             seeds.begin());
   };
-}
-
-void turn_over(Triangle& t) {
-  std::swap(t[1], t[2]);
-}
-
-/// Every triangle once more, turned over, on the same vertices.
-void add_backs(TriangleMesh& mesh) {
-  const std::vector<Triangle> front = mesh.triangles;
-  for (Triangle t : front) {
-    turn_over(t);
-    mesh.triangles.push_back(t);
-  }
 }
 
 /// The skin's pieces in place of the skin, each a mesh and a node of its own.
@@ -440,59 +380,6 @@ const std::map<std::string, Break>& kinds() {
     return made;
   }();
   return all;
-}
-
-template <class T>
-void put(std::vector<uint8_t>& bytes, T value) {
-  uint8_t raw[sizeof(T)];
-  std::memcpy(raw, &value, sizeof(T));
-  bytes.insert(bytes.end(), raw, raw + sizeof(T));
-}
-
-std::vector<uint8_t> glb_of(const std::vector<Piece>& pieces) {
-  Json root = {{"asset", {{"version", "2.0"}}}, {"scene", 0}};
-  std::vector<uint8_t> bin;
-  const auto add = [&](size_t begin, const Json& accessor) {
-    root["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", begin}, {"byteLength", bin.size() - begin}});
-    Json full = accessor;
-    full["bufferView"] = root["bufferViews"].size() - 1;
-    root["accessors"].push_back(full);
-    return root["accessors"].size() - 1;
-  };
-  for (const Piece& piece : pieces) {
-    const size_t begin = bin.size();
-    Bounds box;
-    for (const Vec3& p : piece.mesh.vertices)
-      for (int k = 0; k < 3; ++k) {
-        put(bin, static_cast<float>(p[k]));
-        if (!std::isfinite(p[k])) continue;
-        box.lower[k] = std::min(box.lower[k], p[k]);
-        box.upper[k] = std::max(box.upper[k], p[k]);
-      }
-    const auto vector = [](const Vec3& p) { return Json{p[0], p[1], p[2]}; };
-    const size_t positions = add(begin, {{"componentType", 5126},
-                                         {"count", piece.mesh.vertices.size()},
-                                         {"type", "VEC3"},
-                                         {"min", vector(box.lower)},
-                                         {"max", vector(box.upper)}});
-    Json primitive = {{"attributes", {{"POSITION", positions}}}};
-    if (!piece.mesh.triangles.empty()) {
-      const size_t first = bin.size();
-      for (const Triangle& t : piece.mesh.triangles)
-        for (const int v : t)
-          put(bin, static_cast<uint32_t>(v));
-      primitive["indices"] = add(
-          first, {{"componentType", 5125}, {"count", 3 * piece.mesh.triangles.size()}, {"type", "SCALAR"}});
-    } else {
-      primitive["indices"] = add(bin.size(), {{"componentType", 5125}, {"count", 0}, {"type", "SCALAR"}});
-    }
-    root["meshes"].push_back({{"name", piece.name}, {"primitives", {primitive}}});
-    root["nodes"].push_back(
-        {{"name", piece.name}, {"mesh", root["meshes"].size() - 1}, {"scale", vector(piece.scale)}});
-    root["scenes"][0]["nodes"].push_back(root["nodes"].size() - 1);
-  }
-  root["buffers"].push_back({{"byteLength", bin.size()}});
-  return gltf::glb_bytes(root.dump(), bin);
 }
 
 }  // namespace
