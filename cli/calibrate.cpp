@@ -5,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "cli/calibrate_depth.h"
 #include "cli/fit_match.h"
 #include "cli/fit_scan.h"
 #include "cli/fit_target.h"
@@ -23,7 +24,7 @@ using Json = nlohmann::ordered_json;
 
 struct CalibrateRequest {
   std::filesystem::path rig, scans, output;
-  std::string level = "low";
+  std::string level = "low", adjust = "all";
   fit::CalibrationOptions options;
 };
 
@@ -133,6 +134,19 @@ void add_shapes(const Common& common, const CalibrateRequest& request, const fit
   }
 }
 
+/// The subject with another physique; null, and a fault in `rebuilt`, where its depth cannot be had.
+std::unique_ptr<fit::Subject> with_physique(const fit::Subject& subject, const fit::Physique& physique,
+                                            RebuiltRig& rebuilt) {
+  rig::RigFile file = subject.file();
+  if (physique.depth != 1.0) {
+    const rig::Rig* other = rebuilt.at(physique.depth, subject.level_name());
+    if (other == nullptr) return nullptr;
+    file.rig = *other;
+  }
+  file.rig = fit::with_physique(std::move(file.rig), physique);
+  return std::make_unique<fit::Subject>(std::move(file), subject.level_name());
+}
+
 /// The rig with every table's weights times the gains, within the channels' ranges.
 rig::Rig calibrated(rig::Rig rig, const std::vector<double>& gains) {
   for (rig::NamedSet& set : rig.actuation.sets)
@@ -143,6 +157,14 @@ rig::Rig calibrated(rig::Rig rig, const std::vector<double>& gains) {
                                   std::max(channel.maximum, set.weights[e]));
     }
   return rig;
+}
+
+Json physique_json(const fit::Physique& physique) {
+  return {{"tissue_depth", physique.depth},
+          {"stiffness", physique.stiffness},
+          {"peak_shortening_upper_face", physique.shortening[0]},
+          {"peak_shortening_middle_face", physique.shortening[1]},
+          {"peak_shortening_lower_face", physique.shortening[2]}};
 }
 
 Json cases_json(const fit::Calibration& calibration) {
@@ -176,6 +198,13 @@ void say_table(const Common& common, const fit::Calibration& calibration) {
   std::snprintf(line, sizeof line, "all: share %.3f -> %.3f; expressions left out of the calibration %.3f",
                 calibration.before_share, calibration.after_share, calibration.left_out_share);
   common.say(line);
+  const fit::Physique& own = calibration.physique;
+  std::snprintf(
+      line, sizeof line,
+      "times as built: tissue depth %.2f, stiffness %.2f, peak shortening of the upper, middle and lower "
+      "face %.2f, %.2f, %.2f",
+      own.depth, own.stiffness, own.shortening[0], own.shortening[1], own.shortening[2]);
+  common.say(line);
 }
 
 void run(const Common& common, const CalibrateRequest& request) {
@@ -202,9 +231,23 @@ void run(const Common& common, const CalibrateRequest& request) {
                 "': none of its expressions is known: name scans as 'fascia info --names' lists them, such "
                 "as jawOpen.obj");
   common.progress("calibrating by " + std::to_string(cases.size()) + " expressions");
-  const fit::Calibration calibration = fit::calibrate(subject, cases, request.options);
-  const std::vector<uint8_t> out = rig::write(rig::original(rig::glb_source(bytes, request.rig.string())),
-                                              calibrated(subject.file().rig, calibration.gains));
+  RebuiltRig rebuilt(bytes, subject.file());
+  fit::Remake remake;
+  if (request.adjust == "all")
+    remake = [&](const fit::Physique& physique) { return with_physique(subject, physique, rebuilt); };
+  const fit::Calibration calibration = fit::calibrate(subject, cases, request.options, remake);
+  if (!rebuilt.fault().empty()) common.warn("tissue depths stay as they are: " + rebuilt.fault());
+  rig::Rig own = subject.file().rig;
+  if (calibration.physique.depth != 1.0) {
+    common.progress("building with its own tissue depths");
+    const rig::Rig* other = rebuilt.at(calibration.physique.depth, own.tissue.levels.back().name);
+    if (other == nullptr)
+      throw Error("'" + request.rig.string() + "': " + rebuilt.fault() + "; use --adjust gains");
+    own = *other;
+  }
+  const std::vector<uint8_t> out =
+      rig::write(rig::original(rig::glb_source(bytes, request.rig.string())),
+                 calibrated(fit::with_physique(std::move(own), calibration.physique), calibration.gains));
   formats::write_bytes(request.output, out.data(), out.size());
   say_table(common, calibration);
   common.say("wrote " + request.output.string());
@@ -213,6 +256,7 @@ void run(const Common& common, const CalibrateRequest& request) {
                  {"before_share", calibration.before_share},
                  {"after_share", calibration.after_share},
                  {"left_out_share", calibration.left_out_share},
+                 {"physique", physique_json(calibration.physique)},
                  {"gains", gains_json(subject, calibration.gains)},
                  {"expressions", cases_json(calibration)},
                  {"unknown", unknown}});
@@ -223,7 +267,8 @@ void run(const Common& common, const CalibrateRequest& request) {
 void add_calibrate(const Command& tool, Common& common) {
   auto request = std::make_shared<CalibrateRequest>();
   const Command command = tool.command(
-      "calibrate", "Fit a rig's muscles to one person's own expressions: a gain a muscle, left like right");
+      "calibrate",
+      "Fit a rig to one person's own expressions: a gain a muscle, peak shortening, stiffness, tissue depth");
   add_rig_argument(command, request->rig);
   command
       .option("--scans", &request->scans,
@@ -234,6 +279,12 @@ void add_calibrate(const Command& tool, Common& common) {
   command.option("-o,--output", &request->output, "Rig to write (.glb)").required();
   command.option("--level", &request->level, "Level of detail to calibrate at")
       .one_of({"low", "medium", "high"});
+  command
+      .option("--adjust", &request->adjust,
+              "What is found: gains of muscles alone, or the depth and stiffness of tissue and peak "
+              "shortening by thirds "
+              "of the face as well")
+      .one_of({"all", "gains"});
   command
       .option("--prior", &request->options.prior,
               "What a gain away from 1 costs, in shares of the expressions' squared motion")

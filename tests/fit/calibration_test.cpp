@@ -67,6 +67,63 @@ TEST_F(Calibrate, FindsStrengthsAndHeldOutExpressionsImprove) {
       << "each expression is judged by gains found from the others";
 }
 
+TEST_F(Calibrate, APhysiqueChangesWhatItSaysAndNothingElse) {
+  const rig::Rig& own = subject->file().rig;
+  const rig::Rig other = with_physique(own, {1.0, 0.8, {1.3, 1.0, 0.7}});
+  const rig::TissueLevel &before = own.tissue.levels[0], &after = other.tissue.levels[0];
+  EXPECT_FLOAT_EQ(after.spring_stiffness[5], 0.8F * before.spring_stiffness[5]);
+  EXPECT_FLOAT_EQ(after.skin_membrane[5], 0.8F * before.skin_membrane[5]);
+  EXPECT_EQ(after.fibre_strength, before.fibre_strength);
+  EXPECT_EQ(after.rest, before.rest);
+  std::map<std::string, float> ratio;
+  for (size_t m = 0; m < own.muscles.size(); ++m)
+    ratio[own.muscles[m].name] = other.muscles[m].peak_shortening / own.muscles[m].peak_shortening;
+  EXPECT_FLOAT_EQ(ratio.at("frontalis_medial_left"), 1.3F);
+  EXPECT_FLOAT_EQ(ratio.at("orbicularis_oculi_orbital_lower_left"), 1.0F);
+  EXPECT_FLOAT_EQ(ratio.at("mentalis_right"), 0.7F);
+  for (size_t f = 0; f < before.fibre_shortest.size(); ++f) {
+    if (own.muscles[before.fibre_muscle[f]].name == "mentalis_right") {
+      EXPECT_NEAR(1.0F - after.fibre_shortest[f], 0.7F * (1.0F - before.fibre_shortest[f]), 1e-5F);
+    }
+  }
+  for (const rig::Muscle& muscle : with_physique(own, {1.0, 1.0, {9.0, 9.0, 9.0}}).muscles)
+    EXPECT_LE(muscle.peak_shortening, 0.5F);
+}
+
+/// Muscles of the lower face that shorten more, in softer tissue: gains alone explain less of it than a
+/// physique does.
+TEST_F(Calibrate, APhysiqueIsFoundAndServesExpressionsLeftOut) {
+  const Remake remake = [](const Physique& physique) -> std::unique_ptr<Subject> {
+    if (physique.depth != 1.0) return nullptr;
+    rig::RigFile file = subject->file();
+    file.rig = with_physique(std::move(file.rig), physique);
+    return std::make_unique<Subject>(std::move(file), "low");
+  };
+  const std::unique_ptr<Subject> person = remake({1.0, 0.75, {1.0, 1.0, 1.35}});
+  std::vector<CalibrationCase> cases;
+  for (const auto& [name, set] :
+       {std::pair<std::string, Named>{
+            "smile", {{"zygomaticus_major_superior_left", 0.9F}, {"zygomaticus_major_superior_right", 0.9F}}},
+        {"frown", {{"depressor_anguli_oris_left", 0.9F}, {"depressor_anguli_oris_right", 0.9F}}},
+        {"chin", {{"mentalis_left", 0.9F}, {"mentalis_right", 0.9F}}},
+        {"half a smile",
+         {{"zygomaticus_major_superior_left", 0.4F}, {"zygomaticus_major_superior_right", 0.4F}}},
+        {"brows", {{"frontalis_medial_left", 0.9F}, {"frontalis_medial_right", 0.9F}}}}) {
+    person->pose(values_of(set), false);
+    cases.push_back(
+        {name,
+         {person->displacements(values_of(set)), std::vector<double>(subject->vertex_count(), 1.0)},
+         values_of(set)});
+  }
+  const Calibration gains = calibrate(*subject, cases), all = calibrate(*subject, cases, {}, remake);
+  EXPECT_EQ(gains.physique, Physique());
+  EXPECT_LT(all.physique.stiffness, 0.95);
+  EXPECT_EQ(all.physique.depth, 1.0) << "another depth cannot be made here";
+  EXPECT_GT(all.after_share, gains.after_share);
+  EXPECT_LT(1.0 - all.left_out_share, 0.9 * (1.0 - gains.left_out_share));
+  EXPECT_DOUBLE_EQ(all.before_share, gains.before_share);
+}
+
 TEST_F(Calibrate, TheTablesOwnPersonStaysAsTheyAre) {
   const Named smile = {{"zygomaticus_major_superior_left", 0.6F}, {"zygomaticus_major_superior_right", 0.6F}};
   const Calibration found = calibrate(*subject, {seen("smile", smile, {})});
@@ -96,9 +153,44 @@ TEST_F(Calibrate, TheToolWritesARigWithTablesOfItsOwn) {
   EXPECT_NE(before.rig.actuation.sets[0].weights, after.rig.actuation.sets[0].weights);
   EXPECT_EQ(before.primitives.size(), after.primitives.size());
 
+  EXPECT_TRUE(report["physique"].contains("tissue_depth"));
+
   fs::create_directories(*folder / "nothing");
   EXPECT_EQ(run("calibrate " + at("rig.glb") + " --scans " + at("nothing") + " -o " + at("x.glb")).code, 1);
   EXPECT_FALSE(fs::exists(at("x.glb")));
+}
+
+/// The same skin over a skull that lies deeper.
+TEST_F(Calibrate, TheToolFindsTheDepthOfTheTissue) {
+  fs::create_directories(*folder / "deep");
+  ASSERT_EQ(run("build " + at("head.obj") + " --landmarks " + at("landmarks.json") +
+                " --detail low --tissue-scale 1.3 -o " + at("deep.glb") + " --quiet")
+                .code,
+            0);
+  for (const std::string name : {"mouthSmileLeft", "mouthFrownRight", "browInnerUp", "noseSneerLeft"})
+    ASSERT_EQ(run("pose " + at("deep.glb") + " --set arkit:" + name + "=1 --level low -o " +
+                  at("deep/" + name + ".obj") + " --quiet")
+                  .code,
+              0);
+  const auto calibrated = [&](const std::string& adjust) {
+    const cli::Outcome done = run("calibrate " + at("rig.glb") + " --scans " + at("deep") + " -o " +
+                                  at("own_depth.glb") + " --adjust " + adjust + " --json");
+    EXPECT_EQ(done.code, 0) << done.err;
+    return json::parse(done.out);
+  };
+  const json gains = calibrated("gains"), all = calibrated("all");
+  EXPECT_EQ(gains["physique"]["tissue_depth"], 1.0);
+  EXPECT_GT(all["physique"]["tissue_depth"], 1.05);
+  EXPECT_GE(all["after_share"], gains["after_share"]);
+  EXPECT_EQ(run("info " + at("own_depth.glb") + " --validate --quiet").code, 0);
+  const auto thickness = [](const rig::RigFile& file) {
+    double sum = 0.0;
+    for (const rig::Landmark& landmark : file.rig.skull.landmarks)
+      sum += static_cast<double>(landmark.depth);
+    return sum;
+  };
+  EXPECT_GT(thickness(rig::read(formats::read_bytes(at("own_depth.glb")))),
+            1.03 * thickness(rig::read(formats::read_bytes(at("rig.glb")))));
 }
 
 }  // namespace

@@ -31,7 +31,9 @@ check_head() {  # head file, local|world: everything that can be made from it; 1
     "$fascia" pose "$out/rig.glb" --set arkit:jawOpen=1 -o "$out/pose.glb" --quiet &&
     "$fascia" pose "$out/rig.glb" --set arkit:jawOpen=1 -o "$out/pose.ply" --quiet &&
     "$fascia" export "$out/rig.glb" --part all -o "$out/all.glb" --quiet; } || return 1
-  (cd "$work" && node validate.mjs out/rig.glb out/play.glb out/arkit.glb out/pose.glb out/all.glb) || return 1
+  local of=()
+  case "$head" in *.glb | *.vrm) of=(--of "$(realpath "$head")") ;; esac
+  (cd "$work" && node validate.mjs "${of[@]}" out/rig.glb out/play.glb out/arkit.glb out/pose.glb out/all.glb) || return 1
   (cd "$work/three" && node load.mjs ../out/pose.glb - ../out/pose.ply "$space" &&
     node load.mjs ../out/arkit.glb jawOpen ../out/pose.ply "$space" &&
     node load.mjs ../out/play.glb && node load.mjs ../out/rig.glb && node load.mjs ../out/all.glb) || return 1
