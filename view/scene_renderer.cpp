@@ -37,6 +37,52 @@ double usual_roughness(const DrawSurface& surface) {
   }
 }
 
+/// A rectangle of a picture, pixels from its lower left corner.
+struct Rectangle {
+  int x = 0, y = 0, width = 0, height = 0;
+};
+
+/// What surfaces and lines may cover, with a margin for the width of lines; all of the picture where
+/// something lies behind the camera.
+Rectangle covered(const Shot& shot) {
+  const Mat4 to_clip = clip_matrix(shot.camera, shot.aspect()) * eye_matrix(shot.camera);
+  Eigen::Vector2d least(1, 1), most(-1, -1);
+  bool is_behind = false;
+  const auto add = [&](const std::vector<Vec3>& points) {
+    for (const Vec3& p : points) {
+      const Eigen::Vector4d c = to_clip * p.homogeneous();
+      if (!(c[3] > 1e-6)) is_behind = true;
+      const Eigen::Vector2d at = c.head<2>() / c[3];
+      least = least.cwiseMin(at);
+      most = most.cwiseMax(at);
+    }
+  };
+  for (const DrawSurface& surface : shot.list.surfaces)
+    add(surface.positions);
+  for (const DrawLines& bundle : shot.list.lines)
+    for (const std::vector<Vec3>& line : bundle.lines)
+      add(line);
+  if (is_behind || !least.allFinite() || !most.allFinite()) return {0, 0, shot.width, shot.height};
+  const Eigen::Vector2d size(shot.width, shot.height), margin(8, 8);
+  const Eigen::Vector2i from = ((0.5 * (least.array() + 1.0) * size.array()).matrix() - margin)
+                                   .cwiseMax(0.0)
+                                   .cwiseMin(size)
+                                   .cast<int>(),
+                        to = ((0.5 * (most.array() + 1.0) * size.array()).matrix() + margin)
+                                 .cwiseMax(0.0)
+                                 .cwiseMin(size)
+                                 .cast<int>();
+  return {from[0], from[1], std::max(0, to[0] - from[0]), std::max(0, to[1] - from[1])};
+}
+
+/// Keeps what is drawn inside `at`, times `scale`, until the next call or the end of the picture.
+void keep_inside(const Rectangle& at, double scale, int x, int y) {
+  const auto up = [&](int length) { return static_cast<int>(std::ceil(length * scale)); };
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(x + static_cast<int>(at.x * scale), y + static_cast<int>(at.y * scale), up(at.width) + 1,
+            up(at.height) + 1);
+}
+
 }  // namespace
 
 struct SceneRenderer::State {
@@ -48,6 +94,7 @@ struct SceneRenderer::State {
   LightPasses light_passes;
   Screen screen;
   std::unique_ptr<Canvas> drawn;  // several samples a pixel
+  Canvas behind{GL_RGBA8, Canvas::Depth::none, 0};
   Canvas enlarged{GL_RGBA8, Canvas::Depth::buffer, 0, GL_LINEAR};
   Canvas resolved{GL_RGBA8, Canvas::Depth::none, 0}, gathered{GL_RGBA16F, Canvas::Depth::none, 0};
   std::vector<std::unique_ptr<VertexBuffers>> surface_buffers, line_buffers;
@@ -68,6 +115,8 @@ struct SceneRenderer::State {
   void draw_backdrop(const Shot& shot);
   void resolve(int width, int height);
   void gather(int width, int height, double share);
+  void draw_behind(const Shot& shot);
+  void copy_to(const Target& target, GLuint picture, const Shot& shot);
   GLuint draw_enlarged(const Shot& shot);
   GLuint draw_multisampled(const Shot& shot);
 };
@@ -260,6 +309,29 @@ void SceneRenderer::State::gather(int width, int height, double share) {
   glDisable(GL_BLEND);
 }
 
+/// The picture without its surfaces.
+void SceneRenderer::State::draw_behind(const Shot& shot) {
+  const Colour& colour = shot.look.background;
+  behind.bind(shot.width, shot.height);
+  glClearColor(colour[0] / 255.0F, colour[1] / 255.0F, colour[2] / 255.0F, 1.0F);
+  glClear(GL_COLOR_BUFFER_BIT);
+  if (shot.look.has_backdrop) draw_backdrop(shot);
+}
+
+/// Puts a finished picture into the target, scaled down where it is larger.
+void SceneRenderer::State::copy_to(const Target& target, GLuint picture, const Shot& shot) {
+  glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
+  glViewport(target.x, target.y, shot.width, shot.height);
+  copy.use();
+  copy.set("grain", shot.look.has_backdrop ? 1.0 : 0.0);
+  copy.set("picture", 0);
+  const float spread = picture == enlarged.colour() && shot.enlargement > 1.0 ? 0.25F : 0.0F;
+  glUniform2f(copy.place("spread"), spread / static_cast<float>(shot.width),
+              spread / static_cast<float>(shot.height));
+  bind_texture(0, GL_TEXTURE_2D, picture);
+  screen.draw();
+}
+
 /// One sample a pixel of a picture as large as asked for, or larger; the texture it is in.
 GLuint SceneRenderer::State::draw_enlarged(const Shot& shot) {
   enlarged.bind(static_cast<int>(std::lround(shot.width * shot.enlargement)),
@@ -304,17 +376,15 @@ void SceneRenderer::draw(const DrawList& list, const Camera& camera, const Targe
   const Shot shot{list, s.surface_buffers, s.room, camera, look, width, height, enlargement};
   s.light_passes.draw(shot, s.textures);
 
+  // What no surface covers needs no more than one sample.
+  const Rectangle inside = covered(shot);
+  s.draw_behind(shot);
+  s.copy_to(target, s.behind.colour(), shot);
+  keep_inside(inside, enlargement, 0, 0);
   const GLuint picture = look.samples < 4 ? s.draw_enlarged(shot) : s.draw_multisampled(shot);
-  glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
-  glViewport(target.x, target.y, width, height);
-  s.copy.use();
-  s.copy.set("grain", look.has_backdrop ? 1.0 : 0.0);
-  s.copy.set("picture", 0);
-  const float spread = enlargement > 1.0 ? 0.25F : 0.0F;
-  glUniform2f(s.copy.place("spread"), spread / static_cast<float>(width),
-              spread / static_cast<float>(height));
-  bind_texture(0, GL_TEXTURE_2D, picture);
-  s.screen.draw();
+  keep_inside(inside, 1.0, target.x, target.y);
+  s.copy_to(target, picture, shot);
+  glDisable(GL_SCISSOR_TEST);
   glDisable(GL_CULL_FACE);
 }
 

@@ -167,6 +167,23 @@ TEST(Scene, AMouthMirrorsNoRoomThatItsLipsHide) {
   EXPECT_LT(hidden, 0.8 * open);
 }
 
+TEST(Scene, AWallThatReachesBehindTheCameraFillsThePicture) {
+  DrawSurface wall = square(0, 2.0);
+  for (Vec3& p : wall.positions)
+    p = Eigen::AngleAxisd(1.2, Vec3::UnitX()) * p;
+  wall.colour = Vec3(1, 1, 1);
+  DrawList list;
+  list.surfaces = {wall};
+  for (const int samples : {2, 8}) {
+    Look look;
+    look.background = {0, 0, 0};
+    look.samples = samples;
+    const Image image = renderer().draw_with(list, near_camera(), look);
+    for (const int x : {0, size - 1})
+      EXPECT_GT(brightness(image, x, size - 1), 100) << samples;
+  }
+}
+
 TEST(Scene, TwoSamplesSmoothEdgesAsEightDo) {
   DrawList list;
   list.surfaces = {sphere(0.07, Shading::plain)};
