@@ -51,6 +51,14 @@ double usual_rate(double rate) {
   return std::max(1.0, std::round(rate));
 }
 
+/// The same from the frames numbered between two seconds of which the later begins a minute: two or four less
+/// where numbers are dropped.
+double rate_by_minute(double rate) {
+  if (std::abs(rate - 28.0) < 0.5) return 30.0;
+  if (std::abs(rate - 56.0) < 0.5) return 60.0;
+  return usual_rate(rate);
+}
+
 }  // namespace
 
 std::optional<Timecode> timecode(std::string_view text) {
@@ -82,10 +90,12 @@ TimecodeTimes timecode_times(const std::vector<Timecode>& codes, double given) {
     nominal = std::round(given);
   } else if (!seen.rates.empty()) {
     nominal = std::max(usual_rate(median(seen.rates)), least);
+  } else if (!seen.drop_rates.empty()) {
+    nominal = std::max(rate_by_minute(median(seen.drop_rates)), least);
   } else if (least > 60.0) {
     nominal = usual_rate(least);
   }
-  result.rate_is_known = given > 0.0 || !seen.rates.empty();
+  result.rate_is_known = given > 0.0 || !seen.rates.empty() || !seen.drop_rates.empty();
   const bool can_drop = nominal == 30.0 || nominal == 60.0;
   const double dropped = nominal == 60.0 ? 4.0 : 2.0;
   result.is_drop_frame = !codes.empty() && codes[0].marks_drop_frame && can_drop;

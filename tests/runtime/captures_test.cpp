@@ -201,6 +201,14 @@ TEST(Timecodes, DroppedFramesAreCounted) {
       EXPECT_NEAR(curves.duration(), (90.0 * rate - 1) * 1.001 / rate, 1e-6) << rate << mark;
       EXPECT_TRUE(has_note(curves, "dropped frames"));
     }
+  // Ten frames about the beginning of a minute tell the rate too.
+  for (const int rate : {30, 60})
+    for (const int dropped : {0, rate / 15}) {
+      const Curves curves = read(live_link(rate, 60 * rate - 5, 10, 1, ':', dropped));
+      EXPECT_NEAR(curves.frames_per_second, dropped > 0 ? rate / 1.001 : rate, 1e-9) << dropped;
+      EXPECT_NEAR(curves.duration(), 9.0 / curves.frames_per_second, 1e-6) << rate << dropped;
+      EXPECT_FALSE(has_note(curves, "nothing in the take shows"));
+    }
   // 10 minutes of drop-frame code are 10 minutes: 00:10:00;00 is frame 17,982 (SMPTE ST 12-1).
   const TimecodeTimes times = timecode_times({*timecode("00:00:00;00"), *timecode("00:10:00;00")}, 29.97);
   EXPECT_NEAR(times.seconds[1], 17982 * 1001.0 / 30000, 1e-9);
