@@ -29,6 +29,7 @@ ffmpeg -y -loglevel error -i "$work/1.png" -i "$work/2.png" -i "$work/3.png" -i 
 draw "$folder/smile.png" --size 600x720 --camera 0,0,1.22 --view front,three-quarter --beside-rest "${smile[@]}"
 draw "$folder/strain.png" --size 720 --layers strain,eyes "${smile[@]}"
 draw "$folder/smas.png" --size 900 --layers smas,skull --view three-quarter
+"$fascia" face anatomy/data/skull.obj -o "$work/face.glb" --sheet "$folder/reconstruction.png" --quiet
 # The window, where there is something like a display.
 if command -v xvfb-run >/dev/null; then
   cat >"$work/window.txt" <<'STEPS'
