@@ -155,17 +155,28 @@ void warn_of_extensions(Scene& scene, const gltf::Json& root) {
                                ", which is not known here: the head may look other than it is read");
 }
 
+/// glTF's major versions are other formats, in which the same names mean other things.
+void check_version(const Scene& scene, const gltf::Json& root) {
+  const auto asset = root.is_object() ? root.find("asset") : root.end();
+  if (!root.is_object() || asset == root.end()) fail(scene, "it is JSON, but not glTF: 'asset' is missing");
+  const gltf::Json version =
+      asset->is_object() ? asset->value("version", gltf::Json("2.0")) : gltf::Json("2.0");
+  const std::string text = version.is_string() ? version.get<std::string>() : version.dump();
+  if (text.rfind("2.", 0) != 0 && text != "2")
+    fail(scene, "it is glTF " + text + ", and 2.0 is read: export it as glTF 2.0");
+}
+
 void read_document(Scene& scene, const std::vector<uint8_t>& bytes, const ReadOptions& options) {
   const std::string name = "'" + scene.path.string() + "'";
   gltf::Document document = gltf::is_glb(bytes) ? gltf::glb_document(bytes, name)
                                                 : gltf::Document{{bytes.begin(), bytes.end()}, {}};
+  check_version(scene, gltf::parsed(document.json, name));
   const auto resolve = [&](const std::string& relative) -> gltf::OutsideFile {
     FileBeside file = read_beside(scene.path, relative, options.allow_outside);
     return {std::move(file.bytes), std::move(file.why)};
   };
   scene.document = gltf::self_contained(std::move(document), resolve, name, &scene.warnings);
   gltf::Json root = gltf::parsed(scene.document.json, name);
-  if (!root.contains("asset")) fail(scene, "it is JSON, but not glTF: 'asset' is missing");
   warn_of_extensions(scene, root);
   if (const size_t added = gltf::separate_instances(root)) {
     scene.document.json = gltf::text_of(root);

@@ -243,6 +243,19 @@ std::string gltf_with(const std::string& nodes) {
   "buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})";
 }
 
+TEST(ReadGltf, OtherMajorVersionsAreRefusedByTheirNumber) {
+  const auto with_version = [](const std::string& version) {
+    std::string text = gltf_with(R"([{"mesh":0}])");
+    return text.replace(text.find(R"("2.0")"), 5, version);
+  };
+  EXPECT_NE(message_of("three.gltf", with_version(R"("3.0")")).find("it is glTF 3.0"), std::string::npos);
+  EXPECT_EQ(read("later.gltf", bytes_of(with_version(R"("2.1")"))).meshes.size(), 1u);
+  EXPECT_NE(message_of("one.gltf", R"({"asset":{"version":"1.0"},"meshes":{"m":{}},"buffers":{"b":{}}})")
+                .find("export it as glTF 2.0"),
+            std::string::npos);
+  EXPECT_NE(message_of("none.gltf", R"({"meshes":[]})").find("'asset' is missing"), std::string::npos);
+}
+
 TEST(ReadGltf, AppliesNodeTransformsInOrder) {
   const Scene scene = read(
       "tree.gltf",
