@@ -82,8 +82,12 @@ double quantile(std::vector<double> values, double share) {
 view::DrawList coloured(const cli::Face& face, const rig::Rig& rig, const Compared& compared) {
   view::DrawList list = cli::draw_face(face, rig, cli::layers_from("skin"));
   for (view::DrawSurface& surface : list.surfaces)
-    for (const auto& colours : compared.colours)
-      if (colours.size() == surface.positions.size() && !colours.empty()) surface.vertex_colours = colours;
+    for (const auto& colours : compared.colours) {
+      if (colours.size() != surface.positions.size() || colours.empty()) continue;
+      surface.vertex_colours = colours;
+      surface.shading = view::Shading::data;
+      surface.colour_map = surface.normal_map = surface.surface_map = nullptr;
+    }
   return list;
 }
 

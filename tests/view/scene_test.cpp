@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "geometry/error.h"
+#include "gltf/read/container.h"
 #include "view/environment.h"
 #include "view/face/appearance.h"
 #include "view/face/fibre_tubes.h"
@@ -286,6 +287,24 @@ TEST(HeatMap, StrainOfAStretchIsItsAreaLessOne) {
   EXPECT_GT(heat_colour(scale, -1)[2], heat_colour(scale, -1)[0]);
   EXPECT_EQ(heat_colour(scale, 7), heat_colour(scale, 1));
   EXPECT_TRUE(heat_colour(scale, NAN).allFinite());
+}
+
+/// The look of one triangle whose material has `colour` (linear) and no map.
+PrimitiveLook look_of_material(const std::string& colour) {
+  const std::string json =
+      R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],)"
+      R"("buffers":[{"byteLength":36}],"bufferViews":[{"buffer":0,"byteLength":36}],)"
+      R"("accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[0,0,0]}],)"
+      R"("materials":[{"pbrMetallicRoughness":{"baseColorFactor":)" +
+      colour + R"(}}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}]})";
+  const std::vector<uint8_t> bytes = gltf::glb_bytes(json, std::vector<uint8_t>(36, 0));
+  return Appearance::read(bytes, "triangle.glb").of(0, 0);
+}
+
+TEST(Appearance, GreyIsNoColourThatAnyoneChose) {
+  EXPECT_FALSE(look_of_material("[1,1,1,1]").has_material);
+  EXPECT_FALSE(look_of_material("[0.6,0.6,0.6,1]").has_material);
+  EXPECT_TRUE(look_of_material("[0.6,0.4,0.3,1]").has_material);
 }
 
 TEST(Lattice, FatLiesBetweenSkinAndSmas) {

@@ -112,7 +112,8 @@ class Reader {
     if (material.alphaMode == "MASK") look.alpha_cutoff = material.alphaCutoff;
     if (material.alphaMode == "BLEND") look.is_blended = true;
     if (!look.is_blended) look.opacity = 1.0;
-    look.has_material = look.colour_map || (look.colour - Vec3::Ones()).norm() > 1e-3;
+    // White and grey are what exporters write where nobody chose a colour.
+    look.has_material = look.colour_map || look.colour.maxCoeff() - look.colour.minCoeff() > 0.02;
     return base;
   }
 

@@ -22,7 +22,7 @@ struct PrimitiveLook {
   Vec3 glow = Vec3::Zero();
   double alpha_cutoff = -1.0;
   bool is_blended = false, is_two_sided = false;
-  bool has_material = false;  ///< whether the file gives one with any colour or map of its own
+  bool has_material = false;  ///< whether the file gives one with a colour map or a colour that is no grey
   std::shared_ptr<const Texture> colour_map, normal_map, surface_map;
 };
 
