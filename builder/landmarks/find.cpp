@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "builder/landmarks/lid_opening.h"
+#include "builder/landmarks/lip_opening.h"
 
 namespace fascia::landmarks {
 
@@ -166,6 +167,41 @@ std::vector<std::pair<std::string, Vec3>> lid_landmarks(const GenericFace& face,
   return found;
 }
 
+/// The mouth's corners where this head's lips part, if that is elsewhere than where the fit has them, as in
+/// drawn faces with a mouth narrower or wider than people's. Near there the fit knows better: corners are
+/// flat, and where exactly the skin begins to go on is a matter of modelling.
+std::map<std::string, Vec3> lip_landmarks(const GenericFace& face, const anatomy::GenericAnatomy& anatomy,
+                                          const Registration& fit, const spatial::SurfaceQuery& skin) {
+  constexpr double known = 0.11;     // of the mouth's width: nearer to the fit, the fit stands
+  constexpr double lopsided = 0.05;  // of the mouth's width: how far its middle may lie beside the fit's
+  const Vec3 left = *anatomy.landmark("cheilion_left")->skin,
+             right = *anatomy.landmark("cheilion_right")->skin;
+  const auto there =
+      lip_opening(spatial::SurfaceQuery(face.skin), {left, right, Vec3::UnitZ(), Vec3::UnitY()});
+  if (!there) return {};
+  const Mat3& turn = fit.placement.rotation;
+  Vec3 on_left = fit(left), on_right = fit(right);
+  // How near to its end an opening is seen goes with the width that is looked for.
+  double change = 1.0;
+  for (int round = 0; round < 4; ++round) {
+    const double before = (on_left - on_right).norm();
+    const auto here = lip_opening(skin, {on_left, on_right, turn * Vec3::UnitZ(), turn * Vec3::UnitY()});
+    if (!here) return {};
+    const double scale = before / (left - right).norm();
+    on_left = here->left + scale * (turn * (left - there->left));
+    on_right = here->right + scale * (turn * (right - there->right));
+    change = std::abs((on_left - on_right).norm() / before - 1.0);
+  }
+  if (change > 0.15) return {};  // folds and gaps, no opening with two ends
+  const Vec3 middle = 0.5 * (on_left + on_right - fit(left) - fit(right));
+  const double width = (fit(left) - fit(right)).norm();
+  if (std::abs(middle.dot((fit(left) - fit(right)) / width)) > lopsided * width)
+    return {};  // a hole beside it
+  const double off = 0.5 * ((on_left - fit(left)).norm() + (on_right - fit(right)).norm());
+  if (off < known * width) return {};
+  return {{"cheilion_left", on_left}, {"cheilion_right", on_right}};
+}
+
 std::vector<Anchor> anchors_of(const std::map<std::string, Vec3>& points,
                                const anatomy::GenericAnatomy& anatomy, double weight) {
   std::vector<Anchor> anchors;
@@ -222,9 +258,16 @@ FoundFace find(const GenericFace& face, const anatomy::GenericAnatomy& anatomy,
     for (const auto& [name, p] :
          lid_landmarks(face, anatomy, found.fit, left, left ? lids.left : lids.right, lids.are_far))
       if (!known.count(name)) seen[name] = p;
+  const bool has_mouth_by_hand = known.count("cheilion_left") || known.count("cheilion_right");
+  const Vec3 fitted_corner = found.fit(*anatomy.landmark("cheilion_left")->skin);
+  const std::map<std::string, Vec3> corners =
+      has_mouth_by_hand ? std::map<std::string, Vec3>() : lip_landmarks(face, anatomy, found.fit, skin);
+  seen.insert(corners.begin(), corners.end());
   for (const Anchor& anchor : anchors_of(seen, anatomy, 20.0))
     anchors.push_back(anchor);
-  if (lids.are_far) found.fit = register_face(face, samples, placement, anchors, first);
+  const bool are_corners_far =
+      !corners.empty() && (corners.at("cheilion_left") - fitted_corner).norm() > far_off * placement.scale;
+  if (lids.are_far || are_corners_far) found.fit = register_face(face, samples, placement, anchors, first);
   RegistrationOptions second;
   second.stages = {{0.03, 2, 1}, {0.01, 1, 1}, {0.004, 1, 1}};
   second.reach = 0.01;

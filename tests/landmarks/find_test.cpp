@@ -6,6 +6,7 @@
 
 #include "builder/landmarks/find.h"
 #include "builder/landmarks/lid_opening.h"
+#include "builder/landmarks/lip_opening.h"
 #include "builder/landmarks/spheres.h"
 #include "builder/rigging/find_landmarks.h"
 #include "geometry/error.h"
@@ -144,6 +145,27 @@ TEST(LidOpening, IsSeenWhereTheLidsAreOpenAndNowhereElse) {
   for (Vec3* p : {&cheek.outer, &cheek.inner, &cheek.ball.centre})
     (*p)[1] -= 0.03;
   EXPECT_FALSE(lid_opening(skin, cheek).has_value());
+}
+
+TEST(LipOpening, EndsAtTheCornersWhateverWidthIsLookedFor) {
+  const Vec3 left = *generic_anatomy().landmark("cheilion_left")->skin,
+             right = *generic_anatomy().landmark("cheilion_right")->skin, middle = 0.5 * (left + right);
+  const spatial::SurfaceQuery skin(face().skin);
+  const auto seen = [&](double growth, const Vec3& shift) {
+    return lip_opening(skin, {middle + growth * (left - middle) + shift,
+                              middle + growth * (right - middle) + shift, Vec3::UnitZ(), Vec3::UnitY()});
+  };
+  for (const double growth : {0.8, 1.0, 1.6}) {
+    const auto open = seen(growth, Vec3::Zero());
+    ASSERT_TRUE(open.has_value()) << growth;
+    // A way around the corner of less than three tenths of the width looked for is no opening yet.
+    const double unseen = 0.15 * growth * (left - right).norm();
+    EXPECT_NEAR(open->left.x(), left.x() - unseen, 0.004) << growth;
+    EXPECT_NEAR(open->right.x(), right.x() + unseen, 0.004) << growth;
+    EXPECT_NEAR(open->left.y(), left.y(), 0.004) << growth;
+  }
+  EXPECT_FALSE(seen(1.0, Vec3(0.0, -0.03, 0.0)).has_value()) << "the chin";
+  EXPECT_FALSE(seen(1.0, Vec3(0.0, 0.09, 0.0)).has_value()) << "the forehead";
 }
 
 TEST(FindLandmarks, OnTheEmbeddedHeadInAnyPoseAndUnit) {
