@@ -1,6 +1,7 @@
 #include "cli/calibrate_depth.h"
 
 #include <cmath>
+#include <cstdlib>
 
 #include "cli/rig_build.h"
 #include "formats/files.h"
