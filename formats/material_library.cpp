@@ -125,7 +125,12 @@ MaterialLibrary read_materials(const Scene& scene, const ReadOptions& options) {
   PictureReader pictures(scene, options, library.warnings);
   for (const std::string& name : found.libraries) {
     const FileBeside file = read_beside(scene.path, name, options.allow_outside);
-    if (!file.bytes) continue;  // many a head comes without
+    if (!file.bytes) {
+      // Many a head comes without; one that is there and not opened is another matter.
+      if (file.why.starts_with("lies outside"))
+        library.warnings.push_back("material library '" + gltf::as_utf8(name) + "' is left out: " + file.why);
+      continue;
+    }
     std::istringstream text(std::string(file.bytes->begin(), file.bytes->end()));
     std::map<std::string, int> ignored;
     std::vector<tinyobj::material_t> read;

@@ -62,6 +62,17 @@ TEST_F(Materials, OfOtherKindsAndOutsideTheFolderAreLeftOutWithAWarning) {
     EXPECT_FALSE(material.colour_map);
 }
 
+TEST_F(Materials, ALibraryOutsideTheFolderIsNotOpenedAndSaid) {
+  fs::create_directories(folder_ / "head");
+  put("looks.mtl", "newmtl rosy\nKd 1 0 0\n");
+  put("head/head.obj", "mtllib ../looks.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl rosy\nf 1 2 3\n");
+  const MaterialLibrary found = read_materials(read(folder_ / "head" / "head.obj"));
+  EXPECT_TRUE(found.materials.empty());
+  ASSERT_EQ(found.warnings.size(), 1u);
+  EXPECT_NE(found.warnings[0].find("'../looks.mtl' is left out: lies outside"), std::string::npos)
+      << found.warnings[0];
+}
+
 TEST_F(Materials, ThatAreNotThereLeaveMeshesWithoutOne) {
   put("head.obj", two_objects);
   const MaterialLibrary found = library();
