@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <string_view>
+#include <utility>
 
 #include "builder/spatial/surface_query.h"
 #include "geometry/alignment.h"
@@ -90,6 +92,44 @@ Mat4 compose(double scale, const Mat3& rotation) {
   return map;
 }
 
+/// The name of the other side's landmark; the same for one of the midline.
+std::string of_other_side(const std::string& name) {
+  for (const auto& [side, other] : {std::pair{"_left", "_right"}, {"_right", "_left"}})
+    if (const size_t length = std::string_view(side).size();
+        name.size() > length && name.compare(name.size() - length, length, side) == 0)
+      return name.substr(0, name.size() - length) + other;
+  return name;
+}
+
+/// Root mean square of what the best similarity from `from` to `to` leaves, in units of `to`.
+double left_over(const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
+  const Mat4 map = similarity(from, to);
+  double sum = 0.0;
+  for (size_t i = 0; i < from.size(); ++i)
+    sum += (transform_point(map, from[i]) - to[i]).squaredNorm();
+  return std::sqrt(sum / static_cast<double>(from.size()));
+}
+
+/// Landmarks that fit no head as they are named, and one when left is called right: nothing built on them
+/// would be where it belongs. `reference` in metres.
+void refuse_exchanged_sides(const std::string& file, const std::map<std::string, Vec3>& given,
+                            const std::map<std::string, Vec3>& reference) {
+  constexpr double too_far = 0.012, much_better = 0.5;  // metres; share
+  std::vector<Vec3> here, named, exchanged;
+  for (const auto& [name, p] : given) {
+    const auto own = reference.find(name), other = reference.find(of_other_side(name));
+    if (own == reference.end() || other == reference.end()) continue;
+    here.push_back(p);
+    named.push_back(own->second);
+    exchanged.push_back(other->second);
+  }
+  if (here.size() < 6) return;
+  const double as_named = left_over(here, named);
+  if (as_named > too_far && left_over(here, exchanged) < much_better * as_named)
+    throw Error("'" + file +
+                "': the landmarks call left what is right: left is the subject's own; exchange the sides");
+}
+
 Frame from_landmarks(const formats::Scene& scene, const formats::LandmarkFile& given,
                      const std::map<std::string, Vec3>& reference, const PrepareOptions& options) {
   Frame frame;
@@ -104,6 +144,7 @@ Frame from_landmarks(const formats::Scene& scene, const formats::LandmarkFile& g
     throw Error(
         "'" + scene.path.string() + "': " + std::to_string(here.size()) +
         " landmarks with known names do not fix size and facing; give at least three that are not in a line");
+  refuse_exchanged_sides(scene.path.string(), frame.landmarks, reference);
   const Similarity fit = procrustes(here, generic);
   const double metres =
       options.units == "auto" ? snapped_unit(fit.scale, frame.warnings) : declared_metres(options.units);

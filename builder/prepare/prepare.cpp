@@ -6,6 +6,7 @@
 #include "geometry/connectivity.h"
 #include "geometry/error.h"
 #include "geometry/flaps.h"
+#include "geometry/nearest_names.h"
 #include "geometry/slivers.h"
 
 namespace fascia::prepare {
@@ -16,16 +17,26 @@ namespace {
 std::map<std::string, Vec3> onto_skin(const formats::Scene& scene, const spatial::SurfaceQuery& surface,
                                       const std::map<std::string, Vec3>& landmarks,
                                       const std::set<std::string>& rough,
+                                      const std::map<std::string, Vec3>& reference,
                                       std::vector<std::string>& warnings) {
   std::map<std::string, Vec3> projected;
+  std::vector<std::string> names;
+  for (const auto& [name, p] : reference)
+    names.push_back(name);
   for (const auto& [name, p] : landmarks) {
     const spatial::ClosestPoint hit = surface.nearest_place(p);
     projected[name] = hit.position;
     if (rough.count(name)) continue;
     const double off_mm = 1e3 * hit.distance;
+    if (!reference.count(name))
+      if (const std::string meant = did_you_mean(name, names); !meant.empty())
+        warnings.push_back("landmark '" + name + "' is not a name that is known here" + meant);
     const std::string where = "landmark '" + name + "' lies " +
                               std::to_string(static_cast<int>(off_mm + 0.5)) + " mm from the skin of '" +
                               scene.path.string() + "'";
+    if (off_mm > 20.0 && !reference.count(name))
+      throw Error(where + ", and its name is not known here" + did_you_mean(name, names) +
+                  ": take it out or name it anew");
     if (off_mm > 20.0)
       throw Error(where + ": place it on the skin, or check that landmarks and head are in the same axes");
     if (off_mm > 8.0) warnings.push_back(where + "; its nearest skin point is used");
@@ -91,7 +102,8 @@ PreparedHead prepare(const formats::Scene& scene, const formats::LandmarkFile& g
     head.meshes.push_back(std::move(mesh));
   }
   head.surface.emplace(head.skin);
-  head.landmarks = onto_skin(scene, *head.surface, landmarks, options.rough_landmarks, head.warnings);
+  head.landmarks =
+      onto_skin(scene, *head.surface, landmarks, options.rough_landmarks, reference, head.warnings);
   return head;
 }
 

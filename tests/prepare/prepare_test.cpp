@@ -179,6 +179,43 @@ TEST(Prepare, SaysThatAFileHoldsASecondHead) {
   EXPECT_TRUE(says("the skin twice: 'twin' lies on 'head'") || says("the skin twice: 'head' lies on 'twin'"));
 }
 
+TEST(Prepare, RefusesLandmarksWhoseSidesAreExchanged) {
+  std::map<std::string, Vec3> face = reference();
+  face["cheilion_left"] = 0.11 * Vec3(0.03, -0.04, 0.10).normalized();
+  face["cheilion_right"] = 0.11 * Vec3(-0.03, -0.04, 0.10).normalized();
+  face["tragion_left"] = 0.11 * Vec3(1, 0.2, 0).normalized();
+  face["tragion_right"] = 0.11 * Vec3(-1, 0.2, 0).normalized();
+  formats::LandmarkFile given;
+  given.units = "m";
+  given.points = face;
+  EXPECT_NO_THROW(prepare(scene_in(Mat4::Identity()), given, face, {}));
+  for (const char* name : {"exocanthion", "cheilion", "tragion"})
+    std::swap(given.points[std::string(name) + "_left"], given.points[std::string(name) + "_right"]);
+  try {
+    prepare(scene_in(Mat4::Identity()), given, face, {});
+    FAIL() << "nothing was said";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("call left what is right"), std::string::npos) << error.what();
+  }
+}
+
+TEST(Prepare, ANameThatIsNearlyALandmarksIsSaid) {
+  formats::LandmarkFile given = landmarks_in(Mat4::Identity(), 1.0, "");
+  given.points["nasionn"] = given.points["nasion"];
+  const PreparedHead head = prepare(scene_in(Mat4::Identity()), given, reference(), {});
+  ASSERT_FALSE(head.warnings.empty());
+  EXPECT_NE(head.warnings[0].find("'nasionn' is not a name that is known here (did you mean 'nasion'"),
+            std::string::npos)
+      << head.warnings[0];
+  given.points["nasionn"] = Vec3(0, 0, 0);
+  try {
+    prepare(scene_in(Mat4::Identity()), given, reference(), {});
+    FAIL() << "nothing was said";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("did you mean 'nasion'"), std::string::npos) << error.what();
+  }
+}
+
 TEST(Prepare, SaysWhatIsWrong) {
   const Mat4 to_file = Mat4::Identity();
   const formats::Scene scene = scene_in(to_file);
