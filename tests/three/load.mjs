@@ -14,12 +14,14 @@ globalThis.Image = class {
 };
 globalThis.createImageBitmap = async () => ({width: 1, height: 1, close() {}});
 const {GLTFLoader} = await import('three/examples/jsm/loaders/GLTFLoader.js');
-const {Vector3} = await import('three');
+const {Texture, Vector3} = await import('three');
+// Pictures of KTX2 are not looked at either.
+const pictures = {load: (url, done) => done(new Texture())};
 
 async function load(path) {
   const bytes = await readFile(path);
   const buffer = bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength);
-  return new Promise((resolve, reject) => new GLTFLoader().parse(buffer, '', resolve, reject));
+  return new Promise((resolve, reject) => new GLTFLoader().setKTX2Loader(pictures).parse(buffer, '', resolve, reject));
 }
 
 /** Meshes in the order of the file: by mesh, then by primitive. */
