@@ -223,6 +223,8 @@ void check_map(const Mat4f& matrix, const std::string& path) {
   const double volume = std::abs(linear.determinant()), largest = linear.cwiseAbs().maxCoeff();
   if (!(largest > 1e-12 && largest < 1e12 && volume > 1e-6 * largest * largest * largest))
     throw Error(path + ": not an invertible map of a sensible scale");
+  if (!(matrix.topRightCorner<3, 1>().cast<double>().cwiseAbs().maxCoeff() < 1e13 * largest))
+    throw Error(path + ": it moves by more than ten million million units");
 }
 
 /// Numbers that are finite and yet absurd would come out of the solver as no numbers.

@@ -56,6 +56,11 @@ TEST(Refusal, AMeshFarFromItsRig) {
               "toRig: it carries the mesh");
 }
 
+TEST(Refusal, AnInputFartherThanNumbersReach) {
+  EXPECT_SAYS(refusal([](Json& root) { extension(root, "FASCIA_tissue")["inputToMetres"][12] = 1e38; }),
+              "inputToMetres: it moves by more");
+}
+
 TEST(Refusal, JawWeightsBeyondOne) {
   rig::GltfSource file = rig::glb_source(test::tiny_rig_file());
   const Json root = Json::parse(file.json);
