@@ -232,8 +232,10 @@ void FaceScene::add_parts(const FaceState& state, const FaceView& view, DrawList
     const FacePart& part = parts_[m];
     if (!is_drawn(part.part, view.layers) || part.triangles.empty()) continue;
     const PrimitiveLook& look = appearance_.of(part.mesh, part.primitive);
-    // An eyeball of one colour all over would have no iris.
-    const bool has_look = is_eyeball(part.part) ? look.colour_map != nullptr : look.has_material;
+    // An eyeball of one colour all over would have no iris, a card of one colour would hide what lies behind
+    // it.
+    const bool needs_map = is_eyeball(part.part) || is_card(part.part);
+    const bool has_look = needs_map ? look.colour_map != nullptr : look.has_material;
     const bool is_painted = view.has_textures && (has_look || look.colours.size() == part.rest.size());
     if (is_card(part.part) && !is_painted) continue;
     if (is_glass && (is_card(part.part) || part.part == "brows" || part.part == "other")) continue;
