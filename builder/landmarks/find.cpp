@@ -173,7 +173,7 @@ std::vector<std::pair<std::string, Vec3>> lid_landmarks(const GenericFace& face,
 std::map<std::string, Vec3> lip_landmarks(const GenericFace& face, const anatomy::GenericAnatomy& anatomy,
                                           const Registration& fit, const spatial::SurfaceQuery& skin) {
   constexpr double known = 0.11;     // of the mouth's width: nearer to the fit, the fit stands
-  constexpr double lopsided = 0.05;  // of the mouth's width: how far its middle may lie beside the fit's
+  constexpr double lopsided = 0.08;  // of the mouth's width: how far its middle may lie beside the fit's
   const Vec3 left = *anatomy.landmark("cheilion_left")->skin,
              right = *anatomy.landmark("cheilion_right")->skin;
   const auto there =
