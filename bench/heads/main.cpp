@@ -4,6 +4,8 @@
 //
 //   bench_heads [--kind wild|people|own] [--only TEXT] [--detail LEVEL] [--csv FILE] [--json FILE] [--sheets
 //   DIR] bench_heads --reference      sculpted and measured shapes, measured by the same rows
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
@@ -106,7 +108,8 @@ void write_json(const fs::path& path, const std::vector<Trial>& trials) {
 }
 
 void run(const Request& request) {
-  const fs::path folder = fs::temp_directory_path() / "fascia_bench_heads";
+  // Several may run side by side.
+  const fs::path folder = fs::temp_directory_path() / ("fascia_bench_heads." + std::to_string(getpid()));
   fs::create_directories(folder);
   if (!request.sheets.empty()) fs::create_directories(request.sheets);
   std::vector<Trial> trials;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "builder/tissue/distance.h"
 #include "builder/tissue/margin.h"
@@ -12,6 +13,48 @@ namespace fascia::tissue {
 namespace {
 
 constexpr size_t steps = 33;
+
+/// What a triangle covers of the line on which `place` is `at`: elevations from..to; nothing where it lies
+/// beside it.
+std::optional<std::array<double, 2>> covered(const std::array<double, 3>& place,
+                                             const std::array<double, 3>& elevation, double at) {
+  std::optional<std::array<double, 2>> range;
+  for (size_t e = 0; e < 3; ++e) {
+    const size_t f = (e + 1) % 3;
+    if ((place[e] <= at) == (place[f] <= at)) continue;
+    const double value =
+        elevation[e] + (at - place[e]) / (place[f] - place[e]) * (elevation[f] - elevation[e]);
+    if (!range) range = {value, value};
+    range = {std::min((*range)[0], value), std::max((*range)[1], value)};
+  }
+  return range;
+}
+
+/// The middle of the widest stretch that no range covers, between some that lie below and above it; nothing
+/// where there is none wider than `least`.
+std::optional<double> middle_of_opening(std::vector<std::array<double, 2>> ranges, double least) {
+  std::sort(ranges.begin(), ranges.end());
+  std::optional<double> middle;
+  for (size_t i = 1; i < ranges.size(); ++i) {
+    ranges[i][1] = std::max(ranges[i][1], ranges[i - 1][1]);
+    const double below = ranges[i - 1][1], above = ranges[i][0];
+    if (!(above - below > least)) continue;
+    least = above - below;
+    middle = 0.5 * (above + below);
+  }
+  return middle;
+}
+
+/// Fills what is not known between what is, evenly.
+void fill_between(std::vector<double>& values, const std::vector<bool>& is_known) {
+  for (size_t k = 1, known = 0; k < values.size(); ++k) {
+    if (!is_known[k]) continue;
+    for (size_t i = known + 1; i < k; ++i)
+      values[i] = values[known] + (values[k] - values[known]) * static_cast<double>(i - known) /
+                                      static_cast<double>(k - known);
+    known = k;
+  }
+}
 
 }  // namespace
 
@@ -31,6 +74,7 @@ Fissure::Fissure(const TissueInputs& inputs, const FaceRegion& region, bool left
   right_elevation_ = elevation(a);
   left_elevation_ = elevation(b);
   reach_canthi(region, left);
+  find_middle(region, left);
   find_gaps(region, left);
   find_closed_lids(region, left);
 }
@@ -70,7 +114,43 @@ double Fissure::place(const Vec3& p) const {
 }
 
 double Fissure::middle(double place) const {
-  return right_elevation_ + std::clamp(place, 0.0, 1.0) * (left_elevation_ - right_elevation_);
+  const double x = std::clamp(place, 0.0, 1.0) * static_cast<double>(steps - 1);
+  const auto k = std::min(static_cast<size_t>(x), steps - 2);
+  const double t = x - static_cast<double>(k);
+  return (1.0 - t) * middle_[k] + t * middle_[k + 1];
+}
+
+void Fissure::find_middle(const FaceRegion& region, bool left) {
+  constexpr double least = 0.08;  // radians: narrower is no opening but a seam between triangles
+  constexpr double last = steps - 1;
+  const auto& distance =
+      region.opening_distance[static_cast<size_t>(left ? Opening::eye_left : Opening::eye_right)];
+  std::vector<std::vector<std::array<double, 2>>> ranges(steps);
+  for (const fascia::Triangle& t : region.mesh.triangles) {
+    std::array<double, 3> at{}, high{};
+    bool is_lid = true;
+    for (size_t k = 0; k < 3; ++k) {
+      const auto v = static_cast<size_t>(t[k]);
+      at[k] = place(region.mesh.vertices[v]) * last;
+      high[k] = elevation(region.mesh.vertices[v]);
+      is_lid = is_lid && distance[v] < edge && std::abs(high[k]) < widest;
+    }
+    if (!is_lid) continue;
+    const auto [from, to] = std::minmax({at[0], at[1], at[2]});
+    for (double k = std::max(0.0, std::ceil(from)); k <= std::min(last, to); k += 1.0)
+      if (const auto range = covered(at, high, k)) ranges[static_cast<size_t>(k)].push_back(*range);
+  }
+  middle_.assign(steps, 0.0);
+  std::vector<bool> is_known(steps, false);
+  for (size_t k = 1; k + 1 < steps; ++k)
+    if (const auto middle = middle_of_opening(ranges[k], least)) {
+      middle_[k] = *middle;
+      is_known[k] = true;
+    }
+  middle_.front() = right_elevation_;
+  middle_.back() = left_elevation_;
+  is_known.front() = is_known.back() = true;
+  fill_between(middle_, is_known);
 }
 
 void Fissure::find_gaps(const FaceRegion& region, bool left) {
@@ -114,17 +194,15 @@ void Fissure::find_gaps(const FaceRegion& region, bool left) {
   for (const auto* places : {&upper_places, &lower_places})
     for (const SurfacePoint& place : *places)
       if (place.triangle >= 0) edges_.push_back(place);
-  gaps_.assign(steps, -1.0);
-  for (size_t k = 0; k < steps; ++k)
-    if (upper[k] < 4.0 && lower[k] > -4.0) gaps_[k] = std::clamp(upper[k] - lower[k], 0.0, widest);
-  gaps_.front() = gaps_.back() = 0.0;
-  for (size_t k = 1, known = 0; k < steps; ++k) {
-    if (gaps_[k] < 0.0) continue;
-    for (size_t i = known + 1; i < k; ++i)
-      gaps_[i] = gaps_[known] +
-                 (gaps_[k] - gaps_[known]) * static_cast<double>(i - known) / static_cast<double>(k - known);
-    known = k;
-  }
+  gaps_.assign(steps, 0.0);
+  std::vector<bool> is_known(steps, false);
+  for (size_t k = 1; k + 1 < steps; ++k)
+    if (upper[k] < 4.0 && lower[k] > -4.0) {
+      gaps_[k] = std::clamp(upper[k] - lower[k], 0.0, widest);
+      is_known[k] = true;
+    }
+  is_known.front() = is_known.back() = true;
+  fill_between(gaps_, is_known);
   for (int pass = 0; pass < 2; ++pass) {
     std::vector<double> next = gaps_;
     for (size_t k = 1; k + 1 < steps; ++k)

@@ -25,7 +25,8 @@ class Fissure {
   double elevation(const Vec3& p) const;
   /// 0 at the canthus to the subject's right .. 1 at the other, beyond them outside of that.
   double place(const Vec3& p) const;
-  /// Above the line between the canthi, which divides upper lid from lower.
+  /// Above the line from canthus to canthus through the middle of the opening, which divides upper lid from
+  /// lower: the canthi may lie below both, or above.
   bool is_upper(const Vec3& p) const { return elevation(p) > middle(place(p)); }
   /// The same of a place on the region's mesh, at `p`, of closed lids by the way along the surface.
   bool is_upper(const FaceRegion& region, const SurfacePoint& place, const Vec3& p) const;
@@ -43,11 +44,13 @@ class Fissure {
   double middle(double place) const;
   /// Canthi as far out as the skin's edge goes, where the landmarks lie inside it.
   void reach_canthi(const FaceRegion& region, bool left);
+  void find_middle(const FaceRegion& region, bool left);
   void find_gaps(const FaceRegion& region, bool left);
   void find_closed_lids(const FaceRegion& region, bool left);
 
   double right_ = 0.0, left_ = 0.0;                      ///< the canthi along `lateral`
   double right_elevation_ = 0.0, left_elevation_ = 0.0;  ///< the canthi
+  std::vector<double> middle_;                           ///< elevations in even steps from canthus to canthus
   std::vector<SurfacePoint> edges_;
   std::vector<double> gaps_;  ///< in even steps from canthus to canthus
 };
