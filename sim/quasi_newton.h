@@ -72,7 +72,7 @@ inline double shorter_step(double length, double value, double slope, double tri
 template <class Space>
 MinimiseResult minimise(Space& space, const MinimiseOptions& options, const LineSearch& search) {
   constexpr size_t history = Space::history;
-  constexpr double longest_step = 0.02;  // metres a node may go at once
+  constexpr double longest_step = 0.005;  // metres a node may go at once: farther, triangles turn inside out
   MinimiseResult result;
   std::array<double, history> curvatures{};
   size_t first = 0, count = 0;

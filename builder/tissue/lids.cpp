@@ -16,6 +16,11 @@ constexpr double outer_share = 0.3;
 // Radians that the upper lid of a head with closed eyes is lifted: a fissure of some 9 mm before a globe of
 // 12 (Farkas 1994).
 constexpr double open_height = 0.75;
+// The cornea is given to columns in spheres that grow by this much, metres, for skin that lies deeper than
+// they.
+constexpr double room_step = 5e-4;
+constexpr uint32_t room_steps = 5;
+constexpr double deepest_crease = 0.012;  // metres from the edge within which skin comes to lie on the cornea
 
 void carry(rig::TissueLevel& level, int channel, size_t node, const Fissure& f, const Vec3& axis,
            double angle, double stiffness, double reverse) {
@@ -29,16 +34,30 @@ void carry(rig::TissueLevel& level, int channel, size_t node, const Fissure& f, 
   level.carrier_drive.push_back(static_cast<float>(stiffness));
 }
 
-/// How far the eye of a side reaches from its centre: the cornea's apex, or its radius where the head has no
-/// eyeball.
-double apex_of(const TissueInputs& inputs, bool left, const Fissure& f) {
-  double apex = f.radius;
+/// The cornea's apex: how far from the eye's centre it stands, and where to. The radius and the fissure's
+/// middle where the head has no eyeball, or one without a bulge.
+struct Apex {
+  double distance = 0.0;  // metres
+  Vec3 direction;         // unit
+};
+
+Apex apex_of(const TissueInputs& inputs, bool left, const Fissure& f) {
+  Apex apex{f.radius, f.front};
+  std::vector<Vec3> arms;
   for (const PartMesh& part : inputs.parts)
     if (part.part == (left ? "eye_left" : "eye_right"))
       for (const Vec3& p : part.vertices) {
         const double distance = (p - f.centre).norm();
-        if (distance < 1.15 * f.radius) apex = std::max(apex, distance);
+        if (distance > 1.15 * f.radius) continue;
+        apex.distance = std::max(apex.distance, distance);
+        arms.push_back(p - f.centre);
       }
+  constexpr double cap = 0.5;  // of the bulge's height: what stands higher is about the apex
+  Vec3 sum = Vec3::Zero();
+  for (const Vec3& arm : arms)
+    if (arm.norm() > f.radius + cap * (apex.distance - f.radius)) sum += arm.normalized();
+  constexpr double frontal = 0.7;  // cosine: an eyeball that looks farther aside is not as it should be
+  if (sum.norm() > 0.0 && sum.normalized().dot(f.front) > frontal) apex.direction = sum.normalized();
   return apex;
 }
 
@@ -54,6 +73,24 @@ double chord_room(const Columns& c, const std::vector<double>& opening, double r
     ++count;
   }
   return 5e-4 + 5.0 * area / std::max(1, count) / (8.0 * radius);
+}
+
+/// How much deeper than a column, towards the eye's centre, the skin about it lies, metres: lids turn about
+/// that centre, so that what lies in the crease at rest comes so much nearer to the cornea than the column.
+std::vector<double> sunken_skin(const FaceRegion& region, const Columns& c, const std::vector<double>& near,
+                                const std::vector<double>& opening, const Fissure& f, double reach) {
+  std::vector<double> sunken(near.size(), 0.0);
+  for (size_t v = 0; v < region.mesh.vertices.size(); ++v) {
+    if (!region.outer[v] || !(opening[v] < reach)) continue;
+    const Vec3& p = region.mesh.vertices[v];
+    for (size_t k = 0; k < near.size(); ++k) {
+      if (!(near[k] < reach) || !c.outer[k]) continue;
+      const Vec3& column = c.mesh.vertices[k];
+      if ((p - column).squaredNorm() > c.area[k]) continue;
+      sunken[k] = std::max(sunken[k], (column - f.centre).norm() - (p - f.centre).norm());
+    }
+  }
+  return sunken;
 }
 
 /// An eye's lids: nodes near the fissure, and what each channel does to them.
@@ -74,12 +111,18 @@ void add_eye(const TissueInputs& inputs, const FaceRegion& region, const Columns
   const bool is_closed = f.is_closed();
   level.globe_centre.push_back(f.centre.cast<float>());
   level.globe_radius.push_back(static_cast<float>(f.radius));
-  const double bulge = m.cornea_radius_share * f.radius, apex = apex_of(inputs, left, f);
-  const bool has_cornea = apex > f.radius + 1e-4;
-  if (has_cornea) {
-    level.globe_centre.push_back((f.centre + (apex - bulge) * f.front).cast<float>());
-    level.globe_radius.push_back(static_cast<float>(bulge + chord_room(c, opening, bulge)));
+  const double bulge = m.cornea_radius_share * f.radius;
+  const Apex apex = apex_of(inputs, left, f);
+  const bool has_cornea = apex.distance > f.radius + 1e-4;
+  const double room = chord_room(c, opening, bulge);
+  const auto first = static_cast<uint32_t>(level.globe_centre.size());
+  for (uint32_t step = 0; has_cornea && step < room_steps; ++step) {
+    level.globe_centre.push_back((f.centre + (apex.distance - bulge) * apex.direction).cast<float>());
+    level.globe_radius.push_back(static_cast<float>(bulge + room + step * room_step));
   }
+  const auto& skin_opening =
+      region.opening_distance[static_cast<size_t>(left ? Opening::eye_left : Opening::eye_right)];
+  const std::vector<double> sunken = sunken_skin(region, c, opening, skin_opening, f, deepest_crease);
   for (size_t v = 0; v < n; ++v) {
     if (!(opening[v] < m.reach) || c.rim[v]) continue;
     const Vec3& p = c.mesh.vertices[v];
@@ -92,12 +135,14 @@ void add_eye(const TissueInputs& inputs, const FaceRegion& region, const Columns
         (c.outer[v] ? (is_upper ? m.upper_plate : m.lower_plate).fall(distance) : 1.0) * across;
     const double unfolding = closing_share(inputs, c, f, v);
     const double held = std::max(fade, c.outer[v] && is_upper ? across * m.crease.fall(distance) : 0.0);
-    const auto last = static_cast<uint32_t>(level.globe_centre.size() - 1);
-    for (const size_t node : {v, n + v})
-      for (uint32_t globe = has_cornea ? last - 1 : last; globe <= last; ++globe) {
-        level.globe_contact_node.push_back(static_cast<uint32_t>(node));
-        level.globe_contact_globe.push_back(globe);
-      }
+    const auto step = std::min<uint32_t>(room_steps - 1, static_cast<uint32_t>(sunken[v] / room_step + 0.5));
+    for (const size_t node : {v, n + v}) {
+      level.globe_contact_node.push_back(static_cast<uint32_t>(node));
+      level.globe_contact_globe.push_back(first - 1);
+      if (!has_cornea) continue;
+      level.globe_contact_node.push_back(static_cast<uint32_t>(node));
+      level.globe_contact_globe.push_back(first + step);
+    }
     if (held < 0.01) continue;
     const double gap = f.gap(place);
     for (const size_t node : {v, n + v}) {
