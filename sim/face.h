@@ -14,7 +14,7 @@ namespace fascia::sim {
 /// Quasi-Newton steps first, which end soon in most poses; what they have not brought to an end, Newton steps
 /// do.
 struct PoseOptions {
-  MinimiseOptions solver{120};
+  MinimiseOptions solver{120, 2e-6, 0.005};
   NewtonOptions newton;
   int contact_rounds = 4;           ///< how often at most lips and lids look again for what they face
   double contact_tolerance = 1e-4;  ///< metres a gap may still change when they do

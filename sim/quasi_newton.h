@@ -9,7 +9,8 @@ namespace fascia::sim {
 
 struct MinimiseOptions {
   int iterations = 200;
-  double tolerance = 2e-6;  ///< metres: the largest move of a node the solver still wants to make
+  double tolerance = 2e-6;     ///< metres: the largest move of a node the solver still wants to make
+  double longest_step = 0.02;  ///< metres a node may go at once: farther, triangles turn inside out
 };
 
 struct MinimiseResult {
@@ -72,7 +73,6 @@ inline double shorter_step(double length, double value, double slope, double tri
 template <class Space>
 MinimiseResult minimise(Space& space, const MinimiseOptions& options, const LineSearch& search) {
   constexpr size_t history = Space::history;
-  constexpr double longest_step = 0.005;  // metres a node may go at once: farther, triangles turn inside out
   MinimiseResult result;
   std::array<double, history> curvatures{};
   size_t first = 0, count = 0;
@@ -107,7 +107,7 @@ MinimiseResult minimise(Space& space, const MinimiseOptions& options, const Line
       count = 0;
       continue;
     }
-    double length = std::min(1.0, longest_step / result.move), trial = 0.0;
+    double length = std::min(1.0, options.longest_step / result.move), trial = 0.0;
     space.go(length);
     space.keep_gradient();
     bool fell = false;

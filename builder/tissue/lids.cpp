@@ -34,30 +34,16 @@ void carry(rig::TissueLevel& level, int channel, size_t node, const Fissure& f, 
   level.carrier_drive.push_back(static_cast<float>(stiffness));
 }
 
-/// The cornea's apex: how far from the eye's centre it stands, and where to. The radius and the fissure's
-/// middle where the head has no eyeball, or one without a bulge.
-struct Apex {
-  double distance = 0.0;  // metres
-  Vec3 direction;         // unit
-};
-
-Apex apex_of(const TissueInputs& inputs, bool left, const Fissure& f) {
-  Apex apex{f.radius, f.front};
-  std::vector<Vec3> arms;
+/// How far the eye of a side reaches from its centre: the cornea's apex, or its radius where the head has no
+/// eyeball.
+double apex_of(const TissueInputs& inputs, bool left, const Fissure& f) {
+  double apex = f.radius;
   for (const PartMesh& part : inputs.parts)
     if (part.part == (left ? "eye_left" : "eye_right"))
       for (const Vec3& p : part.vertices) {
         const double distance = (p - f.centre).norm();
-        if (distance > 1.15 * f.radius) continue;
-        apex.distance = std::max(apex.distance, distance);
-        arms.push_back(p - f.centre);
+        if (distance < 1.15 * f.radius) apex = std::max(apex, distance);
       }
-  constexpr double cap = 0.5;  // of the bulge's height: what stands higher is about the apex
-  Vec3 sum = Vec3::Zero();
-  for (const Vec3& arm : arms)
-    if (arm.norm() > f.radius + cap * (apex.distance - f.radius)) sum += arm.normalized();
-  constexpr double frontal = 0.7;  // cosine: an eyeball that looks farther aside is not as it should be
-  if (sum.norm() > 0.0 && sum.normalized().dot(f.front) > frontal) apex.direction = sum.normalized();
   return apex;
 }
 
@@ -111,13 +97,12 @@ void add_eye(const TissueInputs& inputs, const FaceRegion& region, const Columns
   const bool is_closed = f.is_closed();
   level.globe_centre.push_back(f.centre.cast<float>());
   level.globe_radius.push_back(static_cast<float>(f.radius));
-  const double bulge = m.cornea_radius_share * f.radius;
-  const Apex apex = apex_of(inputs, left, f);
-  const bool has_cornea = apex.distance > f.radius + 1e-4;
+  const double bulge = m.cornea_radius_share * f.radius, apex = apex_of(inputs, left, f);
+  const bool has_cornea = apex > f.radius + 1e-4;
   const double room = chord_room(c, opening, bulge);
   const auto first = static_cast<uint32_t>(level.globe_centre.size());
   for (uint32_t step = 0; has_cornea && step < room_steps; ++step) {
-    level.globe_centre.push_back((f.centre + (apex.distance - bulge) * apex.direction).cast<float>());
+    level.globe_centre.push_back((f.centre + (apex - bulge) * f.front).cast<float>());
     level.globe_radius.push_back(static_cast<float>(bulge + room + step * room_step));
   }
   const auto& skin_opening =
