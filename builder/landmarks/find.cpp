@@ -177,15 +177,16 @@ std::map<std::string, Vec3> lip_landmarks(const GenericFace& face, const anatomy
   const Vec3 left = *anatomy.landmark("cheilion_left")->skin,
              right = *anatomy.landmark("cheilion_right")->skin;
   const auto there =
-      lip_opening(spatial::SurfaceQuery(face.skin), {left, right, Vec3::UnitZ(), Vec3::UnitY()});
+      lip_opening(spatial::SurfaceQuery(face.skin), SkinLinks(face.skin), {left, right, Vec3::UnitZ()});
   if (!there) return {};
   const Mat3& turn = fit.placement.rotation;
+  const SkinLinks links(skin.mesh());
   Vec3 on_left = fit(left), on_right = fit(right);
   // How near to its end an opening is seen goes with the width that is looked for.
   double change = 1.0;
   for (int round = 0; round < 4; ++round) {
     const double before = (on_left - on_right).norm();
-    const auto here = lip_opening(skin, {on_left, on_right, turn * Vec3::UnitZ(), turn * Vec3::UnitY()});
+    const auto here = lip_opening(skin, links, {on_left, on_right, turn * Vec3::UnitZ()});
     if (!here) return {};
     const double scale = before / (left - right).norm();
     on_left = here->left + scale * (turn * (left - there->left));

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include "builder/spatial/way_between.h"
 
@@ -35,15 +34,9 @@ View view_of(const MouthRegion& mouth) {
   return view;
 }
 
-/// How a skin hangs together.
-struct Links {
-  Connectivity triangles;
-  std::vector<int> component;  ///< of each triangle
-};
-
 /// Where the lips part in the column `along` widths from the middle, nearest to `height`; nothing where the
 /// skin goes on from top to bottom.
-std::optional<Vec3> parting(const spatial::SurfaceQuery& skin, const Links& links, const View& view,
+std::optional<Vec3> parting(const spatial::SurfaceQuery& skin, const SkinLinks& links, const View& view,
                             double along, double height) {
   std::optional<Vec3> best;
   std::optional<spatial::RayHit> above;
@@ -73,10 +66,12 @@ std::optional<Vec3> parting(const spatial::SurfaceQuery& skin, const Links& link
 
 }  // namespace
 
-std::optional<LipOpening> lip_opening(const spatial::SurfaceQuery& skin, const MouthRegion& mouth) {
+SkinLinks::SkinLinks(const TriangleMesh& skin) : triangles(connectivity(skin)), component(components(skin)) {}
+
+std::optional<LipOpening> lip_opening(const spatial::SurfaceQuery& skin, const SkinLinks& links,
+                                      const MouthRegion& mouth) {
   const View view = view_of(mouth);
   if (!(view.width > 0.0)) return std::nullopt;
-  const Links links{connectivity(skin.mesh()), components(skin.mesh())};
   const auto middle = parting(skin, links, view, 0.0, 0.0);
   if (!middle || std::abs((*middle - view.origin).dot(view.up)) > off_line * view.width) return std::nullopt;
   LipOpening opening{*middle, *middle};

@@ -45,6 +45,14 @@ std::optional<double> middle_of_opening(std::vector<std::array<double, 2>> range
   return middle;
 }
 
+/// What `values`, in even steps from canthus to canthus, come to at `place` between them.
+double at_place(const std::vector<double>& values, double place) {
+  const double x = std::clamp(place, 0.0, 1.0) * static_cast<double>(steps - 1);
+  const auto k = std::min(static_cast<size_t>(x), steps - 2);
+  const double t = x - static_cast<double>(k);
+  return (1.0 - t) * values[k] + t * values[k + 1];
+}
+
 /// Fills what is not known between what is, evenly.
 void fill_between(std::vector<double>& values, const std::vector<bool>& is_known) {
   for (size_t k = 1, known = 0; k < values.size(); ++k) {
@@ -114,10 +122,7 @@ double Fissure::place(const Vec3& p) const {
 }
 
 double Fissure::middle(double place) const {
-  const double x = std::clamp(place, 0.0, 1.0) * static_cast<double>(steps - 1);
-  const auto k = std::min(static_cast<size_t>(x), steps - 2);
-  const double t = x - static_cast<double>(k);
-  return (1.0 - t) * middle_[k] + t * middle_[k + 1];
+  return at_place(middle_, place);
 }
 
 void Fissure::find_middle(const FaceRegion& region, bool left) {
@@ -264,10 +269,7 @@ bool Fissure::is_upper(const FaceRegion& region, const SurfacePoint& place, cons
 }
 
 double Fissure::gap(double place) const {
-  const double x = std::clamp(place, 0.0, 1.0) * static_cast<double>(steps - 1);
-  const auto k = std::min(static_cast<size_t>(x), steps - 2);
-  const double t = x - static_cast<double>(k);
-  return (1.0 - t) * gaps_[k] + t * gaps_[k + 1];
+  return at_place(gaps_, place);
 }
 
 }  // namespace fascia::tissue

@@ -151,9 +151,11 @@ TEST(LipOpening, EndsAtTheCornersWhateverWidthIsLookedFor) {
   const Vec3 left = *generic_anatomy().landmark("cheilion_left")->skin,
              right = *generic_anatomy().landmark("cheilion_right")->skin, middle = 0.5 * (left + right);
   const spatial::SurfaceQuery skin(face().skin);
+  const SkinLinks links(face().skin);
   const auto seen = [&](double growth, const Vec3& shift) {
-    return lip_opening(skin, {middle + growth * (left - middle) + shift,
-                              middle + growth * (right - middle) + shift, Vec3::UnitZ(), Vec3::UnitY()});
+    return lip_opening(skin, links,
+                       {middle + growth * (left - middle) + shift, middle + growth * (right - middle) + shift,
+                        Vec3::UnitZ()});
   };
   for (const double growth : {0.8, 1.0, 1.6}) {
     const auto open = seen(growth, Vec3::Zero());
