@@ -118,22 +118,26 @@ void run_heads(const Common& common, const BatchRequest& request) {
     throw Exit{exit_interrupted};
   }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
-  size_t failed = 0;
+  // Each head once: one that failed before and was not tried again is failed, not kept.
+  size_t failed = 0, kept = 0;
   for (size_t h = 0; h < heads.size(); ++h) {
-    ++counts[report.fates[h]];
-    failed += report.fates[h] != batch::Fate::elsewhere && !report.records[h].is_done;
+    const batch::Fate fate = report.fates[h];
+    const bool is_done = report.records[h].is_done;
+    ++counts[fate];
+    failed += fate != batch::Fate::elsewhere && !is_done;
+    kept += fate == batch::Fate::kept && is_done;
   }
   const size_t built = counts[batch::Fate::done] + counts[batch::Fate::failed];
   char rate[64];
   std::snprintf(rate, sizeof rate, "%.1f s, %.1f heads a minute", seconds,
                 seconds > 0.0 ? 60.0 * static_cast<double>(built) / seconds : 0.0);
-  common.say(std::to_string(counts[batch::Fate::done]) + " built, " +
-             std::to_string(counts[batch::Fate::kept]) + " kept, " + std::to_string(failed) + " failed, " +
-             std::to_string(counts[batch::Fate::elsewhere]) + " elsewhere; " + rate);
+  common.say(std::to_string(counts[batch::Fate::done]) + " built, " + std::to_string(kept) + " kept, " +
+             std::to_string(failed) + " failed, " + std::to_string(counts[batch::Fate::elsewhere]) +
+             " elsewhere; " + rate);
   Json json = {{"output", request.output.string()},
                {"task", {{"index", task.index}, {"count", task.count}}},
                {"built", counts[batch::Fate::done]},
-               {"kept", counts[batch::Fate::kept]},
+               {"kept", kept},
                {"elsewhere", counts[batch::Fate::elsewhere]},
                {"failed", failed},
                {"seconds", seconds},

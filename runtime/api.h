@@ -44,14 +44,18 @@ inline Face& with_layer(const fascia_face* handle, uint32_t layer) {
   return face;
 }
 
-/// What `name` drives in the face's rig. Throws Failure when that is nothing.
-inline std::vector<Driven> named(const Face& face, const char* name) {
+/// Calls `use` with each thing that `name` drives in the face's rig. Allocates only for names in other
+/// spellings than the rig's. Throws Failure when nothing is driven.
+template <class Use>
+void for_each_named(const Face& face, const char* name, Use use) {
   require(name != nullptr, "the name is null");
-  std::vector<Driven> driven = face.asset().resolve(name);
+  if (const auto target = face.asset().find(name)) return use(Driven{*target, 1.0F, false});
+  const std::vector<Driven> driven = face.asset().resolve(name);
   if (driven.empty())
     throw Failure(FASCIA_ERROR_NAME, "the rig has no channel or member \"" + std::string(name) +
                                          "\"; fascia_asset_get_channels and fascia_asset_get_set list them");
-  return driven;
+  for (const Driven& each : driven)
+    use(each);
 }
 
 /// Copies as much of the caller's structure as it has.

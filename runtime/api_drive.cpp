@@ -16,8 +16,8 @@ fascia_result fascia_face_set(fascia_face* handle, const char* name, float value
   return guarded([&] {
     Face& face = checked(handle);
     require(std::isfinite(value), "the value is not a finite number");
-    for (const Driven& driven : named(face, name))
-      face.drive().set(0, driven.target, driven.share * value);
+    for_each_named(face, name,
+                   [&](const Driven& driven) { face.drive().set(0, driven.target, driven.share * value); });
     return FASCIA_OK;
   });
 }
@@ -26,8 +26,11 @@ fascia_result fascia_face_get(const fascia_face* handle, const char* name, float
   return guarded([&] {
     const Face& face = checked(handle);
     require(value != nullptr, "the value to write is null");
-    const Driven driven = named(face, name).front();
-    *value = face.drive().get(0, driven.target) / driven.share;
+    std::optional<float> found;
+    for_each_named(face, name, [&](const Driven& driven) {
+      if (!found) found = face.drive().get(0, driven.target) / driven.share;
+    });
+    *value = *found;
     return FASCIA_OK;
   });
 }
@@ -78,8 +81,9 @@ fascia_result fascia_face_layer_set(fascia_face* handle, uint32_t layer, const c
   return guarded([&] {
     Face& face = with_layer(handle, layer);
     require(std::isfinite(value), "the value is not a finite number");
-    for (const Driven& driven : named(face, name))
+    for_each_named(face, name, [&](const Driven& driven) {
       face.drive().set(layer, driven.target, driven.share * value);
+    });
     return FASCIA_OK;
   });
 }

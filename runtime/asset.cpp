@@ -1,5 +1,6 @@
 #include "runtime/asset.h"
 
+#include <algorithm>
 #include <charconv>
 
 #include "runtime/drivers/aliases.h"
@@ -60,11 +61,12 @@ float Member::slope(float weight, std::span<const float> by_channel) const {
   return by_share * response.slope(weight) + by_weight;
 }
 
-std::string lower_case(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return lower;
+bool IgnoringCase::operator()(std::string_view a, std::string_view b) const {
+  const auto lower = [](char c) {
+    return static_cast<unsigned char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+  };
+  return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end(),
+                                      [&](char left, char right) { return lower(left) < lower(right); });
 }
 
 Asset::Asset(std::span<const uint8_t> bytes)
@@ -97,7 +99,7 @@ void Asset::index_channels() {
     channel_minimum.push_back(channels[i].minimum);
     channel_maximum.push_back(channels[i].maximum);
     channel_rest.push_back(channels[i].rest);
-    names_.emplace(lower_case(channels[i].name), Target{Target::Kind::channel, i});
+    names_.emplace(channels[i].name, Target{Target::Kind::channel, i});
   }
   const auto channel = [&](const char* name) {
     const auto target = find(name);
@@ -125,9 +127,8 @@ void Asset::index_sets() {
     for (uint32_t m = 0; m < set.members.size(); ++m) {
       texts.push_back(set.members[m].c_str());
       const Target target{Target::Kind::member, first + m};
-      const std::string member = lower_case(set.members[m]);
-      names_.emplace(lower_case(set.name) + ":" + member, target);
-      names_.emplace(member, target);
+      names_.emplace(set.name + ":" + set.members[m], target);
+      names_.emplace(set.members[m], target);
     }
   }
 }
@@ -153,7 +154,7 @@ std::optional<Target> Asset::find(std::string_view name) const {
     if (parsed.ec != std::errc() || parsed.ptr != end || index >= channel_names.size()) return std::nullopt;
     return Target{Target::Kind::channel, index};
   }
-  const auto found = names_.find(lower_case(name));
+  const auto found = names_.find(name);
   if (found == names_.end()) return std::nullopt;
   return found->second;
 }

@@ -54,6 +54,12 @@ struct BoneChannels {
   std::array<int32_t, 2> eye_yaw = {-1, -1}, eye_pitch = {-1, -1};  ///< left, right
 };
 
+/// The order of names whose ASCII letters count alike in either case. Looking one up copies nothing.
+struct IgnoringCase {
+  using is_transparent = void;
+  bool operator()(std::string_view a, std::string_view b) const;
+};
+
 /// A loaded rig with what every face of it shares. Immutable but for the models, which are made once each.
 class Asset {
  public:
@@ -100,7 +106,7 @@ class Asset {
 
   rig::RigFile file_;
   std::vector<Member> members_;
-  std::map<std::string, Target, std::less<>> names_;      ///< in lower case
+  std::map<std::string, Target, IgnoringCase> names_;
   std::map<std::string, Target, std::less<>> spellings_;  ///< as `spelled` gives them
   uint64_t serial_ = 0;
   BoneChannels bones_;
@@ -112,9 +118,6 @@ class Asset {
 
   const sim::FaceModel& model_under_lock(std::size_t level) const;
 };
-
-/// ASCII letters of `text` in lower case.
-std::string lower_case(std::string_view text);
 
 }  // namespace fascia::runtime
 

@@ -2,7 +2,7 @@
 # Sets up, builds with warnings as errors, and runs the tests.
 #   scripts/test.sh [--full]
 # --full: also 250 broken heads, clang, sanitizers, fuzzers (five minutes each), faults by the hundred, a cluster of two nodes,
-# builds that are reproducible, five minutes of random input in the window, the glTF validator, the hosts and the demo.
+# builds that are reproducible, five minutes of random input in the window, the glTF validator, Windows by wine, the hosts and the demo.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -44,5 +44,6 @@ if [ "$full" = 1 ]; then
     build/asan/bin/fascia view --monkey "$(date +%j)" --seconds 300
   tests/validator/validate.sh build/bin/fascia || [ $? -eq 77 ]
   scripts/packages.sh
+  scripts/windows.sh || [ $? -eq 77 ]
   scripts/hosts.sh
 fi

@@ -47,7 +47,8 @@ TEST_F(BatchTool, BuildsReportsAndTakesUp) {
   EXPECT_FALSE(fs::exists(at("out/none/rig.glb")));
 
   const json again = json::parse(run("batch " + at("heads.jsonl") + " -o " + at("out") + " --json").out);
-  EXPECT_EQ(again["kept"], 2);
+  EXPECT_EQ(again["built"], 0);
+  EXPECT_EQ(again["kept"], 1);  // each head is counted once
   EXPECT_EQ(again["failed"], 1);
   const Outcome task =
       run("batch " + at("heads.jsonl") + " -o " + at("out") + " --task-index 0 --task-count 2 --json");

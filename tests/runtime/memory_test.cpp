@@ -72,6 +72,8 @@ TEST(Memory, AFrameAllocatesNothing) {
     place[12] = 0.01F * time;
     const float point[3] = {time, 1.6F, 1.0F};
     fascia_face_values(face.face)[1] = time;
+    bad += fascia_face_set(face.face, "ARKit:mouthSmileLeft", time) != FASCIA_OK;
+    bad += fascia_face_layer_set(face.face, 1, "zygomaticus_major_left", time) != FASCIA_OK;
     bad += fascia_face_set_member(face.face, 0, 2, 0.3F) != FASCIA_OK;
     bad += fascia_curves_apply(curves, static_cast<double>(time), 1.0F, face.face) != FASCIA_OK;
     bad += fascia_curves_apply_to_layer(curves, static_cast<double>(time), 1.0F, face.face, 1) != FASCIA_OK;
