@@ -1,5 +1,6 @@
 #include "cli/calibrate_depth.h"
 
+#include <Eigen/LU>
 #include <cmath>
 #include <cstdlib>
 

@@ -1,5 +1,6 @@
 #include "cli/fit_output.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

@@ -1,5 +1,6 @@
 #include "builder/landmarks/lip_opening.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 

@@ -1,5 +1,6 @@
 #include "rig/read/read.h"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
