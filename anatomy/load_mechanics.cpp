@@ -133,6 +133,7 @@ void read(const Section& in, mechanics::Lids& out) {
   in.value("opening", "1", out.opening);
   in.value("raising", "1", out.raising);
   in.value("canthal_turn", "deg", out.canthal_turn);
+  in.value("canthal_outer_share", "1", out.canthal_outer_share);
   in.value("upper_follows_up", "1", out.upper_follows_up);
   in.value("upper_follows_down", "1", out.upper_follows_down);
   in.value("lower_follows_up", "1", out.lower_follows_up);
@@ -141,6 +142,8 @@ void read(const Section& in, mechanics::Lids& out) {
   in.value("upper_drawn", "deg", out.upper_drawn);
   in.value("lower_drawn", "deg", out.lower_drawn);
   in.value("cornea_radius_share", "1", out.cornea_radius_share);
+  in.value("cornea_crease_reach", "mm", out.cornea_crease_reach);
+  in.value("cornea_crease_depth", "mm", out.cornea_crease_depth);
   in.value("globe_radius_share", "1", out.globe_radius_share);
   in.value("globe_depth_share", "1", out.globe_depth_share);
 }
@@ -175,6 +178,8 @@ void read(const Section& in, mechanics::Vestibule& out) {
 
 void read(const Section& in, mechanics::Fibres& out) {
   in.value("shortest_factor", "1", out.shortest_factor);
+  in.value("shortest_least", "1", out.shortest_least);
+  in.value("shortest_most", "1", out.shortest_most);
   in.value("insertion_spread", "mm", out.insertion_spread);
   in.value("insertion_spread_share", "1", out.insertion_spread_share);
   in.value("ring_spread_share", "1", out.ring_spread_share);

@@ -8,10 +8,10 @@
 #include "geometry/smoothstep.h"
 
 /// The constants of tissue, attachment, contact, jaw and lids: anatomy/data/mechanics.json in metres, radians
-/// and pascal. The file says of each its unit, range and source. Nothing here has a default of its own.
+/// and pascal. The file gives the unit, range and source of each. Nothing here has a default.
 namespace fascia::anatomy {
 
-/// From where to where something changes, begin < end.
+/// The interval of a transition, begin < end.
 struct Ramp {
   double begin = 0.0, end = 0.0;
   /// 0 up to `begin`, 1 from `end` on, smooth between.
@@ -20,7 +20,7 @@ struct Ramp {
   double fall(double x) const { return 1.0 - smoothstep(begin, end, x); }
 };
 
-/// A place of any face, told by its landmarks: the sum of their shares of x, y and z, and an offset.
+/// A location on any face, given by its landmarks: their weighted sum per coordinate, and an offset.
 struct FacePlace {
   struct Part {
     std::string landmark;  ///< on the skin, by full name
@@ -31,19 +31,19 @@ struct FacePlace {
   double radius = 0.0;         ///< thirds of the face, over which its effect falls to 1/e
 };
 
-/// A firm or gliding place of the face.
+/// A firmly attached or gliding region of the face.
 struct AttachmentRegion {
   std::string name;  ///< with its side
   FacePlace place;
-  double bone = 1.0;  ///< factor of the hold of bone on the SMAS
-  double skin = 1.0;  ///< factor of the hold of the SMAS on the skin
+  double bone = 1.0;  ///< factor of the attachment of the SMAS to bone
+  double skin = 1.0;  ///< factor of the attachment of the SMAS to the skin
 };
 
-/// What cartilage, frenula and the mentalis hold to the skull beyond their surroundings.
+/// Additional attachment to the skull by cartilage, frenula and the mentalis.
 struct Hold {
   std::string name;
   FacePlace place;
-  double factor = 1.0;  ///< of the hold of bone at its middle
+  double factor = 1.0;  ///< of the attachment to bone at its centre
 };
 
 namespace mechanics {
@@ -139,6 +139,7 @@ struct Lids {
   double raising = 0.0;  ///< turn of the lower lid at lid_lower = 1 over the fissure's height
   double canthal_turn =
       0.0;  ///< radians: added to the closing towards the inner canthus, where skin resists most
+  double canthal_outer_share = 0.0;  ///< what is subtracted at the outer canthus, relative to canthal_turn
   double upper_follows_up = 0.0;  ///< turn of the upper lid with the globe's pitch above the primary position
   double upper_follows_down = 0.0;  ///< the same below it
   double lower_follows_up = 0.0;    ///< turn of the lower lid with the globe's pitch above it
@@ -148,6 +149,9 @@ struct Lids {
                              ///< pretarsal muscle (Horner's part)
   double lower_drawn = 0.0;  ///< radians: the same of the lower plate
   double cornea_radius_share = 0.0;  ///< radius of the cornea over that of the globe
+  double cornea_crease_reach =
+      0.0;  ///< metres: from the edge, of skin that comes to lie in front of the cornea
+  double cornea_crease_depth = 0.0;  ///< metres: greatest depth of that skin below the lid around it
   double globe_radius_share =
       0.0;  ///< radius of the globe over the fissure's width, for a head without eyeballs
   double globe_depth_share = 0.0;  ///< how far its centre lies behind the canthi, over its radius
@@ -194,7 +198,9 @@ struct Vestibule {
 struct Fibres {
   double shortest_factor =
       0.0;  ///< the pull has fallen to nothing at this multiple of the muscle's peak shortening
-  double insertion_spread = 0.0;        ///< metres: over which a fibre's pull comes in at its free end
+  double shortest_least = 0.0;    ///< least length, relative to rest, at which the pull of any fibre ends
+  double shortest_most = 0.0;     ///< greatest such length
+  double insertion_spread = 0.0;  ///< metres: over which a fibre's pull comes in at its free end
   double insertion_spread_share = 0.0;  ///< of its length at most
   double ring_spread_share =
       0.0;  ///< of its length, over which a ring that hangs on one bone gives its pull to the skin

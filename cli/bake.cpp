@@ -45,19 +45,20 @@ void add_bake(const Command& tool, Common& common) {
   const Command command = tool.command("bake", "Bake simulated shapes into morph targets");
   add_rig_argument(command, request->rig);
   command
-      .option("--shapes", &request->sets,
-              "Which shapes, one set or several with commas between: arkit, visemes, vrm, faces, au, muscles "
-              "(every "
-              "channel), or another of the rig's vocabularies")
+      .option(
+          "--shapes", &request->sets,
+          "Shapes to bake, one set or several separated by commas: arkit, visemes, vrm, faces, au, muscles "
+          "(every "
+          "channel), or another of the rig's vocabularies")
       .separated_by_commas()
       .value("SET,...");
   command.option("--format", &request->format, "What to write; obj-sequence is a folder")
       .one_of({"glb", "obj-sequence", "pc2"})
       .default_text("by the output's name");
   command.flag("--correctives", request->correctives,
-               "Also what pairs of ARKit shapes lack together, as A_B, for a weight of A times B");
+               "Also corrective shapes A_B for pairs of ARKit shapes, for a weight of A times B");
   command.flag("--replace", request->replaces,
-               "A shape takes the place of a morph target of its name instead of another name");
+               "Replace morph targets of the same names instead of renaming the shapes");
   command.flag("--keep-rig", request->keeps_rig, "Keep the FASCIA extensions in the file");
   add_solver_option(command, request->solver);
   add_level_option(command, request->level);

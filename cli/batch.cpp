@@ -114,7 +114,7 @@ void run_heads(const Common& common, const BatchRequest& request) {
                      line_of(record, fate));
       });
   if (is_stopped) {
-    std::fprintf(stderr, "fascia: interrupted; the same command goes on where it was\n");
+    std::fprintf(stderr, "fascia: interrupted; the same command resumes the batch\n");
     throw Exit{exit_interrupted};
   }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
@@ -228,42 +228,43 @@ void run(const Common& common, const BatchRequest& request) {
 
 void add_batch(const Command& tool, Common& common) {
   auto request = std::make_shared<BatchRequest>();
-  const Command command =
-      tool.command("batch",
-                   "Build many heads side by side, each in a process of its own with limits; what is done is "
-                   "not done again. "
-                   "'submit' queues them on a Slurm cluster, 'report' makes one page of what came of them");
+  const Command command = tool.command(
+      "batch",
+      "Build many heads in parallel, each in a process of its own with limits; completed heads are "
+      "not built again. "
+      "'submit' queues them on a Slurm cluster, 'report' writes a summary page");
   command
-      .positional(
-          "SOURCE", &request->source,
-          "Manifest (one JSON object a line: {\"head\": FILE, ...}) or folder of heads; or submit, or report")
+      .positional("SOURCE", &request->source,
+                  "Manifest (one JSON object per line: {\"head\": FILE, ...}) or folder of heads; or submit, "
+                  "or report")
       .required();
   command.positional("OF", &request->operand, "Manifest or folder to submit; the batch's folder to report on")
       .default_text("none");
-  command.option("-o,--output", &request->output, "Folder for a folder a head")
+  command.option("-o,--output", &request->output, "Output folder, with one folder per head")
       .value("DIR")
       .default_text("none");
   command.option("--jobs", &request->jobs, "Heads at a time")
       .range(1, 4096)
       .default_text("as many as processors");
-  command.option("--time", &request->seconds, "Seconds that each step of a head may take; 0: any")
+  command.option("--time", &request->seconds, "Time limit of each step of a head, seconds; 0: none")
       .range(0, 1e6);
-  command.option("--memory", &request->megabytes, "Address space in MB that each head may use; 0: any")
+  command.option("--memory", &request->megabytes, "Memory limit of each head, address space in MB; 0: none")
       .range(0, 1e7);
-  command.option("--attempts", &request->attempts, "Attempts for a head whose process dies").range(1, 10);
+  command.option("--attempts", &request->attempts, "Attempts for a head whose process crashes").range(1, 10);
   command.flag("--retry-failed", request->retries_failed, "Try heads again that failed before");
   command.flag("--check", request->has_checks, "Check each rig", true);
   command.flag("--thumbnail", request->has_thumbnails, "Draw each head", true);
-  command.option("--task-index", &request->task_index, "Which task this is, from 0")
+  command.option("--task-index", &request->task_index, "Index of this task, from 0")
       .range(0, 1e9)
-      .default_text("as Slurm, AWS Batch or GNU parallel say, else 0");
-  command.option("--task-count", &request->task_count, "Tasks the heads are shared among")
+      .default_text("from Slurm, AWS Batch or GNU parallel, else 0");
+  command.option("--task-count", &request->task_count, "Number of tasks that share the heads")
       .range(1, 1e9)
-      .default_text("as Slurm or AWS Batch say, else 1; for submit one for every 100 heads");
-  command.option("--at-once", &request->at_once, "submit: tasks at a time at most; 0: any").range(0, 1e6);
-  command.option("--slurm-time", &request->time, "submit: time limit of a task, as Slurm writes it")
+      .default_text("from Slurm or AWS Batch, else 1; for submit one per 100 heads");
+  command.option("--at-once", &request->at_once, "submit: maximum number of simultaneous tasks; 0: unlimited")
+      .range(0, 1e6);
+  command.option("--slurm-time", &request->time, "submit: time limit of a task, in Slurm's format")
       .value("TIME")
-      .default_text("what its heads may take at most, 10 minutes to 4 hours");
+      .default_text("from the limits of its heads, 10 minutes to 4 hours");
   command.option("--partition", &request->partition, "submit: Slurm's partition")
       .default_text("the cluster's own");
   command.flag("--dry-run", request->is_dry, "submit: write the script only");

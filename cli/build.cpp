@@ -173,7 +173,8 @@ anatomy::GenericAnatomy anatomy_for(const std::filesystem::path& directory) {
 void add_anatomy_option(const Command& command, std::filesystem::path& directory) {
   command
       .option("--anatomy", &directory,
-              "Folder with corrected copies of files of anatomy/data; those it lacks are built in")
+              "Folder with corrected copies of files of anatomy/data; for missing ones the built-in files "
+              "are used")
       .value("DIR")
       .default_text("all built in");
 }
@@ -247,12 +248,12 @@ namespace {
 void add_detail_options(const Command& command, BuildRequest& request) {
   command
       .option("--smas-galea", &request.smas_galea,
-              "How far the SMAS follows the galea: 0 the hairline, 1 the vertex")
+              "Extent of the SMAS along the galea: 0 the hairline, 1 the vertex")
       .range(0.0, 1.0)
       .default_text("as the anatomy says, 0.35");
   command
       .option("--smas-neck", &request.smas_neck_mm,
-              "How far it follows the platysma below the chin's angle, in mm of an adult")
+              "Extent of the SMAS with the platysma below the angle of chin and neck, in mm of an adult")
       .range(0.0, 80.0)
       .default_text("as the anatomy says, 30");
   command.flag("--smas-nostrils", request.options.smas.reach.nostrils,
@@ -260,9 +261,7 @@ void add_detail_options(const Command& command, BuildRequest& request) {
   command.option("--fibre-spacing", &request.fibre_spacing_mm, "Millimetres between fibres")
       .range(0.1, 20.0)
       .default_text("as the edits say, or 2");
-  command
-      .option("--least-prevalence", &request.least_prevalence,
-              "Leave out muscles that fewer people have, as a share")
+  command.option("--least-prevalence", &request.least_prevalence, "Omit muscles of lower prevalence, 0 to 1")
       .range(0.0, 1.0)
       .default_text("as the edits say, or 0");
   command.option("--tissue-scale", &request.options.tissue_scale, "Scales every tissue depth")
@@ -274,30 +273,29 @@ void add_input_options(const Command& command, BuildRequest& request) {
       .default_text("found on the mesh");
   command
       .option("--units", &request.options.prepare.units,
-              "Unit of the file: auto, m, cm, mm, or metres a unit")
+              "Unit of the file: auto, m, cm, mm, or metres per unit")
       .value("UNIT");
   command.option("--up", &request.options.prepare.up, "Up axis of the file").one_of({"auto", "y", "z"});
   command.option("--skin", &request.options.prepare.skin, "Name of the mesh that is the skin")
       .default_text("found by its shape");
   add_anatomy_option(command, request.anatomy);
   command.flag("--allow-outside", request.allow_outside,
-               "Open files that a glTF names outside its own folder");
+               "Open files referenced by a glTF outside its folder");
 }
 
 void add_anatomy_options(const Command& command, BuildRequest& request) {
   command.option("--open", &request.options.openings.open, "Part lips and lids that are one closed surface")
       .one_of({"auto", "never"});
   command
-      .option(
-          "--add", &request.options.openings.add,
-          "Generic parts to fit to a head without, with commas between; auto: what lies behind parted lips "
-          "and lids")
+      .option("--add", &request.options.openings.add,
+              "Generic parts to add to a head without them, separated by commas; auto: behind lips cut open "
+              "and lids")
       .one_of({"auto", "none", "mouth", "teeth", "tongue", "eyes"})
       .separated_by_commas()
       .value("PART,...");
   command
       .option("--edits", &request.edits,
-              "Your own landmarks, regions, strengths and muscles (.json), kept over every rebuild")
+              "Edits file with landmarks, regions, strengths and muscles (.json), for every rebuild")
       .default_text("none");
   command
       .option("--muscles", &request.muscles,
@@ -305,7 +303,7 @@ void add_anatomy_options(const Command& command, BuildRequest& request) {
       .default_text("none");
   command
       .option("--variant", &request.variants,
-              "A muscle in another of its forms, such as risorius=absent; may be repeated")
+              "Anatomical variant of a muscle, such as risorius=absent; may be repeated")
       .value("MUSCLE=VARIANT")
       .default_text("the usual forms");
 }
@@ -335,11 +333,11 @@ void add_build(const Command& tool, Common& common) {
   add_detail_options(command, *request);
   command
       .option("--report", &request->report,
-              "Folder for report.html: one page with pictures of every stage and figures")
+              "Folder for report.html: one page with pictures and statistics of every stage")
       .value("DIR")
       .default_text("none");
   command.flag("--strict", request->is_strict,
-               "End with 4 when the check at the end finds a fault; the rig is written all the same");
+               "Exit with 4 if the final check fails; the rig is still written");
   command.run([request, &common] { run(common, *request); });
 }
 

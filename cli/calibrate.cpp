@@ -224,7 +224,7 @@ void run(const Common& common, const CalibrateRequest& request) {
     std::string names;
     for (const std::string& name : unknown)
       names += (names.empty() ? "" : ", ") + name;
-    common.warn("left out, since no table of the rig names them or they do not move: " + names);
+    common.warn("ignored, because no table of the rig names them or they do not move: " + names);
   }
   if (cases.empty())
     throw Error("'" + request.scans.string() +
@@ -236,7 +236,7 @@ void run(const Common& common, const CalibrateRequest& request) {
   if (request.adjust == "all")
     remake = [&](const fit::Physique& physique) { return with_physique(subject, physique, rebuilt); };
   const fit::Calibration calibration = fit::calibrate(subject, cases, request.options, remake);
-  if (!rebuilt.fault().empty()) common.warn("tissue depths stay as they are: " + rebuilt.fault());
+  if (!rebuilt.fault().empty()) common.warn("tissue depths are unchanged: " + rebuilt.fault());
   rig::Rig own = subject.file().rig;
   if (calibration.physique.depth != 1.0) {
     common.progress("building with its own tissue depths");
@@ -268,7 +268,7 @@ void add_calibrate(const Command& tool, Common& common) {
   auto request = std::make_shared<CalibrateRequest>();
   const Command command = tool.command(
       "calibrate",
-      "Fit a rig to one person's own expressions: a gain a muscle, peak shortening, stiffness, tissue depth");
+      "Calibrate a rig to one person's expressions: muscle gains, peak shortening, stiffness, tissue depth");
   add_rig_argument(command, request->rig);
   command
       .option("--scans", &request->scans,
@@ -281,13 +281,13 @@ void add_calibrate(const Command& tool, Common& common) {
       .one_of({"low", "medium", "high"});
   command
       .option("--adjust", &request->adjust,
-              "What is found: gains of muscles alone, or the depth and stiffness of tissue and peak "
+              "What to identify: muscle gains only, or also the depth and stiffness of tissue and peak "
               "shortening by thirds "
               "of the face as well")
       .one_of({"all", "gains"});
   command
       .option("--prior", &request->options.prior,
-              "What a gain away from 1 costs, in shares of the expressions' squared motion")
+              "Penalty for a gain different from 1, relative to the expressions' squared motion")
       .range(1e-6, 1e3);
   command.run([request, &common] { run(common, *request); });
 }

@@ -133,13 +133,12 @@ std::vector<std::string> quick_check(const std::vector<uint8_t>& rig, const std:
 
 void add_check(const Command& tool, Common& common) {
   auto request = std::make_shared<CheckRequest>();
-  const Command command = tool.command(
-      "check", "Play a fixed list of poses and measure whether the rig holds; ends with 4 when a row fails");
+  const Command command =
+      tool.command("check", "Validate a rig on a fixed list of poses; exits with 4 if a row fails");
   add_rig_argument(command, request->rig);
   command
-      .option(
-          "--sheet", &request->sheet,
-          "Picture of every pose, from the front and at three quarters, with failing places marked (.png)")
+      .option("--sheet", &request->sheet,
+              "Picture of every pose, from the front and at three quarters, with failures marked (.png)")
       .default_text("none");
   add_level_option(command, request->level);
   command.run([request, &common] { run(common, *request); });

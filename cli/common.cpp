@@ -70,7 +70,7 @@ void add_set_options(const Command& command, std::vector<std::string>& set,
       .option("--set", &set,
               "One channel's or shape's value: an actuator, arkit:NAME, au:N or viseme:NAME; may be "
               "repeated, and "
-              "goes before --activations")
+              "overrides --activations")
       .value("NAME=VALUE")
       .default_text("the face at rest");
   command.option("--activations", &activations, "Values of many (.json)").default_text("none");
@@ -81,7 +81,7 @@ void add_solver_option(const Command& command, std::string& solver) {
 }
 
 void add_level_option(const Command& command, std::string& level) {
-  command.option("--level", &level, "Level of detail: low, medium or high, where the rig has it")
+  command.option("--level", &level, "Level of detail: low, medium or high, if the rig has it")
       .default_text("the rig's finest");
 }
 

@@ -133,7 +133,7 @@ void run(const Common& common, const ExportRequest& request) {
 
 void add_export(const Command& tool, Common& common) {
   auto request = std::make_shared<ExportRequest>();
-  const Command command = tool.command("export", "Write one part of a rig as a mesh of its own");
+  const Command command = tool.command("export", "Export one part of a rig as a mesh");
   add_rig_argument(command, request->rig);
   command.option("--part", &request->part, "What to write")
       .required()

@@ -154,13 +154,12 @@ void run(const Common& common, const FaceRequest& request) {
 void add_face(const Command& tool, Common& common) {
   auto request = std::make_shared<FaceRequest>();
   const Command command = tool.command(
-      "face",
-      "Put skin over a skull: the generic head by soft-tissue depths, as forensic approximation does");
+      "face", "Reconstruct a face from a skull by soft-tissue depths (craniofacial approximation)");
   command.positional("SKULL", &request->skull, "Skull mesh: GLB, glTF, OBJ, PLY or STL, in any pose")
       .required();
   command
       .option("-o,--output", &request->output,
-              "Head to write: .glb (metres, with the band of depths as morph targets) or .obj (the skull's "
+              "Head to write: .glb (metres, with the uncertainty band as morph targets) or .obj (the skull's "
               "own axes "
               "and units)")
       .required();
@@ -170,7 +169,7 @@ void add_face(const Command& tool, Common& common) {
   command
       .option("--depths", &request->depths,
               "Tissue depth table: a name of the anatomy's, or a .json file like tissue_depths.json")
-      .default_text("the one of the nearest people");
+      .default_text("the closest population");
   command.option("--sex", &request->person.sex, "Chooses the table")
       .one_of({"female", "male"})
       .default_text("not known");
@@ -178,14 +177,14 @@ void add_face(const Command& tool, Common& common) {
       .default_text("not known");
   command.option("--ancestry", &request->person.ancestry, "Chooses the table, in the words of a table")
       .default_text("not known");
-  command.option("--units", &request->units, "auto, m, cm, mm, or metres a unit");
+  command.option("--units", &request->units, "auto, m, cm, mm, or metres per unit");
   command.option("--tissue-scale", &request->tissue_scale, "Scales every depth");
   command.option("--landmarks-out", &request->landmarks_out, "Landmarks on skin and bone (.json)")
       .default_text("none");
   command
       .option("--sheet", &request->sheet, "Picture of the head, the head over the skull and the band (.png)")
       .default_text("none");
-  command.option("--rig", &request->rig, "Builds the head's rig as well (.glb)").default_text("none");
+  command.option("--rig", &request->rig, "Also build the head's rig (.glb)").default_text("none");
   add_anatomy_option(command, request->anatomy);
   command.run([request, &common] { run(common, *request); });
 }

@@ -178,13 +178,14 @@ void run(const Common& common, const FitRequest& request) {
 
 void add_fit(const Command& tool, Common& common) {
   auto request = std::make_shared<FitRequest>();
-  const Command command = tool.command("fit", "Find the activations behind a posed mesh, shapes or a take");
+  const Command command =
+      tool.command("fit", "Fit activations to a posed mesh, a scan, shapes, landmarks or a take");
   add_rig_argument(command, request->rig);
   command
       .option(
           "--target", &request->target,
           "Mesh of the rig's topology (.glb, .gltf, .obj, .ply, .stl), its morph targets or their animation, "
-          "a cache (.pc2, .mdd), a folder of meshes, one a frame, a scan of any topology, or landmarks "
+          "a cache (.pc2, .mdd), a folder of meshes (one per frame), a scan of any topology, or landmarks "
           "(.json)")
       .required();
   command
@@ -210,7 +211,7 @@ void add_fit(const Command& tool, Common& common) {
       .default_text("none: points are places");
   command
       .option("--head-pose", &request->reading.head_pose,
-              "auto: the head's own motion is taken out where parts that cannot move have moved")
+              "auto: remove the head's rigid motion if parts that no muscle moves have moved")
       .one_of({"auto", "fixed"});
   command.option("--fps", &request->reading.fps, "Frames a second of what holds no times").range(1.0, 1000.0);
   command

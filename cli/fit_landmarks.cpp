@@ -95,10 +95,10 @@ class LandmarkTargetMaker {
         const double share = place.shares[static_cast<Eigen::Index>(k)];
         if (share <= 0.0) continue;
         const auto at = static_cast<Eigen::Index>(3 * place.vertices[k]);
-        double& trust = out.trust[place.vertices[k]];
+        double& confidence = out.confidence[place.vertices[k]];
         out.displacements.segment<3>(at) =
-            (trust * Vec3(out.displacements.segment<3>(at)) + share * moved) / (trust + share);
-        trust += share;
+            (confidence * Vec3(out.displacements.segment<3>(at)) + share * moved) / (confidence + share);
+        confidence += share;
       }
     }
     return out;

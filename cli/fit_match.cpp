@@ -80,7 +80,7 @@ fit::Target TargetMaker::finished(fit::Target target) const {
   double sum = 0.0;
   size_t count = 0;
   for (size_t v = 0; v < subject_.vertex_count(); ++v) {
-    if (target.trust[v] <= 0.0) continue;
+    if (target.confidence[v] <= 0.0) continue;
     sum += target.displacements.segment<3>(static_cast<Eigen::Index>(3 * v)).norm();
     ++count;
   }
@@ -97,7 +97,7 @@ fit::Target TargetMaker::without_head(fit::Target target) const {
   Vec3 from = Vec3::Zero(), to = Vec3::Zero();
   double moved = 0.0;
   for (size_t v = 0; v < subject_.vertex_count(); ++v) {
-    if (target.trust[v] <= 0.0 || subject_.eyes()[v] != 0 || subject_.follows(v)) continue;
+    if (target.confidence[v] <= 0.0 || subject_.eyes()[v] != 0 || subject_.follows(v)) continue;
     const auto at = static_cast<Eigen::Index>(3 * v);
     still.push_back(at);
     from += subject_.rest().segment<3>(at);
@@ -116,7 +116,7 @@ fit::Target TargetMaker::without_head(fit::Target target) const {
   }
   const Mat3 back = nearest_rotation(sum);
   for (size_t v = 0; v < subject_.vertex_count(); ++v) {
-    if (target.trust[v] <= 0.0) continue;
+    if (target.confidence[v] <= 0.0) continue;
     const auto at = static_cast<Eigen::Index>(3 * v);
     const Vec3 rest = subject_.rest().segment<3>(at);
     target.displacements.segment<3>(at) =
@@ -139,7 +139,7 @@ void TargetMaker::put_metres(fit::Target& target, size_t vertex, const Vec3& pla
   const auto at = static_cast<Eigen::Index>(3 * vertex);
   if (!place.allFinite()) return;
   target.displacements.segment<3>(at) = place - Vec3(subject_.rest().segment<3>(at));
-  target.trust[vertex] = 1.0;
+  target.confidence[vertex] = 1.0;
 }
 
 Mat4 scene_to_metres(const fit::Subject& subject, const formats::Scene& scene) {

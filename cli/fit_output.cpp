@@ -81,9 +81,9 @@ Vec3 heat(double mm) {
 }
 
 std::vector<double> residual_mm(const fit::Target& target, const fit::FitResult& result) {
-  std::vector<double> list(target.trust.size(), 0.0);
+  std::vector<double> list(target.confidence.size(), 0.0);
   for (size_t v = 0; v < list.size(); ++v)
-    if (target.trust[v] > 0.0)
+    if (target.confidence[v] > 0.0)
       list[v] =
           1e3 *
           (result.displacements - target.displacements).segment<3>(static_cast<Eigen::Index>(3 * v)).norm();

@@ -111,10 +111,10 @@ PictureFrame measured(fit::Subject& subject, const SeenLandmarks& landmarks, con
     const fit::SkinPlace& place = landmarks.places[l];
     for (size_t k = 0; k < 3; ++k) {
       const size_t vertex = subject.first_vertex(place.primitive) + place.vertices[k];
-      if (place.shares[k] <= 0.0 || out.target.trust[vertex] > 0.0) continue;
+      if (place.shares[k] <= 0.0 || out.target.confidence[vertex] > 0.0) continue;
       out.target.displacements.segment<3>(static_cast<Eigen::Index>(3 * vertex)) +=
           tracked.head.rotation.transpose() * gap;
-      out.target.trust[vertex] = 1.0;
+      out.target.confidence[vertex] = 1.0;
     }
   }
   misses.write(result);

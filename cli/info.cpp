@@ -143,11 +143,11 @@ void run(const Common& common, const InfoRequest& request) {
 
 void add_info(const Command& tool, Common& common) {
   auto request = std::make_shared<InfoRequest>();
-  const Command command = tool.command("info", "Say what is in a rig, and whether it is sound");
-  command.positional("RIG", &request->rig, "Rig (.glb)").default_text("none, which only --names allows");
-  command.flag("--names", request->names, "List the names of other programs that rigs know; needs no rig");
+  const Command command = tool.command("info", "Describe a rig, and validate it");
+  command.positional("RIG", &request->rig, "Rig (.glb)").default_text("none, allowed only with --names");
+  command.flag("--names", request->names, "List the accepted names of other programs; needs no rig");
   command.flag("--channels", request->channels, "List every channel and vocabulary");
-  command.flag("--validate", request->validate, "Say whether the rig is sound");
+  command.flag("--validate", request->validate, "Validate the rig");
   command.run([request, &common] { run(common, *request); });
 }
 

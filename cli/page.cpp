@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <cstdio>
 
+#include "geometry/base64.h"
 #include "geometry/text.h"
 
 namespace fascia::cli::page {
@@ -17,20 +18,6 @@ const char* const style =
     "img{max-width:32%;height:auto}"
     ".warn{background:#fff3d6;border-left:4px solid #d98e00;padding:.4em 1em}.far{color:#b3361b}"
     ".bar{display:inline-block;height:.8em;background:#4a78a8}p.cap{color:#555;margin:.2em 0 .6em}";
-
-std::string base64(const std::vector<uint8_t>& bytes) {
-  static const char* const digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  out.reserve(bytes.size() * 4 / 3 + 4);
-  for (size_t i = 0; i < bytes.size(); i += 3) {
-    uint32_t group = 0;
-    for (size_t k = 0; k < 3; ++k)
-      group = group << 8 | (i + k < bytes.size() ? bytes[i + k] : 0U);
-    for (size_t k = 0; k < 4; ++k)
-      out += i + k <= bytes.size() ? digits[group >> (18 - 6 * k) & 63U] : '=';
-  }
-  return out;
-}
 
 }  // namespace
 
@@ -49,7 +36,7 @@ std::string row(const std::vector<std::string>& cells, const char* tag, size_t f
 
 std::string picture(const view::Image& image, const std::string& about) {
   return "<img alt=\"" + escaped_markup(about) + "\" src=\"data:image/png;base64," +
-         base64(view::encode_png(image)) + "\">";
+         to_base64(view::encode_png(image)) + "\">";
 }
 
 std::string whole(const std::string& title, const std::string& body) {

@@ -51,22 +51,21 @@ void add_play(const Command& tool, Common& common) {
       .range(1.0, 1000.0);
   command
       .option("--fps-in", &request->curve_frames_per_second,
-              "Frames a second of the curves' rows or timecodes")
+              "Frames per second of the curves' rows or timecodes")
       .range(1.0, 1000.0)
       .default_text("as their file says");
   command
-      .option("--time-unit", &request->time_unit,
-              "Unit of the curves' times: s, ms, us or seconds in one unit")
+      .option("--time-unit", &request->time_unit, "Unit of the curves' times: s, ms, us or seconds per unit")
       .units({{"s", 1.0}, {"ms", 1e-3}, {"us", 1e-6}})
       .range(1e-9, 3600.0)
       .value("UNIT")
       .default_text("as their file says");
-  command.option("--from", &request->from, "Where the piece to play begins, seconds from the first key")
+  command.option("--from", &request->from, "Start of the range to play, seconds from the first key")
       .range(0.0, 1e6);
   command.option("--to", &request->to, "Where it ends").default_text("the last key");
   command.option("--targets", &request->most_targets, "Morph targets a mesh at most").range(1, 4096);
   command.flag("--head", request->keeps_head,
-               "Keep the captured rotation of the head as motion of the file's nodes");
+               "Write the captured rotation of the head as animation of the file's nodes");
   add_solver_option(command, request->solver);
   add_level_option(command, request->level);
   command.option("-o,--output", &request->output, "Animation to write: .glb, or a point cache, .pc2 or .mdd")

@@ -183,11 +183,10 @@ void run(const Common& common, const RenderRequest& request) {
 
 void add_render(const Command& tool, Common& common) {
   auto request = std::make_shared<RenderRequest>();
-  const Command command = tool.command("render", "Draw a rig to a picture or a film, no display needed");
+  const Command command = tool.command("render", "Render a rig to a picture or a film, without a display");
   add_rig_argument(command, request->rig);
   add_set_options(command, request->set, request->file);
-  command
-      .option("--curves", &request->curves, "A take: with --at one picture of it, else all of it as a film")
+  command.option("--curves", &request->curves, "A take: one picture with --at, otherwise a film")
       .value("FILE")
       .default_text("none");
   command.option("--at", &request->at, "Seconds into the take, simulated from its beginning")
@@ -200,33 +199,33 @@ void add_render(const Command& tool, Common& common) {
       .value("LAYER,...");
   command.option(
       "--view", &request->view,
-      "front, side, right, three-quarter or back, several with commas side by side; turntable; or sheet: "
+      "front, side, right, three-quarter or back, or several separated by commas; turntable; or sheet: "
       "muscles in four views with a legend");
   command
       .option("--camera", &request->camera,
-              "Turn to the subject's left, tilt up (degrees), come nearer (times)")
+              "Relative to the view: degrees to the subject's left, degrees up, magnification")
       .value("YAW,PITCH[,ZOOM]")
       .default_text("0,0,1");
   command
       .option("--reveal", &request->reveal,
-              "Take the skin off one half (the subject's left or right, top or bottom), so that deeper "
+              "Remove the skin on one half (the subject's left or right, top or bottom), so that deeper "
               "layers show")
       .value("HALF")
       .default_text("none");
   command
       .option("--muscles", &request->muscles,
-              "Draw these muscles only: names of parts or wholes, with a side or without")
+              "Draw only these muscles: names of parts or groups, with or without a side")
       .value("NAME,...")
       .default_text("all");
-  command.option("--colours", &request->colours, "Of muscles: flesh, or names, a colour each")
+  command.option("--colours", &request->colours, "Muscle colours: flesh, or names (one colour per muscle)")
       .one_of({"flesh", "names"});
-  command.flag("--plain", request->is_plain, "Leave out the head's own textures and colours");
+  command.flag("--plain", request->is_plain, "Ignore the head's own textures and colours");
   command.flag("--beside-rest", request->is_beside_rest, "The face at rest beside the pose");
   command.option("--light", &request->light, "Light")
       .one_of({"studio", "soft", "dramatic", "outdoor", "flat"});
   command.option("--background", &request->background, "studio (a lit wall), white, black or #RRGGBB")
       .value("COLOUR");
-  command.option("--samples", &request->samples, "Samples a pixel: 1, 2, or more in steps of four")
+  command.option("--samples", &request->samples, "Samples per pixel: 1, 2, or a multiple of four")
       .range(1, 64)
       .default_text("8, for films 2");
   add_solver_option(command, request->solver);

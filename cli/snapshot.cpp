@@ -225,21 +225,21 @@ void run(const Common& common, const SnapshotRequest& wanted) {
 void add_snapshot(const Command& tool, Common& common) {
   auto request = std::make_shared<SnapshotRequest>();
   const Command command = tool.command("snapshot",
-                                       "Keep where a rig's skin goes as numbers (record), and check that it "
-                                       "still goes there (check) or compare two such "
-                                       "files (diff); ends with 4 when something differs");
+                                       "Record the displacements of a rig's skin (record), check them "
+                                       "against a recording (check), or compare two "
+                                       "recordings (diff); exits with 4 if they differ");
   command.positional("ACTION", &request->action, "What to do").required().one_of({"record", "check", "diff"});
   command.positional("FILE", &request->file, "Rig (.glb) to record or check, or snapshot to compare")
       .required();
-  command.option("-o,--output", &request->output, "Snapshot to record; one that is there is renewed")
+  command.option("-o,--output", &request->output, "Snapshot to record; an existing one is updated")
       .default_text("none");
   command.option("--against", &request->against, "Snapshot to check or compare with").default_text("none");
   command.option("--poses", &request->poses, "Poses and regions to record (.json)")
       .default_text("every channel alone and every ARKit shape, regions by landmarks");
   command
       .option("--curves", &request->curves,
-              "Curves to simulate as a take, several times for more; when checking, in the snapshot's order")
-      .default_text("none, or where the snapshot found them");
+              "Curves to simulate as a take, may be repeated; when checking, in the snapshot's order")
+      .default_text("none, or the files of the snapshot");
   command.option("--level", &request->level, "Level of detail to record: low, medium or high")
       .value("LEVEL")
       .default_text("the rig's finest");
@@ -247,8 +247,8 @@ void add_snapshot(const Command& tool, Common& common) {
       .option("--tolerance", &request->tolerance_mm,
               "Allowed difference of a region, root mean square of its vertices, mm")
       .range(1e-3, 1e3)
-      .default_text("0.02 when recording, else what was recorded");
-  command.option("--reason", &request->reason, "Why a snapshot that is there is recorded anew")
+      .default_text("0.02 when recording, otherwise as recorded");
+  command.option("--reason", &request->reason, "Reason for updating an existing snapshot")
       .value("TEXT")
       .default_text("none");
   command.option("--report", &request->report, "Page with heat maps to write (.html)").default_text("none");

@@ -36,20 +36,19 @@ void add_view(const Command& tool, Common& common) {
   };
   auto request = std::make_shared<Request>();
   app::ApplicationOptions& options = request->options;
-  const Command command = tool.command("view", "Open the window: build, pose, edit and play a face");
+  const Command command =
+      tool.command("view", "Open the graphical application: build, pose, edit and play a face");
   command.positional("FILE", &options.files, "Heads, rigs, recordings or edits to open")
       .default_text("the start page");
-  command
-      .option("--script", &options.script,
-              "Drive the window by a file of steps and end with it, see docs/view.md")
+  command.option("--script", &options.script, "Run a script of steps, then exit; see docs/view.md")
       .default_text("the mouse and the keyboard");
-  command.option("--state", &options.state, "Folder to remember things in")
+  command.option("--state", &options.state, "Folder for settings and recovery")
       .value("DIR")
-      .default_text("$XDG_STATE_HOME/fascia; for a script a passing one");
+      .default_text("$XDG_STATE_HOME/fascia; temporary for a script");
   command.option("--scale", &options.scale, "Size of text and widgets, 0.5 to 4")
       .range(0.0, 4.0)
       .default_text("as the display says");
-  command.option("--monkey", &request->seed, "Press keys and mouse at random, by this seed")
+  command.option("--monkey", &request->seed, "Generate random keyboard and mouse input with this seed")
       .value("SEED")
       .default_text("not");
   command.option("--seconds", &options.monkey_seconds, "How long the random input lasts").range(0.1, 86400.0);

@@ -139,15 +139,15 @@ bool Fitter::linearise(const std::vector<float>& values) {
     return true;
   }
   const auto& weights = subject_->weights();
-  const Eigen::SparseMatrix<double> trusted = weights.transpose() * vertex_weights_.asDiagonal();
-  const Eigen::SparseMatrix<double> between = trusted * weights;
+  const Eigen::SparseMatrix<double> weighted = weights.transpose() * vertex_weights_.asDiagonal();
+  const Eigen::SparseMatrix<double> between = weighted * weights;
   const auto count = node_columns_.cols();
   hessian_.setZero(count, count);
   for (int axis = 0; axis < 3; ++axis) {
     const Eigen::MatrixXd columns = axis_rows(node_columns_, axis), jaw = axis_rows(jaw_slopes_, axis);
     const Eigen::MatrixXd gathered = between * columns;
     dense::add_transposed_product(1.0, columns, gathered, hessian_);
-    const Eigen::MatrixXd pulled = trusted * jaw;
+    const Eigen::MatrixXd pulled = weighted * jaw;
     const Eigen::MatrixXd across = dense::transposed_product(columns, pulled);
     hessian_.rightCols<3>() += across;
     hessian_.bottomRows<3>() += across.transpose();
@@ -167,7 +167,7 @@ void Fitter::find_eyes(const Target& target, std::vector<float>& values) {
     Mat3 sum = Mat3::Zero();
     double most = 0.0;
     for (size_t v = 0; v < subject_->vertex_count(); ++v) {
-      if (subject_->eyes()[v] != eye || target.trust[v] <= 0.0) continue;
+      if (subject_->eyes()[v] != eye || target.confidence[v] <= 0.0) continue;
       seen[eye - 1U] = true;
       const auto at = static_cast<Eigen::Index>(3 * v);
       const Vec3 arm = subject_->rest().segment<3>(at) - centre, moved = target.displacements.segment<3>(at);
@@ -217,7 +217,7 @@ Eigen::VectorXd Fitter::step(const Eigen::VectorXd& slope, const std::vector<flo
 void Fitter::take_weights(const Target& target) {
   Eigen::VectorXd weights = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(subject_->vertex_count()));
   for (size_t v = 0; v < subject_->vertex_count(); ++v)
-    if (subject_->follows(v)) weights[static_cast<Eigen::Index>(v)] = target.trust[v];
+    if (subject_->follows(v)) weights[static_cast<Eigen::Index>(v)] = target.confidence[v];
   if (!(weights.sum() > 0.0)) throw Error("the target tells nothing of the parts of the face that move");
   weights /= weights.sum();
   if (vertex_weights_.size() != weights.size() || vertex_weights_ != weights) linear_at_.clear();
@@ -331,11 +331,11 @@ FitResult Fitter::solve(const Target& target, bool is_next) {
   return result;
 }
 
-void Misses::add(double left, double moved, double trust) {
+void Misses::add(double left, double moved, double confidence) {
   constexpr double moves = 5e-4;  // metres
-  left_ += trust * left * left;
-  whole_ += trust * moved * moved;
-  trust_ += trust;
+  left_ += confidence * left * left;
+  whole_ += confidence * moved * moved;
+  confidence_ += confidence;
   miss_ += left;
   ++count_;
   if (moved > moves) {
@@ -346,7 +346,7 @@ void Misses::add(double left, double moved, double trust) {
 
 void Misses::write(FitResult& result) const {
   result.share = whole_ > 0.0 ? 1.0 - left_ / whole_ : left_ > 0.0 ? 0.0 : 1.0;
-  result.rms_mm = trust_ > 0.0 ? 1e3 * std::sqrt(left_ / trust_) : 0.0;
+  result.rms_mm = confidence_ > 0.0 ? 1e3 * std::sqrt(left_ / confidence_) : 0.0;
   result.error_mm = 1e3 * (count_moved_ > 0 ? miss_moved_ / static_cast<double>(count_moved_)
                                             : miss_ / static_cast<double>(std::max<size_t>(1, count_)));
 }
@@ -356,11 +356,11 @@ void Fitter::finish(const Target& target, FitResult& result) {
   result.displacements = subject_->displacements(result.activations);
   Misses misses;
   for (size_t v = 0; v < subject_->vertex_count(); ++v) {
-    if (target.trust[v] <= 0.0) continue;
+    if (target.confidence[v] <= 0.0) continue;
     const auto at = static_cast<Eigen::Index>(3 * v);
     const Vec3 wanted = target.displacements.segment<3>(at),
                gap = result.displacements.segment<3>(at) - wanted;
-    misses.add(gap.norm(), wanted.norm(), target.trust[v]);
+    misses.add(gap.norm(), wanted.norm(), target.confidence[v]);
   }
   misses.write(result);
   result.spread.assign(result.activations.size(), 0.0);

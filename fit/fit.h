@@ -9,10 +9,10 @@
 
 namespace fascia::fit {
 
-/// What a face should look like: where each vertex should go, and how far it is to be trusted.
+/// What a face should look like: where each vertex should go, and how much it is to be weighted.
 struct Target {
-  Eigen::VectorXd displacements;  ///< 3 x #vertices of the subject, metres from rest
-  std::vector<double> trust;      ///< #vertices, 0 where nothing is known of a vertex
+  Eigen::VectorXd displacements;   ///< 3 x #vertices of the subject, metres from rest
+  std::vector<double> confidence;  ///< #vertices, 0 where nothing is known of a vertex
   /// 3 x #vertices, unit, or empty. Where given, only the distance along it counts (and a little the rest):
   /// the vertex may slide over a surface it was matched to (Chen & Medioni 1992).
   Eigen::VectorXd normals = {};
@@ -31,9 +31,9 @@ struct FitOptions {
 
 struct FitResult {
   std::vector<float> activations;  ///< one a channel of the rig
-  double share = 0.0;              ///< 1 - sum |u - v|^2 / sum |v|^2 over trusted vertices
+  double share = 0.0;              ///< 1 - sum |u - v|^2 / sum |v|^2 over weighted vertices
   double error_mm = 0.0;  ///< mean distance left where the target moves more than 0.5 mm; else over all
-  double rms_mm = 0.0;    ///< root mean square distance left over trusted vertices
+  double rms_mm = 0.0;    ///< root mean square distance left over weighted vertices
   int iterations = 0;
   bool converged = false;
   Eigen::VectorXd
@@ -50,14 +50,14 @@ struct FitResult {
 class Misses {
  public:
   /// `left`: from where the fit has a place to where it should be; `moved`: how far it should have moved;
-  /// metres. `trust` above 0.
-  void add(double left, double moved, double trust = 1.0);
-  double motion() const { return whole_; }  ///< trusted squares of what should have moved
+  /// metres. `confidence` above 0.
+  void add(double left, double moved, double confidence = 1.0);
+  double motion() const { return whole_; }  ///< weighted squares of what should have moved
   /// Writes share, error_mm and rms_mm.
   void write(FitResult& result) const;
 
  private:
-  double left_ = 0.0, whole_ = 0.0, trust_ = 0.0, miss_ = 0.0, miss_moved_ = 0.0;
+  double left_ = 0.0, whole_ = 0.0, confidence_ = 0.0, miss_ = 0.0, miss_moved_ = 0.0;
   size_t count_ = 0, count_moved_ = 0;
 };
 
@@ -66,7 +66,7 @@ struct Linearised {
   std::vector<uint32_t> channels;  ///< that rows and columns below stand for
   Eigen::MatrixXd hessian;         ///< Gauss-Newton, of half the mean squared distance, mm^2
   Eigen::VectorXd slope;           ///< of the same
-  double mean_square = 0.0;        ///< mm^2, over trusted vertices
+  double mean_square = 0.0;        ///< mm^2, over weighted vertices
   double target_square = 0.0;      ///< of the target's own motion, mm^2
 };
 
@@ -81,13 +81,13 @@ class Fitter {
  public:
   explicit Fitter(Subject& subject, const FitOptions& options = {});
 
-  /// Throws fascia::Error when the target trusts no vertex that the rig moves.
+  /// Throws fascia::Error when the target has no confidence in any vertex that the rig moves.
   FitResult fit(const Target& target);
   /// The next frame of a take: begins at the last result and keeps near it.
   FitResult follow(const Target& target);
 
-  /// The pose of `values` beside `target`; costs do not count. Throws fascia::Error when the target trusts no
-  /// vertex that the rig moves, or the pose has no derivative.
+  /// The pose of `values` beside `target`; costs do not count. Throws fascia::Error when the target has no
+  /// confidence in any vertex that the rig moves, or the pose has no derivative.
   Linearised linearised(const Target& target, const std::vector<float>& values);
 
   /// Other costs and steps from now on.
@@ -125,7 +125,7 @@ class Fitter {
   Eigen::MatrixXd node_columns_;    ///< 3 #nodes x #fitted
   Eigen::MatrixXd jaw_slopes_;      ///< 3 #vertices x 3
   Eigen::MatrixXd hessian_;         ///< #fitted square: of the mean squared error in mm^2, halved
-  Eigen::VectorXd vertex_weights_;  ///< #vertices: trust over its sum
+  Eigen::VectorXd vertex_weights_;  ///< #vertices: confidence over its sum
   Eigen::VectorXd slide_normals_;   ///< of the target; empty: distances count in all directions
   bool is_sequence_ = false;
 };

@@ -29,7 +29,7 @@ Subject::Subject(rig::RigFile file, const std::string& level)
   if (!fast_model_->valid())
     throw Error("FASCIA_tissue, level '" + tissue.name + "': " + fast_model_->fault() +
                 "; build the rig again");
-  face_ = std::make_unique<sim::realtime::Face>(*fast_model_, channels().size());
+  face_ = std::make_unique<sim::realtime::Solver>(*fast_model_, channels().size());
   positions_.resize(model_->rest().size());
   nodes_ = model_->rest();
   size_t vertices = 0;

@@ -8,7 +8,7 @@
 #include "geometry/mesh.h"
 #include "rig/read/read.h"
 #include "sim/jaw_muscles.h"
-#include "sim/realtime/face.h"
+#include "sim/realtime/solver.h"
 
 /// Which muscles, how strongly: activations from what a face looks like.
 namespace fascia::fit {
@@ -68,7 +68,7 @@ class Subject {
   std::unique_ptr<sim::FaceModel> model_;
   sim::JawMuscles jaw_muscles_;
   std::unique_ptr<sim::realtime::Model> fast_model_;
-  std::unique_ptr<sim::realtime::Face> face_;
+  std::unique_ptr<sim::realtime::Solver> face_;
   std::vector<size_t> first_;
   Eigen::VectorXd rest_;
   Eigen::SparseMatrix<double, Eigen::RowMajor> weights_;

@@ -38,7 +38,7 @@ inline Face& with_mesh(const fascia_face* handle, uint32_t mesh) {
 /// The face, which has a layer of that number.
 inline Face& with_layer(const fascia_face* handle, uint32_t layer) {
   Face& face = checked(handle);
-  if (!face.drive().has_layer(layer))
+  if (!face.mixer().has_layer(layer))
     throw Failure(FASCIA_ERROR_ARGUMENT,
                   "the face has no layer " + std::to_string(layer) + ": fascia_face_set_layer makes it");
   return face;

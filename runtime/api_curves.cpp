@@ -131,9 +131,9 @@ fascia_result fascia_curves_apply_to_layer(const fascia_curves* curves, double s
       const float value = curves->curves.curves[i].at(seconds);
       for (const Driven& entry : driven[i])
         if (entry.overrides && entry.target.kind == Target::Kind::channel)
-          face.drive().take_over(layer, entry.target.index, entry.share * value, weight);
+          face.mixer().take_over(layer, entry.target.index, entry.share * value, weight);
         else
-          face.drive().add(layer, entry.target, entry.share * value, weight);
+          face.mixer().add(layer, entry.target, entry.share * value, weight);
     }
     return FASCIA_OK;
   });

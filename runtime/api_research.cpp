@@ -111,7 +111,7 @@ fascia_result fascia_face_member_gradient(const fascia_face* handle, uint32_t se
     const std::span<const float> slopes(by_channel, asset.channel_names.size());
     const uint32_t first = asset.first_member(set);
     for (uint32_t m = 0; m < asset.set_members[set].size(); ++m) {
-      const float weight = face.drive().get(0, {Target::Kind::member, first + m});
+      const float weight = face.mixer().get(0, {Target::Kind::member, first + m});
       by_member[m] = asset.members()[first + m].slope(weight, slopes);
     }
     return FASCIA_OK;

@@ -24,7 +24,7 @@ Eigen::Matrix3f eye_rotation(float yaw, float pitch) {
 }
 
 Face::Face(std::shared_ptr<const Asset> asset, const fascia_face_options& options)
-    : asset_(std::move(asset)), options_(options), drive_(*asset_) {
+    : asset_(std::move(asset)), options_(options), mixer_(*asset_) {
   bones_.eye_centres = {asset_->rig().skull.eye_left.centre, asset_->rig().skull.eye_right.centre};
   touches_.reserve(256);
   take_level(chosen_level(*asset_, options.level));
@@ -82,11 +82,11 @@ uint64_t Face::state_kind() const {
 }
 
 bool Face::has_layers_of(const uint8_t* bytes, std::size_t size) const {
-  return drive_.has_layers_of({bytes, size});
+  return mixer_.has_layers_of({bytes, size});
 }
 
 bool Face::exchange_state(sim::StateBytes& bytes) {
-  if (!drive_.exchange_state(bytes)) return false;
+  if (!mixer_.exchange_state(bytes)) return false;
   bytes.value(jaw_);
   bytes.value(shown_jaw_);
   bytes.value(acceleration_);
@@ -130,7 +130,7 @@ sim::JawPose Face::wanted_jaw(std::span<const float> channels) const {
 
 sim::Controls Face::controls() const {
   sim::Controls controls;
-  controls.activations = drive_.effective();
+  controls.activations = mixer_.effective();
   controls.jaw = jaw_;
   controls.acceleration = acceleration_ + inertia_;
   controls.touches = touches_;
@@ -144,7 +144,7 @@ void Face::find_bones() {
   bones_.jaw = sim::jaw_transform(model_->jaw(), shown_jaw_);
   for (std::size_t eye = 0; eye < 2; ++eye)
     bones_.eyes[eye] =
-        eye_rotation(drive_.effective(channels.eye_yaw[eye]), drive_.effective(channels.eye_pitch[eye]));
+        eye_rotation(mixer_.effective(channels.eye_yaw[eye]), mixer_.effective(channels.eye_pitch[eye]));
 }
 
 void Face::follow() {
@@ -211,8 +211,8 @@ void Face::pose() {
   fade_passed_ = fade_length_;
   head_.known = 0;
   inertia_.setZero();
-  drive_.gather(0.0);
-  jaw_ = wanted_jaw(drive_.effective());
+  mixer_.gather(0.0);
+  jaw_ = wanted_jaw(mixer_.effective());
   solver_->settle(controls());
   shown_jaw_ = jaw_;
   follow();
@@ -220,11 +220,11 @@ void Face::pose() {
 
 bool Face::step(double seconds) {
   inertia_ = inertia(seconds);
-  drive_.gather(std::isfinite(seconds) ? seconds : 0.0);
+  mixer_.gather(std::isfinite(seconds) ? seconds : 0.0);
   fade_passed_ = std::min(fade_length_, fade_passed_ + static_cast<float>(seconds));
   if (std::isfinite(seconds)) {
     seconds = std::min(seconds, solver_->longest_frame());  // what the solver loses is lost for the jaw too
-    jaw_ = sim::approached(jaw_, wanted_jaw(drive_.effective()), seconds);
+    jaw_ = sim::approached(jaw_, wanted_jaw(mixer_.effective()), seconds);
   }
   const bool is_sound = solver_->step(seconds, controls()).status == sim::StepStatus::done;
   shown_jaw_ = solver_->shown_jaw(jaw_);
@@ -236,8 +236,8 @@ void Face::reset() {
   fade_passed_ = fade_length_;
   head_.known = 0;
   inertia_.setZero();
-  drive_.gather(0.0);
-  jaw_ = wanted_jaw(drive_.effective());
+  mixer_.gather(0.0);
+  jaw_ = wanted_jaw(mixer_.effective());
   solver_->reset(controls());
   shown_jaw_ = jaw_;
   follow();

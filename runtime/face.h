@@ -5,7 +5,7 @@
 
 #include "runtime/asset.h"
 #include "runtime/bound_mesh.h"
-#include "runtime/drive.h"
+#include "runtime/mixer.h"
 #include "runtime/solver.h"
 #include "sim/sensitivity.h"
 #include "sim/strain.h"
@@ -21,8 +21,8 @@ class Face {
   const Asset& asset() const { return *asset_; }
   std::size_t level() const { return level_; }
 
-  Drive& drive() { return drive_; }
-  const Drive& drive() const { return drive_; }
+  Mixer& mixer() { return mixer_; }
+  const Mixer& mixer() const { return mixer_; }
   void set_acceleration(const sim::Vec3& acceleration) { acceleration_ = acceleration; }
 
   /// Where the head stands from the next step on; see fascia_face_move_head.
@@ -88,7 +88,7 @@ class Face {
   std::size_t level_ = 0;
   const sim::FaceModel* model_ = nullptr;
   std::unique_ptr<sim::Solver> solver_;
-  Drive drive_;
+  Mixer mixer_;
   sim::Vec3 acceleration_ = sim::Vec3::Zero(), inertia_ = sim::Vec3::Zero();
   struct HeadMotion {
     Eigen::Matrix4d place = Eigen::Matrix4d::Identity();

@@ -52,8 +52,8 @@ Slopes slopes_of(Face& face, std::span<const float* const> slopes) {
   Eigen::Matrix3d eyes[2][2];
   for (std::size_t eye = 0; eye < 2; ++eye)
     for (int k = 0; k < 2; ++k)
-      eyes[eye][k] = eye_motion(face.drive().effective(channels.eye_yaw[eye]),
-                                face.drive().effective(channels.eye_pitch[eye]), k);
+      eyes[eye][k] = eye_motion(face.mixer().effective(channels.eye_yaw[eye]),
+                                face.mixer().effective(channels.eye_pitch[eye]), k);
   for (std::size_t mesh = 0; mesh < slopes.size(); ++mesh) {
     if (slopes[mesh] == nullptr) continue;
     const MeshShape& shape = face.shape(mesh);
@@ -94,7 +94,7 @@ void find_gradient(Face& face, std::span<const float* const> slopes, std::span<f
     all[c] = c;
   const Eigen::VectorXd adjoint = face.sensitivity().adjoint(loss.nodes, all);
   const Eigen::Vector3d by_jaw = adjoint.tail<3>() + loss.jaw;
-  std::vector<float> values = face.drive().effective();
+  std::vector<float> values = face.mixer().effective();
   const Asset& asset = face.asset();
   for (std::size_t c = 0; c < by_channel.size(); ++c) {
     // Where the jaw goes is linear in the channels but for the ends of its range.

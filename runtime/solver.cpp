@@ -5,7 +5,7 @@
 #include "runtime/asset.h"
 #include "runtime/bullet_module.h"
 #include "runtime/message.h"
-#include "sim/realtime/face.h"
+#include "sim/realtime/solver.h"
 
 namespace fascia::runtime {
 std::unique_ptr<sim::Solver> make_solver(const fascia_face_options& options, const Asset& asset,
@@ -18,7 +18,7 @@ std::unique_ptr<sim::Solver> make_solver(const fascia_face_options& options, con
     pose.solver.iterations = 2000;
     sim::realtime::StepOptions step;
     if (options.iterations > 0) step.iterations = options.iterations;
-    return std::make_unique<sim::realtime::Face>(asset.realtime_model(level), channels, pose, step);
+    return std::make_unique<sim::realtime::Solver>(asset.realtime_model(level), channels, pose, step);
   }
   const sim::FaceModel& model = asset.model(level);
   if (kind == FASCIA_SOLVER_REFERENCE) {
@@ -26,7 +26,7 @@ std::unique_ptr<sim::Solver> make_solver(const fascia_face_options& options, con
       throw Failure(FASCIA_ERROR_FORMAT, "FASCIA_tissue/levels/" + std::to_string(level) +
                                              ": its stiffness has no factor; build the rig again");
     pose.solver.iterations = 200;
-    return std::make_unique<sim::Face>(model, channels, pose);
+    return std::make_unique<sim::ReferenceSolver>(model, channels, pose);
   }
   require(kind == FASCIA_SOLVER_BULLET, "unknown solver");
   if (hosts_allocator.allocate != nullptr)

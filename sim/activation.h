@@ -5,16 +5,15 @@
 
 namespace fascia::sim {
 
-/// How fast a muscle takes up and gives up its pull: time constants in seconds. First order with
-/// separate rise and decay, after Zajac 1989, Critical Reviews in Biomedical Engineering 17(4), eq. 5;
-/// 0 follows the excitation at once.
+/// Activation dynamics: time constants in seconds. First order with separate rise and decay, after Zajac
+/// 1989, Critical Reviews in Biomedical Engineering 17(4), eq. 5; 0 follows the excitation immediately.
 struct ActivationDynamics {
   double rise = 0.030;
   double decay = 0.050;
 };
 
-/// Moves each of `activations` towards its `excitations` over `seconds`, exactly (the step's length
-/// does not change where it arrives). Both spans #channels.
+/// Moves each of `activations` towards its `excitations` over `seconds`, by the exact solution (independent
+/// of the step size). Both spans #channels.
 inline void follow(const ActivationDynamics& dynamics, double seconds, std::span<const float> excitations,
                    std::span<float> activations) {
   const auto share = [seconds](double constant) {

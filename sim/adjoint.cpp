@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/face.h"
+#include "sim/reference_solver.h"
 
 // How a static pose moves with what drives it: the adjoint of the equilibrium, gradient(x, activations) = 0.
 // For a loss of the pose, d loss / d a = -lambda . d gradient / d a with H lambda = d loss / d x, H the
@@ -10,9 +10,9 @@
 // faces).
 namespace fascia::sim {
 
-AdjointResult Face::static_gradient(const Controls& controls, std::span<const Vec3> slope,
-                                    std::span<double> by_channel, std::array<double, 3>& by_jaw,
-                                    const AdjointOptions& options) {
+AdjointResult ReferenceSolver::static_gradient(const Controls& controls, std::span<const Vec3> slope,
+                                               std::span<double> by_channel, std::array<double, 3>& by_jaw,
+                                               const AdjointOptions& options) {
   AdjointResult result;
   const auto& unknowns = model_->unknowns();
   const size_t nodes = pose_.size();

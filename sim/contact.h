@@ -10,28 +10,27 @@
 
 namespace fascia::sim {
 
-/// What touches what, and how hard it resists. Penalties: a node that comes nearer than its margin is pushed
-/// back by stiffness times what lacks. A margin is never more than the distance at rest, so that rest stays
-/// rest.
+/// Contact parameters. Contacts are penalties: a node closer than its margin is pushed back by the stiffness
+/// times the violation. A margin is never larger than the distance at rest, so that rest remains an
+/// equilibrium.
 struct ContactOptions {
   double globe_stiffness = 200.0;   ///< newton per metre a node
   double bone_stiffness = 150.0;    ///< newton per metre a node
   double facing_stiffness = 150.0;  ///< newton per metre a node
-  double thickness = 0.0004;        ///< metres kept between skin and bone, lip and lip
+  double thickness = 0.0004;        ///< metres: margin between skin and bone, lip and lip
   double lid_thickness =
-      -0.0003;  ///< between lid and lid: edges overlap a little, so that no slit is left between nodes
-  double friction = 0.3;  ///< of moist mucosa and skin, Coulomb's coefficient; in steps of time only
-  double stickiness =
-      0.0;  ///< 0..1: how far lips that have met hold together before they part; in steps of time only
+      -0.0003;  ///< between the lids: their margins overlap slightly, so that no slit is left between nodes
+  double friction = 0.3;    ///< Coulomb coefficient of moist mucosa and skin; in time steps only
+  double stickiness = 0.0;  ///< 0..1: adhesion of lips in contact before they part; in time steps only
 };
 
-/// A grid of distances to a bone that stands still in the bone's own frame.
+/// A signed distance field of a bone on a grid in the bone's frame.
 class DistanceField {
  public:
-  /// Field `index` of the lattice, which must be sound.
+  /// Field `index` of the lattice, which must be valid.
   DistanceField(const Lattice& lattice, size_t index);
   /// Distance in metres at `point`, negative inside, and its gradient: quadratic B-splines on the grid, so
-  /// the gradient is continuous. Outside the grid it goes on as it ends.
+  /// the gradient is continuous. Outside the grid it is extrapolated.
   double sample(const Vec3& point, Vec3& gradient) const;
 
  private:
@@ -41,17 +40,17 @@ class DistanceField {
   double spacing_, step_;
 };
 
-/// A node before a triangle of the facing lip or lid, both free to move; the normal stands still during one
-/// solve.
+/// A contact pair of a node and a triangle of the facing lip or lid, both free to move; the normal is fixed
+/// during one solve.
 struct FacingPair {
   static constexpr uint32_t none = std::numeric_limits<uint32_t>::max();
   uint32_t node = none;
-  std::array<uint32_t, 3> corners{none, none, none};  ///< none: it faces nothing now
+  std::array<uint32_t, 3> corners{none, none, none};  ///< none: no contact
   Vec3 weights = Vec3::Zero();
-  Vec3 normal = Vec3::Zero();  ///< unit, outward of the triangle's side, between its corners' normals
-  double margin = 0.0;         ///< gap that must remain
+  Vec3 normal = Vec3::Zero();  ///< unit, outward, interpolated between the normals of the triangle's corners
+  double margin = 0.0;         ///< minimum gap
   bool is_found() const { return corners[0] != none; }
-  /// False when it names a node beyond `nodes`.
+  /// False if it has a node index beyond `nodes`.
   bool fits(size_t nodes) const {
     const auto known = [nodes](uint32_t index) { return index < nodes; };
     if (corners[0] == none) return known(node) || node == none;
@@ -65,28 +64,28 @@ struct FacingPair {
   }
 };
 
-/// What holds a touching node back along the surface for one step of time: W = stiffness/2 |P (x - place -
-/// anchor)|^2, P taking out the normal. Also what sticks lips together, with a normal part.
+/// A friction constraint of a node in contact, for one time step: W = stiffness/2 |P (x - place - anchor)|^2,
+/// P projecting out the normal. Also the adhesion of sticky lips, with a normal component.
 struct Grip {
   uint32_t node = 0;
   std::array<uint32_t, 3> corners{FacingPair::none, FacingPair::none,
-                                  FacingPair::none};  ///< none: it grips a bone
+                                  FacingPair::none};  ///< none: the other side is a bone
   Vec3 weights = Vec3::Zero(), normal = Vec3::Zero(), anchor = Vec3::Zero();
   double stiffness = 0.0, normal_stiffness = 0.0;
 };
 
-/// Work memory of a search for what faces what.
+/// Workspace of a search for contact pairs.
 struct FacingSearch {
-  size_t side = 6;            ///< whose triangles these are; 6: nobody's yet
-  size_t bundle = 8;          ///< neighbouring triangles a bundle
-  std::vector<Vec3> centres;  ///< of each bundle
+  size_t side = 6;            ///< the side of the triangles; 6: none yet
+  size_t bundle = 8;          ///< neighbouring triangles per cluster
+  std::vector<Vec3> centres;  ///< of each cluster
   std::vector<double> radii, squared;
   std::vector<Vec3> middles;    ///< of each triangle
   std::vector<double> reaches;  ///< of each triangle, from its middle to its farthest corner
   std::vector<Vec3> normals;    ///< of the side's nodes, unit
 };
 
-/// All contact of a face; made once, shared by every instance.
+/// All contact of a face; created once and shared by every instance.
 class Contacts {
  public:
   Contacts() = default;
@@ -94,43 +93,43 @@ class Contacts {
 
   /// Energies of nodes against eyeballs and bones, joules; adds to the gradient.
   double energy(const RigidTransform& mandible, const Vec3* x, Vec3* gradient) const;
-  /// Energy of found pairs.
-  /// The same for pairs and grips, wherever a solver keeps its numbers: `place(node)` is where a node is, and
-  /// `add(node, force, stiffness)` adds to its gradient, and by how much the contact makes it stiffer (newton
-  /// per metre).
+  /// Energy of found pairs. The same for pairs and friction constraints, independent of the solver's storage:
+  /// `place(node)` returns a node's position, and `add(node, force, stiffness)` adds to its gradient and to
+  /// the bound of its added stiffness (newton per metre).
   template <class Place, class Add>
   double facing_energy(std::span<const FacingPair> pairs, const Place& place, const Add& add) const;
   template <class Place, class Add>
   static double grip_energy(std::span<const Grip> grips, const Place& place, const Add& add);
 
-  /// A node against a surface: how far it has come beyond its margin (negative: how far before it), metres,
-  /// and the surface's normal.
+  /// A node against a surface: depth beyond the margin (negative: distance to it), metres, and the surface's
+  /// normal.
   struct Touch {
     double depth = 0.0;
     Vec3 normal = Vec3::Zero();
   };
-  /// Of a contact with bone, at the node's place in the bone's own frame, as is the normal: the field's
-  /// slope, of length 1 but for its grid.
+  /// For a contact with bone, at the node's position in the bone's frame; the normal, in the same frame, is
+  /// the field's gradient, of unit length up to interpolation error.
   Touch bone_touch(size_t contact, const Vec3& local) const {
     Touch touch;
     touch.depth = bone_margins_[contact] - bone_field(contact).sample(local, touch.normal);
     return touch;
   }
 
-  /// Adds what they add to the Hessian: globes, bones, pairs and grips; the surfaces' own bend is left out.
+  /// Adds the contributions of globes, bones, pairs and friction to the Hessian, without the surfaces'
+  /// curvature.
   void add_curvature(const RigidTransform& mandible, std::span<const FacingPair> pairs,
                      std::span<const Grip> grips, const Vec3* x, Curvature& out) const;
 
-  /// Finds for each facing node the nearest place of the other side as the face stands in `x`. #facing nodes;
-  /// the largest change of a gap against the pairs before, metres, is returned. With `every` above 1 only the
-  /// pairs first, first + every, ... are looked at.
+  /// Finds the closest point of the other side for each facing node at the configuration `x`. #facing nodes;
+  /// returns the largest change of a gap against the previous pairs, metres. With `every` above 1 only the
+  /// pairs first, first + every, ... are updated.
   double find_facing(const Vec3* x, std::span<FacingPair> pairs, FacingSearch& search, size_t first = 0,
                      size_t every = 1) const;
-  /// Memory enough for a search.
+  /// A workspace of sufficient size.
   FacingSearch make_search() const;
-  /// What grips after a step from `before` to `x`, both #nodes, for the step to come; returns how many of
-  /// `grips`. Bones' own motion of the coming step is `mandible_step`; `near_bones` are the contacts with
-  /// bone to look at, else all.
+  /// Finds the friction constraints after a step from `before` to `x`, both #nodes, for the next step;
+  /// returns their number in `grips`. `mandible_step` is the bones' motion in the next step; `near_bones` are
+  /// the contacts with bone to test, by default all.
   size_t find_grips(const RigidTransform& mandible, const RigidTransform& mandible_step,
                     std::span<const FacingPair> pairs, const Vec3* before, const Vec3* x,
                     std::span<Grip> grips, const std::vector<uint32_t>* near_bones = nullptr) const;
@@ -150,7 +149,7 @@ class Contacts {
   std::span<const double> globe_radii() const { return globe_radii_; }
   const ContactOptions& options() const { return options_; }
 
-  /// Depth of the deepest contact beyond its margin, metres: what the penalties have let through.
+  /// Largest penetration beyond a margin, metres.
   double deepest(const RigidTransform& mandible, const Vec3* x) const;
 
  private:
@@ -192,7 +191,7 @@ double Contacts::facing_energy(std::span<const FacingPair> pairs, const Place& p
     const double depth = pair.margin - pair.normal.dot(gap);
     if (depth <= 0.0) continue;
     const Vec3 push = (options_.facing_stiffness * depth) * pair.normal;
-    const double stiffness = 2.0 * options_.facing_stiffness;  // both sides yield
+    const double stiffness = 2.0 * options_.facing_stiffness;  // both sides are deformable
     energy += 0.5 * options_.facing_stiffness * depth * depth;
     add(pair.node, -push, stiffness);
     for (size_t k = 0; k < 3; ++k) {

@@ -7,11 +7,12 @@
 
 namespace fascia::sim {
 
-/// A positive semidefinite stand-in for the Hessian of a face's energies at one place, element by element:
-/// each element's own Hessian without its negative curvatures (Teran et al. 2005, "Robust quasistatic finite
-/// elements and flesh simulation", section 5). Newton steps on it always lead downhill.
+/// A positive semidefinite approximation of the Hessian of a face's energy, element by element: each
+/// element's Hessian projected to its non-negative eigenvalues (Teran et al. 2005, "Robust quasistatic finite
+/// elements and flesh simulation", section 5). Newton steps with it are always descent directions.
 ///
-/// Lists are by node; applying it allocates nothing, making it may, until the lists have grown to their size.
+/// Lists are by node; applying it does not allocate; assembling it may, until the lists have reached their
+/// size.
 class Curvature {
  public:
   /// Force on node i: weight_i block sum(weight_j v_j).
@@ -59,7 +60,7 @@ class Curvature {
   void times(const Vec3* v, Vec3* out) const;
 };
 
-/// Each adds its element's share at `x`.
+/// Each adds its element's contribution at `x`.
 void add_spring(const Spring& spring, const Vec3* x, Curvature& out);
 void add_membrane(const Membrane& membrane, const Vec3* x, Curvature& out);
 void add_hinge(const Hinge& hinge, const Vec3* x, Curvature& out);

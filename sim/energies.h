@@ -29,10 +29,10 @@ struct Membrane {
   double area, mu, lambda;       ///< mu and lambda in newton per metre
 };
 
-/// An edge with two triangles. L = sum of weights times places is the sum of the two unit vectors that point
+/// An edge with two triangles. L = weighted sum of positions is the sum of the two unit vectors that point
 /// from the edge to its opposite corners, 2 sin(angle / 2) long and along the mean normal n: W = stiffness/2
 /// |L - bend n|^2, which for a flat rest is quadratic (Bergou et al. 2006) and for a bent one (Garg et al.
-/// 2007) stays smooth however its triangles shrink or fold. `nodes` are the edge's two ends and the opposite
+/// 2007) remains smooth when its triangles shrink or fold. `nodes` are the edge's two ends and the opposite
 /// corners of its first and second triangle.
 struct Hinge {
   std::array<uint32_t, 4> nodes;
@@ -41,29 +41,29 @@ struct Hinge {
   double scale_a, scale_b;        ///< of the triangles' normals to unit ones at rest
 };
 
-/// The prism between two layers: W = stiffness/(2 V0) (V - V0)^2, sides bilinear. Below t = 0.4 V0 it resists
-/// being turned inside out ever more, also where the stiffness is 0: W = 800 Pa V0 (t / V - 1)^2, from 0.1 V0
-/// on by its parabola.
+/// The prism between two layers: W = stiffness/(2 V0) (V - V0)^2, sides bilinear. Below t = 0.4 V0 a barrier
+/// prevents inversion, also if the stiffness is 0: W = 800 Pa V0 (t / V - 1)^2, from 0.1 V0 on by its
+/// parabola.
 struct Prism {
   std::array<uint32_t, 6> nodes;  ///< outer triangle, then inner, same column order
   double volume, stiffness;       ///< cubic metres, pascal
 };
 
-/// A node held to a place: `normal_stiffness` along a normal, `tangential_stiffness` across it.
+/// A node tethered to a position: `normal_stiffness` along a normal, `tangential_stiffness` across it.
 struct Tether {
   uint32_t node;
   Vec3 normal;
   double normal_stiffness, tangential_stiffness;
 };
 
-/// What resists a membrane's collapse below half its area, by its share `ratio` of the rest area: energy per
-/// area, and its derivatives by the ratio.
+/// The barrier against a membrane's collapse below half its area, as a function of its ratio to the rest
+/// area: energy per area, and its derivatives.
 formulas::Wall<double> membrane_crush(const Membrane& membrane, double ratio);
 
 /// The mean normal of a hinge's two triangles, faded out where they fold onto each other.
 struct HingeNormal {
-  Vec3 unit;      ///< shorter than 1 where it fades
-  double length;  ///< it was divided by
+  Vec3 unit;      ///< shorter than 1 where it is faded out
+  double length;  ///< its length before normalisation
 };
 HingeNormal hinge_normal(const Hinge& hinge, const Vec3* x);
 
@@ -81,7 +81,7 @@ double prism_energy(const Prism& prism, const Vec3* x, Vec3* gradient);
 double tether_energy(const Tether& tether, const Vec3& place, const Vec3& normal, const Vec3* x,
                      Vec3* gradient);
 
-/// The element at rest in `rest`; `youngs_thickness` in newton per metre.
+/// The element with the rest configuration `rest`; `youngs_thickness` in newton per metre.
 Membrane make_membrane(std::array<uint32_t, 3> nodes, double youngs_thickness, double poisson_ratio,
                        const Vec3* rest);
 /// The element at rest; `rigidity` in newton metre. Stiffness = rigidity |edge|^2 / (both areas), which on a
@@ -89,11 +89,11 @@ Membrane make_membrane(std::array<uint32_t, 3> nodes, double youngs_thickness, d
 Hinge make_hinge(std::array<uint32_t, 4> nodes, double rigidity, const Vec3* rest);
 Prism make_prism(std::array<uint32_t, 6> nodes, double stiffness, const Vec3* rest);
 
-/// Whether a hinge's triangles lie on each other to within 6 degrees: it has no mean normal that says where
-/// it bends to, and what it pulled with at rest would throw it open at the least disturbance.
+/// Whether a hinge's triangles are folded onto each other to within 6 degrees: its mean normal is then
+/// undefined, and its rest force would make it snap open at the smallest disturbance.
 bool is_folded_shut(const std::array<uint32_t, 4>& nodes, const Vec3* rest);
 
-/// Angle in radians between the planes of a hinge, 0 flat, positive where the edge stands out.
+/// Angle in radians between the planes of a hinge, 0 flat, positive for a convex edge.
 double hinge_angle(const std::array<uint32_t, 4>& nodes, const Vec3* x);
 /// Volume of a prism in cubic metres.
 double prism_volume(const std::array<uint32_t, 6>& nodes, const Vec3* x);

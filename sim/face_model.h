@@ -18,19 +18,19 @@
 namespace fascia::sim {
 
 struct FaceModelOptions {
-  double substep = 1.0 / 120.0;      ///< seconds; frames are cut into these, whatever their length
+  double substep = 1.0 / 120.0;      ///< seconds; frames are divided into these
   double stiffness_damping = 0.004;  ///< seconds: damping force per stiffness force and unit of rate
   double mass_damping = 8.0;         ///< per second
   ContactOptions contact;
 };
 
-/// A force from outside on one node, newton in the head's frame: a finger, a hand.
+/// An external force on one node, newton in the head's frame.
 struct NodeForce {
   uint32_t node = 0;
   Vec3 force = Vec3::Zero();
 };
 
-/// Energy of forces from outside, joules above rest; `place` and `add` as in Contacts::facing_energy.
+/// Energy of external forces, joules relative to rest; `place` and `add` as in Contacts::facing_energy.
 template <class Place, class Add>
 double touch_energy(std::span<const NodeForce> touches, const Positions& rest, const Place& place,
                     const Add& add) {
@@ -43,18 +43,18 @@ double touch_energy(std::span<const NodeForce> touches, const Positions& rest, c
   return energy;
 }
 
-/// What moves a face at one moment: channel values, the jaw, forces from outside.
+/// The inputs of a face at one moment: channel values, the jaw, external forces.
 struct Controls {
-  std::span<const float> activations;  ///< one a channel; channels beyond its end are 0
+  std::span<const float> activations;  ///< one per channel; missing channels are 0
   JawPose jaw;
   Vec3 acceleration = Vec3::Zero();  ///< of free tissue in the head's frame, m/s^2 (gravity change, inertia)
   std::span<const NodeForce> touches = {};  ///< must outlive the solve
 
-  /// What channel `c` is driven by; 0 beyond the end, and where it is no number.
+  /// The activation of channel `c`; 0 beyond the end, and for NaN.
   float activation(size_t c) const {
     return c < activations.size() && std::isfinite(activations[c]) ? activations[c] : 0.0F;
   }
-  /// True when the acceleration and the first `channels` activations are numbers.
+  /// True if the acceleration and the first `channels` activations are finite.
   bool is_finite(size_t channels) const {
     const auto known = activations.first(std::min(channels, activations.size()));
     return acceleration.allFinite() &&
@@ -62,9 +62,9 @@ struct Controls {
   }
 };
 
-/// Where bones and carriers stand for the controls of a solve; made once a solve.
+/// Boundary conditions of a solve: bones and kinematic guides (carriers) for the controls.
 struct Frame {
-  Positions carried;                ///< #nodes: where each would go if only its bones moved
+  Positions carried;                ///< #nodes: position under the rigid motion of its bones
   Positions tether_normals;         ///< #tethers
   Positions carrier_pulls;          ///< #carriers: force in newton
   Positions fibre_anchors;          ///< #fibre points; meaningful where anchored to a bone
@@ -72,25 +72,26 @@ struct Frame {
   std::vector<double> pressures;    ///< #pressures, pascal
   Vec3 acceleration = Vec3::Zero();
   RigidTransform mandible;
-  std::vector<FacingPair> facing;  ///< lip before lip, lid before lid: see FaceModel::find_facing
+  std::vector<FacingPair> facing;  ///< contact pairs of lips and lids: see FaceModel::find_facing
   FacingSearch facing_search;
-  std::vector<Grip> grips;  ///< capacity of them; friction, in steps of time
+  std::vector<Grip> grips;  ///< preallocated; friction, in time steps
   size_t grip_count = 0;
   std::span<const NodeForce> touches;
 };
 
-/// Joules of a configuration by what holds them; `total` is their sum and what FaceModel::energy returns.
+/// Energy of a configuration by element type, joules; `total` is their sum, as returned by FaceModel::energy.
 struct EnergyShares {
   double springs = 0.0, membranes = 0.0, bending = 0.0, volume = 0.0, tethers = 0.0, fibres = 0.0;
-  double others = 0.0;  ///< carriers, pressure, contact, touches, acceleration, and what balances rest
+  double others =
+      0.0;  ///< carriers, pressure, contact, touches, acceleration, and the correction of the rest forces
   double total = 0.0;
 };
 
-/// A face ready to solve: elements at rest, and the factors every instance shares. Immutable, so any
-/// number of instances and threads may use one. It keeps `lattice`'s spans: their arrays must outlive it.
+/// A face prepared for solving: elements at rest and factors, shared by all instances. Immutable, so any
+/// number of instances and threads may use it. It keeps the spans of `lattice`, whose arrays must outlive it.
 class FaceModel {
  public:
-  /// Makes the model; on a lattice at fault `fault()` says what is wrong and the model must not be used.
+  /// Creates the model; for an invalid lattice `fault()` is set and the model must not be used.
   FaceModel(const Lattice& lattice, const Jaw& jaw, const FaceModelOptions& options = {});
 
   bool valid() const { return fault_.empty(); }
@@ -101,31 +102,30 @@ class FaceModel {
   /// Moves bones and carriers of `frame` to `controls`. Allocates nothing.
   void place(const Controls& controls, Frame& frame) const;
 
-  /// Finds what lips and lids face as the face stands in `x`; returns the largest change against before,
-  /// metres.
+  /// Updates the contact pairs of lips and lids at `x`; returns the largest change of a gap, metres.
   double find_facing(const Vec3* x, Frame& frame) const {
     return contacts_.find_facing(x, frame.facing, frame.facing_search);
   }
 
-  /// Joules of the configuration `x` (#nodes), above those of the rest pose; writes the gradient in
-  /// newtons (#nodes, zero where a node is prescribed). One set of energies for pose and step.
+  /// Joules of the configuration `x` (#nodes), above those of the rest pose; writes the gradient in newtons
+  /// (#nodes, zero for prescribed nodes). The same energies are used for poses and steps.
   double energy(const Frame& frame, const Vec3* x, Vec3* gradient) const;
 
-  /// The same energy by what holds it. Allocates.
+  /// The same energy by element type. Allocates.
   EnergyShares energy_shares(const Frame& frame, const Vec3* x) const;
   /// Tension of a fibre at `x`, newton.
   double fibre_tension(const Frame& frame, uint32_t fibre, const Vec3* x) const;
 
-  /// The same without what linear two-sided springs contribute, for a solver that has springs of its own.
+  /// The same without linear two-sided springs, for a solver that has springs of its own.
   double energy_beside_links(const Frame& frame, const Vec3* x, Vec3* gradient) const;
 
-  /// Curvature along a direction: H(x) v, by central differences of the gradient in double precision
-  /// (error about 1e-8 of its size). `work` holds 3 x #nodes.
+  /// Hessian-vector product H(x) v, by central differences of the gradient in double precision (error about
+  /// 1e-8 of its size). `work` holds 3 x #nodes.
   void hessian_times(const Frame& frame, const Vec3* x, const Vec3* direction, Vec3* result,
                      Positions& work) const;
 
-  /// Writes a positive semidefinite stand-in for the Hessian at `x`, for Newton steps: each element's own
-  /// without its negative curvatures; pressures' share is left out. Allocates while `out` grows to its size.
+  /// Assembles a positive semidefinite approximation of the Hessian at `x`, for Newton steps: the projected
+  /// Hessians of all elements except pressures. Allocates while `out` grows to its size.
   void find_curvature(const Frame& frame, const Vec3* x, Curvature& out) const;
 
   /// Adds, for each channel, lambda . d gradient / d activation at `x`: fibres, carriers and pressures (the
@@ -138,14 +138,14 @@ class FaceModel {
   const Jaw& jaw() const { return jaw_; }
   const FaceModelOptions& options() const { return options_; }
   const Positions& rest() const { return rest_; }
-  const std::vector<uint32_t>& unknowns() const { return unknowns_; }        ///< nodes the solver moves
-  bool prescribed(size_t node) const { return unknown_of_node_[node] < 0; }  ///< moves with its bone alone
+  const std::vector<uint32_t>& unknowns() const { return unknowns_; }        ///< free nodes
+  bool prescribed(size_t node) const { return unknown_of_node_[node] < 0; }  ///< moves rigidly with its bone
   const std::vector<double>& masses() const { return masses_; }              ///< #nodes
   /// Factors in double precision, of the rest stiffness, and of mass, damping and stiffness of a substep.
-  /// Made on first use, any thread may ask; only the reference uses them.
+  /// Computed on first use, thread-safe; used only by the reference solver.
   const RestFactor& pose_factor() const;
   const RestFactor& step_factor() const;
-  /// False when the rest stiffness is not positive definite: some part is held by nothing.
+  /// False when the rest stiffness is not positive definite: some part is not constrained.
   bool has_factors() const { return pose_factor().size() == unknowns_.size(); }
   const Eigen::SparseMatrix<double, Eigen::RowMajor>& stiffness() const {
     return stiffness_;
@@ -173,9 +173,9 @@ class FaceModel {
   template <class Force>
   double pull_fibre(const Frame& frame, uint32_t fibre, double pull, const Vec3* x, Force&& add_force) const;
   Vec3 carrier_pull(size_t carrier, double value, const Vec3& carried) const;
-  /// What the SMAS over one triangle with pressure behind it has swept from where bones alone would carry it.
+  /// The volume swept by the SMAS over one pressurised triangle, relative to the rigid motion of its bones.
   struct SweptPrism {
-    std::array<Vec3, 6> corners;      ///< where the SMAS is, then where it was carried to
+    std::array<Vec3, 6> corners;      ///< of the SMAS: current, then under the rigid motion of its bones
     std::array<uint32_t, 3> nodes{};  ///< of the SMAS
   };
   SweptPrism swept_prism(const Frame& frame, size_t pressure, const Vec3* x) const;
@@ -198,7 +198,7 @@ class FaceModel {
   std::vector<double> fibre_lengths_;  // taper-weighted, at rest
   Contacts contacts_;
   std::vector<double> column_areas_;
-  Positions balance_;  // gradient at rest: what is subtracted so that rest is rest to the last bit
+  Positions balance_;  // gradient at rest: subtracted so that rest is an exact equilibrium
   Eigen::SparseMatrix<double, Eigen::RowMajor> stiffness_;
   mutable std::once_flag pose_once_, step_once_;
   mutable RestFactor pose_factor_, step_factor_;

@@ -5,32 +5,32 @@
 
 namespace fascia::sim {
 
-/// Frames of any length on substeps of one length: the state runs ahead of the frame to the end of a whole
-/// substep, and what is shown lies between its last two states (Fiedler 2004, Fix your timestep). So frames
-/// shorter than a substep move in equal steps, and frames of whole substeps show the state itself.
+/// Maps frames of any length to substeps of fixed length: the state is ahead of the frame, at the end of a
+/// complete substep, and the displayed positions are interpolated between the last two states (Fiedler 2004,
+/// Fix your timestep). Frames shorter than a substep thus move evenly, and frames of whole substeps display
+/// the state itself.
 class FrameClock {
  public:
-  /// A frame begins: `seconds` pass, of which at most `most` substeps' worth count; the rest is lost. Returns
-  /// how many substeps to simulate.
+  /// Begins a frame of `seconds`, truncated to `most` substeps. Returns the number of substeps to simulate.
   int begin(double seconds, double substep, int most) {
     substep_ = substep;
     frame_ = std::min(seconds, most * substep);
     before_ = ahead_;
     const double due = (frame_ - ahead_) / substep;
-    // Hosts count seconds in single precision: a hair more than whole substeps is whole substeps.
+    // Hosts use single precision: slightly more than a whole number of substeps is rounded down.
     const int substeps = due <= 0.0 ? 0 : static_cast<int>(std::ceil(due - hair));
     ahead_ += substeps * substep - frame_;
     if (substeps > 0 && std::abs(ahead_) < hair * substep) ahead_ = 0.0;
     return substeps;
   }
 
-  /// Where in the frame, 0 to 1, its substep number `k` (from 0) ends: the time of its drive.
+  /// Position in the frame, 0 to 1, of the end of substep `k` (from 0), at which its controls are evaluated.
   double share(int k) const {
     const double time = before_ + (k + 1) * substep_;
     return time > frame_ - hair * substep_ ? 1.0 : std::max(0.0, time / frame_);
   }
 
-  /// What is shown lies this share of a substep before the state, 0 to 1.
+  /// Fraction of a substep, 0 to 1, by which the displayed positions lag behind the state.
   double back() const { return substep_ > 0.0 ? std::clamp(ahead_ / substep_, 0.0, 1.0) : 0.0; }
 
   void reset() { ahead_ = 0.0; }
@@ -47,7 +47,7 @@ class FrameClock {
  private:
   static constexpr double hair = 1e-3;  ///< of a substep
   double substep_ = 0.0, frame_ = 0.0, before_ = 0.0;
-  double ahead_ = 0.0;  ///< seconds from what is shown to the state
+  double ahead_ = 0.0;  ///< seconds from the displayed time to the state
 };
 
 }  // namespace fascia::sim

@@ -10,34 +10,34 @@
 
 namespace fascia::sim {
 
-/// The Cholesky factor of a symmetric positive definite matrix over nodes in space, three rows a node, in
+/// The Cholesky factor of a symmetric positive definite matrix over nodes in space, three rows per node, in
 /// single precision: multifrontal in the order of a nested dissection (Duff & Reid 1983, "The multifrontal
 /// solution of indefinite sparse symmetric linear equations"; Liu 1992), every front a dense block.
 ///
-/// It may be made in parts, some fronts at a time, so that a frame of a live program bears a share of it.
+/// It may be computed incrementally, some fronts at a time, to distribute the cost over several frames.
 class FrontFactor {
  public:
   using Dense = Eigen::MatrixXf;
   using Matrix = Eigen::SparseMatrix<double>;  ///< lower half in whole blocks of three rows and columns
 
-  /// Takes the matrix over the nodes `places`; its order is kept while the pattern stays. Then `advance` must
-  /// be called until it is done.
+  /// Sets the matrix over the nodes `places`; the ordering is reused if the pattern is unchanged. Then call
+  /// `advance` until it returns true.
   void begin(const Matrix& matrix, const Positions& places);
-  /// Finds the order where it is not known yet, or factors fronts for about `work` multiplications; true when
-  /// nothing is left to do.
+  /// Computes the ordering if necessary, or factors fronts for about `work` multiplications; true when
+  /// complete.
   bool advance(double work);
   /// All at once.
   bool compute(const Matrix& matrix, const Positions& places);
-  /// From now on there is no factor.
+  /// Discards the factor.
   void forget() { is_sound_ = false; }
-  /// True when the factor is whole: not begun, and not when the matrix is not positive definite.
+  /// True if the factor is complete; false before, and if the matrix is not positive definite.
   bool is_sound() const { return is_sound_; }
 
   /// The solution for each column of `right` (3 x #nodes rows).
   Dense solve(const Dense& right) const;
-  /// The two halves of `solve`, of a matrix A = L L': `forward` gives the transpose of L^-1 `right`, a row
-  /// for each column and its columns in the factor's own order; `backward` takes that and gives the
-  /// solutions. Columns of `right` that hold the same few nodes cost less where they stand together.
+  /// The two halves of `solve`, for a matrix A = L L': `forward` returns the transpose of L^-1 `right`, one
+  /// row per column, with columns in the factor's order; `backward` takes that and returns the solutions.
+  /// Columns of `right` with the same few non-zero nodes are cheaper if they are adjacent.
   Dense forward(const Dense& right) const;
   Dense backward(const Dense& halfway) const;
 
@@ -65,7 +65,7 @@ class FrontFactor {
   std::vector<Front> fronts_;
   std::vector<uint32_t> position_, local_;  ///< by node, by place in the order
   std::vector<float> values_;
-  std::vector<Dense> left_;  ///< what each front leaves to its parent
+  std::vector<Dense> left_;  ///< update matrix of each front for its parent
   Matrix matrix_;            ///< both halves once prepared
   size_t next_ = 0;
   double work_ = 0.0;

@@ -11,7 +11,7 @@ struct RigidTransform {
   Vec3 operator*(const Vec3& point) const { return rotation * point + translation; }
 };
 
-/// The temporomandibular joint in closed form: a hinge through both condyles that turns and glides.
+/// The temporomandibular joint in closed form: a hinge through both condyles that rotates and translates.
 /// Metres and radians; `lateral`, `up`, `forward` are unit axes, lateral to the subject's left.
 struct Jaw {
   Vec3 origin = Vec3::Zero();
@@ -31,22 +31,22 @@ struct JawPose {
   bool operator==(const JawPose&) const = default;
 };
 
-/// What is wrong with `jaw`, or null: axes that are not of length 1 and square to one another, numbers that
-/// are not finite or far from any joint's.
+/// A message if `jaw` is invalid, or null: axes that are not orthonormal, numbers that are not finite or
+/// implausible.
 const char* jaw_fault(const Jaw& jaw);
 
 /// `pose` within the joint's limits; values that are not finite become 0.
 JawPose clamped(const JawPose& pose);
 
-/// Where a mandible gets from `from` towards `to` in so many seconds: no motion of the joint goes from one
-/// end to the other in less than `quickest_travel`, so that a channel that jumps does not tear the tissue.
-/// Both within the joint's limits.
+/// The pose reached from `from` toward `to` within some seconds: no component traverses its range in less
+/// than `quickest_travel`, so that a step change of a channel does not tear the tissue. Both within the
+/// joint's limits.
 inline constexpr double quickest_travel = 0.12;
 JawPose approached(const JawPose& from, const JawPose& to, double seconds);
 
-/// Where the share `share` (0..1) of the pose takes a point of the mandible. At share 1 this is the
-/// mandible's own motion; between, tissue that both bones carry turns by a share of the angle and so
-/// keeps its lengths, as a blend of positions would not. The identity, exactly, at rest or share 0.
+/// The motion of a point by the fraction `share` (0..1) of the pose. At 1 this is the mandible's motion; in
+/// between, tissue between both bones rotates by a fraction of the angle, which preserves lengths, unlike a
+/// blend of positions. Exactly the identity at rest or share 0.
 RigidTransform jaw_transform(const Jaw& jaw, const JawPose& pose, double share = 1.0);
 
 /// The joint of a rig (any struct with its field names).

@@ -8,22 +8,23 @@
 
 namespace fascia::sim {
 
-/// A muscle that moves the mandible: a straight pull from a fixed place to one on the mandible.
+/// A muscle that moves the mandible: a straight line of action from a fixed point to one on the mandible.
 struct JawMuscle {
   uint32_t channel = 0;
   Vec3 origin = Vec3::Zero(),
-       insertion = Vec3::Zero();  ///< metres, at rest; the insertion goes with the mandible
+       insertion = Vec3::Zero();  ///< metres, at rest; the insertion moves with the mandible
   double strength = 0.0;          ///< newton at full activation
 };
 
-/// How masticatory muscles move the jaw: each one's pull times its lever on each of the joint's three
-/// motions, against a joint whose stiffness is such that all openers together open it to 1, all protruders
-/// bring it forward to 1, and one side's lateral pull turns it to 1. Levers are those of the rest pose.
+/// Motion of the jaw by the muscles of mastication: the force of each times its lever arm for each of the
+/// joint's three motions, against a joint stiffness such that all openers together open it to 1, all
+/// protruders protrude it to 1, and the lateral muscles of one side move it to 1. Lever arms are those of the
+/// rest pose.
 class JawMuscles {
  public:
   JawMuscles() = default;
   JawMuscles(const Jaw& jaw, std::span<const JawMuscle> muscles);
-  /// `pose` with what the muscles add, within the joint's limits. `activations` one a channel.
+  /// `pose` plus the muscles' contribution, within the joint's limits. `activations` one per channel.
   JawPose moved(const JawPose& pose, std::span<const float> activations) const;
   bool empty() const { return levers_.empty(); }
 
@@ -36,7 +37,7 @@ class JawMuscles {
 };
 
 /// Those of a rig (any struct with its field names): muscles with one end on the mandible and the other on a
-/// bone that stands still, of each the mean of its fibres.
+/// fixed bone, each as the mean of its fibres.
 template <class Rig>
 JawMuscles jaw_muscles_of(const Rig& rig) {
   std::vector<JawMuscle> pulls;

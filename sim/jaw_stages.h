@@ -4,20 +4,20 @@
 #include <cmath>
 #include <span>
 
-#include "sim/face.h"
+#include "sim/reference_solver.h"
 
 namespace fascia::sim {
 
-/// A static pose whose jaw is opened in stages of `options.jaw_stage`, each begun from the one before; at
-/// once where it begins from the last pose. `pose_at_once(controls, options, positions)` solves one, writes
-/// positions where it is given room for them, and returns a MinimiseResult.
+/// A static pose whose jaw is opened in stages of `options.jaw_stage`, each started from the previous one; in
+/// a single stage for a warm start. `pose_at_once(controls, options, positions)` solves one stage, writes
+/// positions if given a destination, and returns a MinimiseResult.
 template <class PoseAtOnce>
 MinimiseResult pose_in_stages(const Controls& controls, const PoseOptions& options,
                               std::span<Vec3f> positions, const PoseAtOnce& pose_at_once) {
   const bool is_staged = !options.from_last_pose && options.jaw_stage > 0.0 && controls.jaw.open > 0.0F;
   const double open = std::min(static_cast<double>(controls.jaw.open), 1.0);
   const int stages = is_staged ? static_cast<int>(std::ceil(open / options.jaw_stage)) : 1;
-  // The tissue of a stage before the last is solved near enough to begin the next one from.
+  // Intermediate stages are solved only accurately enough to start the next one.
   PoseOptions rough = options;
   rough.contact_rounds = std::min(options.contact_rounds, 1);
   rough.solver.iterations = std::min(options.solver.iterations, 40);

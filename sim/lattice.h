@@ -8,8 +8,8 @@
 
 namespace fascia::sim {
 
-/// How a lattice node is held. The numbers are those of the rig file. A `fixed_mandible` node goes with the
-/// jaw by its jaw weight: 1 on the bone itself, less in deep tissue that both bones carry.
+/// How a lattice node is held. The numbers are those of the rig file. A `fixed_mandible` node moves with the
+/// jaw by its jaw weight: 1 on the bone itself, less in deep tissue between both bones.
 enum class NodeKind : uint8_t {
   free = 0,
   fixed = 1,
@@ -25,8 +25,8 @@ enum class FibreAnchor : uint8_t { smas = 0, skin = 1, cranium = 2, mandible = 3
 
 /// A view of one level of detail of the tissue: spans onto arrays the caller keeps alive.
 ///
-/// Nodes stand in columns of three layers (skin, SMAS, inner): node `layer * columns + column`. Lengths
-/// in metres, stiffnesses in newton per metre unless said otherwise. An optional list may be empty.
+/// Nodes form columns of three layers (skin, SMAS, inner): node `layer * columns + column`. Lengths in
+/// metres, stiffnesses in newton per metre unless said otherwise. An optional list may be empty.
 struct Lattice {
   uint32_t columns = 0;
   std::span<const Vec3f> rest;         ///< #nodes = 3 * columns
@@ -66,7 +66,7 @@ struct Lattice {
   std::span<const Vec3f> carrier_origin, carrier_axis;
   std::span<const float> carrier_angle;      ///< radians at channel value 1
   std::span<const float> carrier_reverse;    ///< radians at channel value -1
-  std::span<const float> carrier_stiffness;  ///< hold: pulls the node back to its carried place
+  std::span<const float> carrier_stiffness;  ///< pulls the node back to its rigidly moved position
   std::span<const float> carrier_drive;      ///< force per metre of the carrier's motion
 
   std::span<const uint32_t> pressure_channel, pressure_prism;
@@ -91,8 +91,8 @@ struct Lattice {
   uint32_t fibre_count() const { return static_cast<uint32_t>(fibre_channel.size()); }
 };
 
-/// What is wrong with `lattice`, or null: sizes that do not match, indices out of range, values that
-/// are not finite, negative stiffness.
+/// A message if `lattice` is invalid, or null: inconsistent sizes, indices out of range, values that are not
+/// finite, negative stiffness.
 const char* lattice_fault(const Lattice& lattice);
 
 /// The view of a rig's tissue level (any struct with its field names).

@@ -7,7 +7,7 @@
 
 namespace fascia::sim {
 
-/// What `minimise` and `newton` need of memory; sized once, reused by every solve.
+/// Workspace of `minimise` and `newton`, allocated once.
 struct MinimiseWorkspace {
   static constexpr size_t history = 10;
   Positions gradient, trial, trial_gradient;                    // by node
@@ -94,8 +94,8 @@ struct NodeSpace {
 
 }  // namespace detail
 
-/// Moves the nodes `unknowns` of `x` (#nodes) to a minimum of `function(x, gradient)`, joules and newtons by
-/// node, on the rest factor; see quasi_newton.h.
+/// Minimises `function(x, gradient)`, joules and newtons by node, over the nodes `unknowns` of `x` (#nodes),
+/// preconditioned by the rest factor; see quasi_newton.h.
 template <class Function>
 MinimiseResult minimise(Function&& function, const RestFactor& factor, const std::vector<uint32_t>& unknowns,
                         const MinimiseOptions& options, MinimiseWorkspace& w, Positions& x) {

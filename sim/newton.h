@@ -7,11 +7,11 @@ namespace fascia::sim {
 
 struct NewtonOptions {
   int iterations = 60;         ///< Newton steps
-  int inner_iterations = 120;  ///< of conjugate gradients a step
-  double forcing = 0.05;       ///< share of the preconditioned residual a step may leave
+  int inner_iterations = 120;  ///< of conjugate gradients per step
+  double forcing = 0.05;       ///< relative residual of the preconditioned system at which a step ends
 };
 
-/// What `newton` needs of memory beside `MinimiseWorkspace`.
+/// Workspace of `newton` in addition to `MinimiseWorkspace`.
 struct NewtonWorkspace {
   Curvature curvature;
   Positions step, direction, product;  // by node, zero where prescribed
@@ -69,11 +69,10 @@ inline int newton_step(const RestFactor& factor, const std::vector<uint32_t>& un
 
 }  // namespace detail
 
-/// Moves the nodes `unknowns` of `x` to a minimum of `function(x, gradient)` by Newton steps on the positive
-/// semidefinite curvature that `find_curvature(x, Curvature&)` gives, each solved by conjugate gradients with
-/// the rest factor as preconditioner and shortened until the function falls (Nocedal & Wright 2006,
-/// algorithm 7.1). For poses that quasi-Newton steps do not bring to an end: stiff contact, collapsed
-/// triangles.
+/// Minimises `function(x, gradient)` over the nodes `unknowns` of `x` by Newton steps with the projected
+/// Hessian of `find_curvature(x, Curvature&)`, each solved by conjugate gradients with the rest factor as
+/// preconditioner, with a backtracking line search (Nocedal & Wright 2006, algorithm 7.1). For poses in which
+/// quasi-Newton steps do not converge: stiff contact, collapsed triangles.
 template <class Function, class FindCurvature>
 MinimiseResult newton(Function&& function, FindCurvature&& find_curvature, const RestFactor& factor,
                       const std::vector<uint32_t>& unknowns, const NewtonOptions& options, double tolerance,
@@ -106,7 +105,7 @@ MinimiseResult newton(Function&& function, FindCurvature&& find_curvature, const
       if (!fell) length *= 0.5;
     }
     if (!fell) return result;
-    // Where a step had to be cut short the curvature misleads: damp it (Levenberg and Marquardt).
+    // Where a step was shortened the quadratic model is poor: damp it (Levenberg and Marquardt).
     damping = length < 1.0 ? std::clamp(4.0 * damping, 0.05, 20.0) : damping > 0.02 ? 0.25 * damping : 0.0;
     std::swap(x, w.trial);
     std::swap(w.gradient, w.trial_gradient);

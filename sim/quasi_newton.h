@@ -9,28 +9,28 @@ namespace fascia::sim {
 
 struct MinimiseOptions {
   int iterations = 200;
-  double tolerance = 2e-6;     ///< metres: the largest move of a node the solver still wants to make
-  double longest_step = 0.02;  ///< metres a node may go at once: farther, triangles turn inside out
+  double tolerance = 2e-6;     ///< metres: convergence when no node would move farther
+  double longest_step = 0.02;  ///< metres: largest step of a node; longer steps may invert triangles
 };
 
 struct MinimiseResult {
   int iterations = 0;
-  double move = 0.0;      ///< metres: largest move of a node still wanted at the end
-  double residual = 0.0;  ///< newton: largest force left on a node
+  double move = 0.0;      ///< metres: length of the next step at the end, largest of any node
+  double residual = 0.0;  ///< newton: largest residual force on a node
   bool converged = false;
 };
 
-/// How a line search judges its steps; the rounding is that of the numbers an energy is summed in.
+/// Options of a line search; the rounding is that of the type an energy is summed in.
 struct LineSearch {
-  int halvings = 24;              ///< at most, before a direction is given up
-  double rounding = 1e-14;        ///< of an energy, relative: below it the slope tells
-  double least_curvature = 1e-6;  ///< share of a step's slope that its change of the gradient must show
+  int halvings = 24;        ///< maximum number before a direction is abandoned
+  double rounding = 1e-14;  ///< relative rounding error of an energy: below it slopes are compared instead
+  double least_curvature = 1e-6;  ///< least change of the gradient along a step, relative to its slope
 };
 
-/// Where a line search looks next after a step of `length` did not do: at the minimum of the cubic through
-/// both ends' values and slopes (Nocedal & Wright 2006, equation 3.59), or where values differ by less than
-/// their rounding where the slopes say it is flat; between a tenth and a half of the step. Slopes are those
-/// of a whole step.
+/// The next trial step of a line search after `length` was rejected: the minimum of the cubic through the
+/// values and slopes at both ends (Nocedal & Wright 2006, equation 3.59), or, if the values differ by less
+/// than their rounding error, the zero of the interpolated slope; between a tenth and a half of the step.
+/// Slopes are those of a full step.
 inline double shorter_step(double length, double value, double slope, double trial, double trial_slope,
                            double rounding) {
   constexpr double least = 0.1, most = 0.5;
@@ -50,12 +50,11 @@ inline double shorter_step(double length, double value, double slope, double tri
 }
 
 /// The limited-memory BFGS method on a preconditioner (Nocedal & Wright 2006, algorithms 7.4 and 7.5; Liu,
-/// Bouaziz & Kavan 2017, algorithm 1), with backtracking by interpolation until the function falls (Armijo):
-/// one text for every number type. Moves the unknowns of `space` to a minimum; on return they are at the best
-/// point found, and where the function is not finite at the start they stay as they were. Allocates nothing
-/// if `space` does not.
+/// Bouaziz & Kavan 2017, algorithm 1), with a backtracking line search by interpolation (Armijo condition),
+/// for every number type. Minimises over the unknowns of `space`; on return they are at the best point found,
+/// or unchanged if the function is not finite at the start. Does not allocate unless `space` does.
 ///
-/// A space holds the unknowns x and the lists the method works on:
+/// A space contains the unknowns x and the vectors of the method:
 ///   history                     how many corrections are kept
 ///   double evaluate()           function at x, newton metre; writes the gradient
 ///   double residual()           largest force on a node, newton
@@ -76,7 +75,7 @@ MinimiseResult minimise(Space& space, const MinimiseOptions& options, const Line
   MinimiseResult result;
   std::array<double, history> curvatures{};
   size_t first = 0, count = 0;
-  bool interpolates = true;  // where rounding misleads interpolation, plain halving has the last word
+  bool interpolates = true;  // where rounding spoils the interpolation, halving is the fallback
   double value = space.evaluate();
   for (int iteration = 0;; ++iteration) {
     result.iterations = iteration;
@@ -102,7 +101,7 @@ MinimiseResult minimise(Space& space, const MinimiseOptions& options, const Line
     }
     if (iteration >= options.iterations) return result;
     const double slope = space.slope();
-    if (!(slope < 0.0)) {  // the corrections mislead: begin again from the preconditioner alone
+    if (!(slope < 0.0)) {  // not a descent direction: restart with the preconditioner alone
       if (count == 0) return result;
       count = 0;
       continue;
@@ -113,8 +112,8 @@ MinimiseResult minimise(Space& space, const MinimiseOptions& options, const Line
     bool fell = false;
     for (int halving = 0; halving < search.halvings; ++halving) {
       trial = space.evaluate();
-      // Where energies differ by less than their rounding, the slope tells (Hager & Zhang 2005, approximate
-      // Wolfe conditions).
+      // Where energies differ by less than their rounding error, compare slopes (Hager & Zhang 2005,
+      // approximate Wolfe conditions).
       fell = trial <= value + 1e-4 * length * slope || (trial <= value + search.rounding * std::abs(value) &&
                                                         std::abs(space.slope()) <= 0.9 * std::abs(slope));
       if (fell) break;
@@ -127,7 +126,7 @@ MinimiseResult minimise(Space& space, const MinimiseOptions& options, const Line
     if (!fell) {
       space.go(-length);
       space.keep_gradient();
-      if (count == 0 && !interpolates) return result;  // as low as rounding lets it go
+      if (count == 0 && !interpolates) return result;  // converged to rounding error
       interpolates = count > 0;
       count = 0;
       continue;

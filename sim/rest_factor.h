@@ -11,9 +11,9 @@ namespace fascia::sim {
 
 /// Cholesky factor of a symmetric positive definite matrix over nodes that x, y and z share.
 ///
-/// It stands for the Hessian of the rest pose in the quasi-Newton solver (Liu, Bouaziz & Kavan 2017,
-/// "Quasi-Newton methods for real-time simulation of hyperelastic materials", section 4). Made once for
-/// a face; `solve` neither allocates nor throws.
+/// It approximates the Hessian of the rest pose in the quasi-Newton solver (Liu, Bouaziz & Kavan 2017,
+/// "Quasi-Newton methods for real-time simulation of hyperelastic materials", section 4). Computed once for a
+/// face; `solve` neither allocates nor throws.
 class RestFactor {
  public:
   /// Factors `matrix` (#unknowns square, lower or full). Returns false when it is not positive definite.
@@ -26,7 +26,7 @@ class RestFactor {
   size_t entries() const { return rows_.size(); }
 
  private:
-  std::vector<uint32_t> order_;    // order_[k]: the unknown that stands k-th in the factor
+  std::vector<uint32_t> order_;    // order_[k]: the unknown eliminated k-th
   std::vector<uint32_t> columns_;  // #unknowns + 1, into rows_ and values_; below the diagonal only
   std::vector<uint32_t> rows_;
   std::vector<float> values_;

@@ -19,8 +19,8 @@ struct RestTerms {
   size_t unknowns;
 };
 
-/// A stiffness matrix over the unknown nodes that x, y and z share, near the Hessian of the rest pose:
-/// every element's stiffness as if it resisted all directions alike. Newton per metre, symmetric.
+/// A stiffness matrix over the unknown nodes that x, y and z share, an approximation of the Hessian of the
+/// rest pose in which every element is isotropic. Newton per metre, symmetric.
 Eigen::SparseMatrix<double> assemble_rest_stiffness(const RestTerms& terms);
 
 }  // namespace fascia::sim

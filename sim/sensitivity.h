@@ -10,44 +10,44 @@
 
 namespace fascia::sim {
 
-/// How a static pose answers small changes of what drives it: the derivatives of the equilibrium
-/// gradient(x, activations) = 0, from one factorisation of the curvature where the pose stands (Nocedal &
-/// Wright 2006, section 10.1; Sifakis, Neverov & Fedkiw 2005 for faces).
+/// Sensitivity of a static pose to its inputs: implicit derivatives of the equilibrium gradient(x,
+/// activations) = 0, from one factorisation of the Hessian at the pose (Nocedal & Wright 2006, section 10.1;
+/// Sifakis, Neverov & Fedkiw 2005 for faces).
 ///
-/// `columns` and `jaw_columns` use the positive semidefinite stand-in of the Hessian, as Gauss-Newton steps
-/// want it; `adjoint` corrects for the rest of the Hessian and is exact but for contact, whose normals are
-/// held still.
+/// `columns` and `jaw_columns` use the positive semidefinite approximation of the Hessian, for Gauss-Newton
+/// steps; `adjoint` is corrected for the exact Hessian, except for contact, whose normals are held fixed.
 class Sensitivity {
  public:
   /// `model` must be valid and outlive this.
   explicit Sensitivity(const FaceModel& model);
 
-  /// Linearises at the pose `x` (#nodes, metres), which `controls` must have made. Returns false when the
-  /// curvature has no factor; nothing else may then be asked. With `keeps_factor` the last factor serves
-  /// again: `adjoint` stays exact and takes more iterations, columns are those of where the factor was made.
+  /// Linearises at the pose `x` (#nodes, metres), which must have been solved for `controls`. Returns false
+  /// if the factorisation fails; no other function may then be called. With `keeps_factor` the last factor is
+  /// reused: `adjoint` remains exact with more iterations, and columns are those at which the factor was
+  /// computed.
   bool linearise(const Controls& controls, std::span<const Vec3> x, bool keeps_factor = false);
 
-  /// The same in parts, for a frame of a live program to bear one of them: `begin` takes the pose and what
-  /// drives it, each `advance` does one thing (the matrix, or about `work` multiplications of its factor) and
-  /// is true when nothing is left to do; `is_sound` then says whether there is a factor. `factor_work` is
-  /// that of a whole factor.
+  /// The same incrementally, to distribute the cost over frames: `begin` takes the pose and its controls;
+  /// each `advance` performs one part (assembly, or about `work` multiplications of the factorisation) and
+  /// returns true when complete; `is_sound` then tells whether it succeeded. `factor_work` is the work of a
+  /// complete factorisation.
   void begin(const Controls& controls, std::span<const Vec3> x);
   bool advance(double work);
   bool is_sound() const { return factor_.is_sound(); }
   double factor_work() const { return factor_.work(); }
 
-  /// d position / d activation, metres: 3 x #nodes rows, one column for each of `channels`; zero where
-  /// prescribed.
+  /// d position / d activation, metres: 3 x #nodes rows, one column for each of `channels`; zero for
+  /// prescribed nodes.
   Eigen::MatrixXd columns(std::span<const uint32_t> channels) const;
   /// The same for the jaw's open, forward and lateral: three columns, prescribed nodes among the rows. A
-  /// motion with no room within the joint's limits gives zeros.
+  /// motion that is blocked by the joint's limits gives zeros.
   Eigen::MatrixXd jaw_columns() const;
 
-  /// The derivatives of a loss whose slope by position is `slope` (3 x #nodes, per metre): by the activations
-  /// of `channels`, then by the jaw's three values.
+  /// The derivatives of a loss with the gradient `slope` with respect to positions (3 x #nodes, per metre):
+  /// with respect to the activations of `channels`, then to the jaw's three values.
   Eigen::VectorXd adjoint(const Eigen::VectorXd& slope, std::span<const uint32_t> channels) const;
 
-  /// True when anything in the model listens to the channel beside the jaw and the eyes.
+  /// True if the channel drives anything besides the jaw and the eyes.
   bool listens(uint32_t channel) const;
 
  private:
@@ -75,10 +75,10 @@ class Sensitivity {
   FrontFactor factor_;
   std::vector<Eigen::Triplet<double>> entries_;  ///< of the matrix; kept for its memory
   bool is_assembled_ = false;
-  bool is_held_up_ = false;   ///< the last matrix has had more of the rest stiffness than it wants
+  bool is_held_up_ = false;   ///< the last matrix was regularised with the rest stiffness
   Positions unknown_places_;  ///< at rest
-  // Fibres' pulls, which couple all nodes along them, are kept out of the factor and brought back by the
-  // identity of Sherman, Morrison and Woodbury; half of each solve is enough for that.
+  // Fibre forces, which couple all nodes along them, are excluded from the factor and included by the
+  // Sherman-Morrison-Woodbury identity, for which half of each solve suffices.
   Eigen::SparseMatrix<double> pulls_;
   FrontFactor::Dense halfway_pulls_;  ///< FrontFactor::forward of those that count, from the first row on
   Eigen::Index pulls_done_ = 0, pulls_kept_ = 0;

@@ -7,8 +7,8 @@
 
 namespace fascia::sim {
 
-/// The state of something as bytes: the same calls in the same order count them, write them out, or read them
-/// back, so that one function describes all three. Numbers are in the machine's own byte order.
+/// Serialisation of a state: the same sequence of calls counts, writes or reads the bytes, so that one
+/// function describes all three. Numbers are in native byte order.
 class StateBytes {
  public:
   /// Counts only.
@@ -41,7 +41,7 @@ class StateBytes {
 
   bool reads() const { return mode_ == Mode::reads; }
   size_t used() const { return used_; }        ///< bytes counted, written or read
-  bool is_short() const { return is_short_; }  ///< the bytes have ended too early
+  bool is_short() const { return is_short_; }  ///< the buffer was too short
 
  private:
   enum class Mode : uint8_t { counts, writes, reads };

@@ -13,8 +13,8 @@ using Strain = Eigen::Matrix<float, 6, 1>;
 /// #columns. Exactly zero at rest.
 void skin_strain(const FaceModel& model, std::span<const Vec3f> displacements, std::span<Strain> out);
 
-/// The strongest compression of a strain: its direction (unit, its sign chosen so that its largest component
-/// is positive) times 1 minus the stretch along it. Zero where nothing is compressed.
+/// The largest compression of a strain: its direction (unit, its sign chosen so that its largest component is
+/// positive) times 1 minus the stretch along it. Zero without compression.
 Vec3f strongest_compression(const Strain& strain);
 
 }  // namespace fascia::sim

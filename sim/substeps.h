@@ -14,33 +14,32 @@ namespace fascia::sim {
 
 enum class StepStatus : uint8_t {
   done = 0,
-  reset =
-      1  ///< the face diverged, or was driven by numbers that are not finite: it stands at its bones again
+  reset = 1  ///< the face diverged, or its controls were not finite: it was reset to rest
 };
 
 struct StepResult {
   StepStatus status = StepStatus::done;
   int substeps = 0;
   int iterations = 0;  ///< of all substeps
-  double move = 0.0;   ///< metres still wanted by the last substep's solver
+  double move = 0.0;   ///< metres: residual step of the last substep
 };
 
-/// The pose the share `share` (0..1) of the way from one to another; at 0 `from` itself.
+/// Linear interpolation between two poses; at 0 exactly `from`.
 inline JawPose between(const JawPose& from, const JawPose& to, double share) {
   const auto mix = [share](float a, float b) { return a + static_cast<float>(share) * (b - a); };
   return {mix(from.open, to.open), mix(from.forward, to.forward), mix(from.lateral, to.lateral)};
 }
 
-/// Cuts frames of any length into substeps of one length, so that the frame rate hardly changes the motion,
-/// and keeps what must be known from frame to frame: activations between excitations and their dynamics, the
-/// controls at the last frame's end, and how far the state is ahead of the frame.
+/// Divides frames of any length into substeps of fixed length, so that the motion hardly depends on the frame
+/// rate, and stores the state between frames: activations, the controls at the end of the last frame, and the
+/// time by which the state is ahead of the frame.
 class Substeps {
  public:
-  /// `channels` is how many activations the face listens to.
+  /// `channels` is the number of activations.
   explicit Substeps(size_t channels)
       : excitations_(channels), last_excitations_(channels), activations_(channels) {}
 
-  /// At rest under the bones of `controls`, muscles slack.
+  /// At rest on the bones of `controls`, without activation.
   void reset(const Controls& controls) {
     std::fill(activations_.begin(), activations_.end(), 0.0F);
     std::fill(last_excitations_.begin(), last_excitations_.end(), 0.0F);
@@ -49,7 +48,7 @@ class Substeps {
     jaw_before_ = jaw_now_ = last_jaw_;
     clock_.reset();
   }
-  /// As though `controls` had acted for ever.
+  /// In the steady state of `controls`.
   void settle(const Controls& controls) {
     reset(controls);
     for (size_t c = 0; c < activations_.size(); ++c)
@@ -58,10 +57,10 @@ class Substeps {
     last_acceleration_ = controls.acceleration;
   }
 
-  /// Lets `seconds` pass in substeps of `substep` seconds, at most `most` of them (a longer frame loses the
-  /// rest), while the controls go from the last frame's to `controls` along a line. `solve(now, result)`
-  /// brings the face to the controls `now`, fills in a MinimiseResult and returns false when the face has
-  /// diverged. Where the status is `reset` the caller must reset the face, and this.
+  /// Advances by `seconds` in substeps of `substep` seconds, at most `most` of them (longer frames are
+  /// truncated), with controls interpolated linearly from the last frame's to `controls`. `solve(now,
+  /// result)` solves a substep with the controls `now`, fills in a MinimiseResult and returns false if the
+  /// face has diverged. If the status is `reset` the caller must reset the face, and this object.
   template <class Solve>
   StepResult run(double seconds, const Controls& controls, double substep, int most,
                  const ActivationDynamics& dynamics, Solve&& solve) {
@@ -93,7 +92,7 @@ class Substeps {
     return result;
   }
 
-  /// See StateBytes. False when what was read is out of all proportion.
+  /// See StateBytes. False if the values read are implausible.
   bool exchange_state(StateBytes& bytes) {
     bytes.list(last_excitations_.data(), last_excitations_.size());
     bytes.list(activations_.data(), activations_.size());
@@ -105,7 +104,8 @@ class Substeps {
   }
 
   std::span<const float> activations() const { return activations_; }  ///< after their dynamics
-  /// What is to be shown lies this share of a substep, 0 to 1, before the state, towards the one before.
+  /// Fraction of a substep, 0 to 1, by which the displayed positions lag behind the state, toward the
+  /// previous one.
   double back() const { return clock_.back(); }
   /// The jaw there.
   JawPose shown_jaw() const { return between(jaw_now_, jaw_before_, clock_.back()); }
@@ -114,8 +114,8 @@ class Substeps {
   size_t bytes() const { return 3 * sizeof(float) * activations_.size(); }
 
  private:
-  /// The controls at a share of the way from the last frame's to this one's, the activations after `seconds`
-  /// more.
+  /// The controls interpolated between the last frame's and this one's, with activations advanced by
+  /// `seconds`.
   Controls at(double share, const Controls& controls, double seconds, const ActivationDynamics& dynamics) {
     const auto part = static_cast<float>(share);
     for (size_t c = 0; c < excitations_.size(); ++c) {

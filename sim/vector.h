@@ -7,7 +7,7 @@
 
 namespace fascia::sim {
 
-/// The solver works in double precision inside; positions and stiffnesses come and go as float.
+/// The solver works in double precision internally; inputs and outputs are float.
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
 using Vec3f = Eigen::Vector3f;

@@ -2,55 +2,15 @@
 
 #include <zlib.h>
 
-#include <array>
-
+#include "geometry/base64.h"
 #include "geometry/error.h"
 
 namespace fascia::snapshot {
 
 namespace {
 
-constexpr char alphabet[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-
-std::string to_base64(const std::vector<uint8_t>& bytes) {
-  std::string text;
-  for (size_t i = 0; i < bytes.size(); i += 3) {
-    uint32_t group = 0;
-    for (size_t k = 0; k < 3; ++k)
-      group = group << 8 | (i + k < bytes.size() ? bytes[i + k] : 0U);
-    for (size_t k = 0; k < 4; ++k)
-      text += i + k <= bytes.size() ? alphabet[group >> (18 - 6 * k) & 63] : '=';
-  }
-  return text;
-}
-
 [[noreturn]] void damaged() {
   throw Error("its packed numbers are damaged: record the snapshot anew");
-}
-
-std::vector<uint8_t> from_base64(std::string_view text) {
-  static const std::array<int8_t, 256> values = [] {
-    std::array<int8_t, 256> table;
-    table.fill(-1);
-    for (int8_t i = 0; i < 64; ++i)
-      table[static_cast<uint8_t>(alphabet[i])] = i;
-    return table;
-  }();
-  while (!text.empty() && text.back() == '=')
-    text.remove_suffix(1);
-  std::vector<uint8_t> bytes;
-  uint32_t bits = 0;
-  int held = 0;
-  for (const char c : text) {
-    const int8_t value = values[static_cast<uint8_t>(c)];
-    if (value < 0) damaged();
-    bits = bits << 6 | static_cast<uint32_t>(value);
-    held += 6;
-    if (held < 8) continue;
-    held -= 8;
-    bytes.push_back(static_cast<uint8_t>(bits >> held));
-  }
-  return bytes;
 }
 
 }  // namespace
@@ -75,7 +35,9 @@ std::string pack(const std::vector<int32_t>& numbers, size_t stride) {
 
 std::vector<int32_t> unpack(std::string_view text, size_t stride, size_t count) {
   if (count == 0) return {};
-  const std::vector<uint8_t> deflated = from_base64(text);
+  size_t skipped = 0;
+  const std::vector<uint8_t> deflated = from_base64(text, &skipped);
+  if (skipped > 0) damaged();
   std::vector<uint8_t> bytes(count * 5);  // the longest a number can be
   auto size = static_cast<uLongf>(bytes.size());
   if (uncompress(bytes.data(), &size, deflated.data(), static_cast<uLong>(deflated.size())) != Z_OK)

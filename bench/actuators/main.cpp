@@ -14,6 +14,7 @@
 
 #include "anatomy/anatomy.h"
 #include "bench/actuators/expected.h"
+#include "bench/people/arguments.h"
 #include "bench/people/person.h"
 #include "builder/rigging/build_rig.h"
 #include "builder/rigging/gltf_source.h"
@@ -159,36 +160,15 @@ int run(const std::string& person, const Request& request) {
 
 int main(int argc, char** argv) {
   fascia::bench::Request request;
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    const bool more = i + 1 < argc;
-    if (word == "--sheet" && more)
-      request.sheet = argv[++i];
-    else if (word == "--level" && more)
-      request.level = argv[++i];
-    else if (word == "--only" && more)
-      request.only = argv[++i];
-    else if (word == "--zoom" && more)
-      request.zoom = std::stod(argv[++i]);
-    else if (word == "--keep" && more)
-      request.keep = argv[++i];
-    else if (word == "--layers" && more)
-      request.layers = argv[++i];
-    else
-      request.people.push_back(word);
-  }
-  if (request.people.empty()) request.people = {"embedded"};
-  try {
-    for (const std::string& person : request.people) {
-      if (person != "embedded" && !fascia::bench::has_measured_people()) {
-        std::printf("skipped %s: the measured heads are not beside the project\n", person.c_str());
-        continue;
-      }
-      fascia::bench::run(person, request);
-    }
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "bench_actuators: %s\n", error.what());
-    return 1;
-  }
-  return 0;
+  fascia::bench::Arguments arguments("bench_actuators", "[embedded|neutral|person_0|...]...");
+  arguments.option("--sheet", "PREFIX", request.sheet);
+  arguments.option("--level", "NAME", request.level);
+  arguments.option("--only", "SUBSTRING", request.only);
+  arguments.option("--layers", "LIST", request.layers);
+  arguments.option("--keep", "FOLDER", request.keep);
+  arguments.option("--zoom", "FACTOR", request.zoom);
+  if (!arguments.parse(argc, argv, request.people)) return 2;
+  return fascia::bench::for_each_person("bench_actuators", request.people, [&](const std::string& person) {
+    fascia::bench::run(person, request);
+  });
 }

@@ -18,7 +18,6 @@
 #include <atomic>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -29,6 +28,7 @@
 #include "bench/expressions/score.h"
 #include "bench/expressions/sculpted_head.h"
 #include "bench/expressions/sheet.h"
+#include "bench/people/arguments.h"
 #include "geometry/error.h"
 
 namespace fascia::bench {
@@ -214,44 +214,17 @@ void run(const Request& request) {
 
 int main(int argc, char** argv) {
   fascia::bench::Request request;
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    const auto value = [&]() -> std::string { return i + 1 < argc ? argv[++i] : ""; };
-    if (word == "--level")
-      request.level = value();
-    else if (word == "--table")
-      request.table = value();
-    else if (word == "--csv")
-      request.csv = value();
-    else if (word == "--anatomy")
-      request.anatomy = value();
-    else if (word == "--sheet")
-      request.sheet = value();
-    else if (word == "--threads")
-      request.threads = std::atoi(value().c_str());
-    else if (word == "--remeshed")
-      request.remeshed = true;
-    else if (word == "--response")
-      request.response = true;
-    else if (word == "--only") {
-      std::string list = value(), name;
-      for (const char c : list + ",")
-        if (c == ',') {
-          if (!name.empty()) request.only.insert(name);
-          name.clear();
-        } else {
-          name += c;
-        }
-    } else if (word.rfind("--", 0) == 0) {
-      std::fprintf(
-          stderr,
-          "usage: bench_expressions [HEAD|FAMILY]... [--level NAME] [--table FILE.json] [--only SHAPE,...] "
-          "[--csv FILE] [--sheet PREFIX] [--threads N] [--anatomy DIR] [--remeshed] [--response]\n");
-      return 2;
-    } else {
-      request.heads.push_back(word);
-    }
-  }
+  fascia::bench::Arguments arguments("bench_expressions", "[HEAD|FAMILY]...");
+  arguments.option("--level", "NAME", request.level);
+  arguments.option("--table", "FILE.json", request.table);
+  arguments.option("--only", "SHAPE,...", request.only);
+  arguments.option("--csv", "FILE", request.csv);
+  arguments.option("--sheet", "PREFIX", request.sheet);
+  arguments.option("--threads", "N", request.threads);
+  arguments.option("--anatomy", "DIR", request.anatomy);
+  arguments.flag("--remeshed", request.remeshed);
+  arguments.flag("--response", request.response);
+  if (!arguments.parse(argc, argv, request.heads)) return 2;
   try {
     if (request.remeshed)
       for (const std::string& person : request.heads)

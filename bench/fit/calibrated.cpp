@@ -15,7 +15,7 @@ fit::Target target_of(const KnownFace& face, const Eigen::VectorXd& truth) {
   for (size_t v = 0; v < face.face().size(); ++v) {
     target.displacements.segment<3>(static_cast<Eigen::Index>(3 * face.face()[v])) =
         truth.segment<3>(static_cast<Eigen::Index>(3 * v));
-    target.trust[face.face()[v]] = 1.0;
+    target.confidence[face.face()[v]] = 1.0;
   }
   return target;
 }
@@ -60,7 +60,7 @@ void calibrate_changed(KnownFace& face, const std::vector<fit::CalibrationCase>&
       values[c] = std::clamp(values[c] * static_cast<float>(strength[c]), subject.channels()[c].minimum,
                              subject.channels()[c].maximum);
     person->pose(values, false);
-    seen.push_back({one.name, {person->displacements(values), one.target.trust}, one.activations});
+    seen.push_back({one.name, {person->displacements(values), one.target.confidence}, one.activations});
   }
   print(face.head().name, "changed", fit::calibrate(subject, seen, {}, remake_of(subject)));
 }

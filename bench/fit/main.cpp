@@ -10,12 +10,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <cstring>
 #include <set>
 
 #include "bench/expressions/score.h"
 #include "bench/expressions/sculpted_head.h"
 #include "bench/fit/calibrated.h"
+#include "bench/people/arguments.h"
 #include "fit/fit.h"
 #include "geometry/error.h"
 
@@ -119,24 +119,11 @@ void run(const FitRequest& request) {
 
 int main(int argc, char** argv) {
   fascia::bench::FitRequest request;
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    if (word == "--level" && i + 1 < argc) {
-      request.level = argv[++i];
-    } else if (word == "--only" && i + 1 < argc) {
-      char* list = argv[++i];
-      for (char* name = std::strtok(list, ","); name; name = std::strtok(nullptr, ","))
-        request.only.insert(name);
-    } else if (word == "--calibrate") {
-      request.calibrate = true;
-    } else if (word.rfind("--", 0) == 0) {
-      std::fprintf(stderr,
-                   "usage: bench_fit [HEAD|FAMILY]... [--level NAME] [--only SHAPE,...] [--calibrate]\n");
-      return 2;
-    } else {
-      request.heads.push_back(word);
-    }
-  }
+  fascia::bench::Arguments arguments("bench_fit", "[HEAD|FAMILY]...");
+  arguments.option("--level", "NAME", request.level);
+  arguments.option("--only", "SHAPE,...", request.only);
+  arguments.flag("--calibrate", request.calibrate);
+  if (!arguments.parse(argc, argv, request.heads)) return 2;
   try {
     fascia::bench::run(request);
   } catch (const std::exception& error) {

@@ -13,6 +13,7 @@
 #include <chrono>
 #include <cstdio>
 
+#include "bench/people/arguments.h"
 #include "bench/people/person.h"
 #include "cli/posing.h"
 #include "view/image.h"
@@ -164,34 +165,14 @@ void run(const std::string& name, const Request& request) {
 
 int main(int argc, char** argv) {
   fascia::bench::Request request;
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    const bool more = i + 1 < argc;
-    if (word == "--solver" && more)
-      request.solver = argv[++i];
-    else if (word == "--only" && more)
-      request.only = argv[++i];
-    else if (word == "--sheet" && more)
-      request.sheet = argv[++i];
-    else if (word == "--rigs" && more)
-      request.rigs = argv[++i];
-    else if (word == "--pose" && more)
-      request.poses.push_back(argv[++i]);
-    else
-      request.people.push_back(word);
-  }
-  if (request.people.empty()) request.people = {"embedded"};
-  try {
-    for (const std::string& person : request.people) {
-      if (person != "embedded" && !fascia::bench::has_measured_people()) {
-        std::printf("skipped %s: the measured heads are not beside the project\n", person.c_str());
-        continue;
-      }
-      fascia::bench::run(person, request);
-    }
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "bench_levels: %s\n", error.what());
-    return 1;
-  }
-  return 0;
+  fascia::bench::Arguments arguments("bench_levels", "[embedded|neutral|person_1|...]...");
+  arguments.option("--solver", "own|reference", request.solver);
+  arguments.option("--only", "SUBSTRING", request.only);
+  arguments.option("--rigs", "DIR", request.rigs);
+  arguments.option("--pose", "NAME=VALUE", request.poses);
+  arguments.option("--sheet", "PREFIX", request.sheet);
+  if (!arguments.parse(argc, argv, request.people)) return 2;
+  return fascia::bench::for_each_person("bench_levels", request.people, [&](const std::string& person) {
+    fascia::bench::run(person, request);
+  });
 }

@@ -1,5 +1,7 @@
 #include "bench/people/person.h"
 
+#include <cstdio>
+
 #include "anatomy/anatomy.h"
 #include "builder/rigging/build_rig.h"
 #include "builder/rigging/embedded_head.h"
@@ -68,6 +70,22 @@ void build_rig_file(const Person& person, const std::string& detail, const fs::p
   const std::vector<uint8_t> bytes =
       rig::write(rigging::gltf_source(person.scene, built.report.input_to_metres), built.rig);
   formats::write_bytes(path, bytes.data(), bytes.size());
+}
+
+int for_each_person(const char* program, const std::vector<std::string>& people,
+                    const std::function<void(const std::string&)>& run) {
+  try {
+    for (const std::string& person : people.empty() ? std::vector<std::string>{"embedded"} : people) {
+      if (person == "embedded" || has_measured_people())
+        run(person);
+      else
+        std::printf("skipped %s: the measured heads are not beside the project\n", person.c_str());
+    }
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s: %s\n", program, error.what());
+    return 1;
+  }
+  return 0;
 }
 
 }  // namespace fascia::bench

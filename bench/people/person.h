@@ -1,7 +1,9 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
+#include <vector>
 
 #include "formats/landmark_file.h"
 #include "formats/scene.h"
@@ -18,7 +20,7 @@ struct Person {
 /// ..).
 Person read_person(const std::string& name);
 
-/// Whether the measured heads lie beside the project.
+/// Whether the measured heads are available.
 bool has_measured_people();
 
 /// The mesh of the face. Throws Error when the scene has none.
@@ -26,5 +28,10 @@ const formats::SceneMesh& head_mesh(const formats::Scene& scene);
 
 /// Builds the rig of `person` with all levels up to `detail` and writes it to `path`.
 void build_rig_file(const Person& person, const std::string& detail, const std::filesystem::path& path);
+
+/// Calls `run` for each of `people` (the embedded head if there are none) and says which are not available.
+/// Prints what `run` throws; returns the exit code of the benchmark `program`.
+int for_each_person(const char* program, const std::vector<std::string>& people,
+                    const std::function<void(const std::string&)>& run);
 
 }  // namespace fascia::bench

@@ -14,8 +14,8 @@
 #include "bench/sim/clock.h"
 #include "fascia/fascia.h"
 #include "runtime/asset.h"
-#include "sim/face.h"
-#include "sim/realtime/face.h"
+#include "sim/realtime/solver.h"
+#include "sim/reference_solver.h"
 
 namespace {
 
@@ -66,7 +66,7 @@ void measure_static_poses(const sim::FaceModel& reference, const sim::realtime::
   warm.solver.iterations = 0;
   std::vector<double> times, counts;
   for (int second = 1; second <= 9; ++second) {
-    sim::realtime::Face posed(model, channels), goal(model, channels);
+    sim::realtime::Solver posed(model, channels), goal(model, channels);
     posed.static_pose(motion.at(second, 0.2F), tight, now);
     const sim::Controls next = motion.at(second + 1.0 / 60.0, 0.2F);
     goal.static_pose(next, tight, truth);
@@ -76,7 +76,7 @@ void measure_static_poses(const sim::FaceModel& reference, const sim::realtime::
           static_cast<double>((truth[i] - reference.lattice().rest[i]).norm()) / static_cast<double>(nodes);
     for (double left = 1.0; left > 0.01 && warm.solver.iterations < 400;) {
       ++warm.solver.iterations;
-      sim::realtime::Face trial = posed;
+      sim::realtime::Solver trial = posed;
       const double begin = bench::thread_milliseconds();
       trial.static_pose(next, warm, now);
       spent = bench::thread_milliseconds() - begin;
@@ -100,7 +100,7 @@ void measure_level(const runtime::Asset& asset, size_t level, int frames) {
   const double first = bench::thread_milliseconds() - begin;
   const size_t channels = asset.channel_names.size(), nodes = reference.rest().size();
   begin = bench::thread_milliseconds();
-  sim::realtime::Face face(model, channels);
+  sim::realtime::Solver face(model, channels);
   const double another = bench::thread_milliseconds() - begin;
   std::printf("\n%s: %zu nodes, %zu unknowns, %zu entries of the factor\n",
               asset.rig().tissue.levels[level].name.c_str(), nodes, model.unknowns(), model.factor_entries());
@@ -111,7 +111,7 @@ void measure_level(const runtime::Asset& asset, size_t level, int frames) {
   for (const int iterations : {1, 2, 4}) {
     sim::realtime::StepOptions options;
     options.iterations = iterations;
-    sim::realtime::Face moving(model, channels), exact(model, channels);
+    sim::realtime::Solver moving(model, channels), exact(model, channels);
     sim::realtime::StepOptions converged;
     converged.iterations = 60;
     converged.tolerance = 2e-6;

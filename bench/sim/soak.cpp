@@ -14,7 +14,7 @@
 #include <iterator>
 
 #include "bench/sim/clock.h"
-#include "sim/face.h"
+#include "sim/reference_solver.h"
 #include "tests/builder/played.h"
 #include "tests/builder/swept_face.h"
 
@@ -189,10 +189,10 @@ int main(int argc, char** argv) {
     testing::SweptFace drives(asset, request.level);
     const size_t channels = asset->channel_names.size();
     if (request.is_reference) {
-      sim::Face face(asset->model(request.level), channels);
+      sim::ReferenceSolver face(asset->model(request.level), channels);
       print(drives.model(), soak(face, sim::StepOptions{}, request, drives), request.is_named);
     } else {
-      sim::realtime::Face face(asset->realtime_model(request.level), channels);
+      sim::realtime::Solver face(asset->realtime_model(request.level), channels);
       sim::realtime::StepOptions options;
       options.iterations = request.iterations;
       print(drives.model(), soak(face, options, request, drives), request.is_named);

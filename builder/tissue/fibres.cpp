@@ -144,8 +144,7 @@ int channel_index(const std::vector<rig::Channel>& channels, const std::string& 
 }
 
 void add_fibres(const TissueInputs& inputs, const Columns& c, rig::TissueLevel& level) {
-  constexpr double spacing = 0.004;                 // metres between a fibre's points
-  constexpr double shortest = 0.3, longest = 0.95;  // of the rest length: where the pull may end at all
+  constexpr double spacing = 0.004;  // metres between a fibre's points
   const anatomy::mechanics::Fibres& constants = inputs.mechanics.fibres;
   level.fibre_offsets.assign(1, 0);
   const Surfaces surfaces(c, inputs.mechanics);
@@ -185,8 +184,9 @@ void add_fibres(const TissueInputs& inputs, const Columns& c, rig::TissueLevel& 
       level.fibre_muscle.push_back(static_cast<uint32_t>(m));
       level.fibre_channel.push_back(static_cast<uint32_t>(channel));
       level.fibre_strength.push_back(muscle.strength / static_cast<float>(fibres));
-      level.fibre_shortest.push_back(static_cast<float>(std::clamp(
-          1.0 - constants.shortest_factor * static_cast<double>(muscle.peak_shortening), shortest, longest)));
+      level.fibre_shortest.push_back(static_cast<float>(
+          std::clamp(1.0 - constants.shortest_factor * static_cast<double>(muscle.peak_shortening),
+                     constants.shortest_least, constants.shortest_most)));
     }
   }
 }

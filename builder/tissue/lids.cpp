@@ -8,19 +8,15 @@
 namespace fascia::tissue {
 namespace {
 
-// Few columns give way to their neighbours more than many: what is added to the closing a metre of their
-// spacing over that of the medium level.
-constexpr double closing_of_spacing = 60.0, medium_spacing = 0.002;
-// Skin resists less towards the outer canthus than towards the inner one.
-constexpr double outer_share = 0.3;
+// A coarse lattice closes less for the same angle: what is added to the closing per metre of column spacing
+// beyond that of the medium level.
+constexpr double closing_per_spacing = 60.0, medium_spacing = 0.002;
 // Radians that the upper lid of a head with closed eyes is lifted: a fissure of some 9 mm before a globe of
 // 12 (Farkas 1994).
 constexpr double open_height = 0.75;
-// The cornea is given to columns in spheres that grow by this much, metres, for skin that lies deeper than
-// they.
-constexpr double room_step = 5e-4;
-constexpr uint32_t room_steps = 5;
-constexpr double deepest_crease = 0.012;  // metres from the edge within which skin comes to lie on the cornea
+// Number of spheres of growing radius that stand for the cornea, for columns in front of deeper and deeper
+// skin.
+constexpr uint32_t cornea_spheres = 5;
 
 void carry(rig::TissueLevel& level, int channel, size_t node, const Fissure& f, const Vec3& axis,
            double angle, double stiffness, double reverse) {
@@ -34,7 +30,7 @@ void carry(rig::TissueLevel& level, int channel, size_t node, const Fissure& f, 
   level.carrier_drive.push_back(static_cast<float>(stiffness));
 }
 
-/// How far the eye of a side reaches from its centre: the cornea's apex, or its radius where the head has no
+/// Distance of the cornea's apex from the centre of the eye of a side, or the eye's radius if the head has no
 /// eyeball.
 double apex_of(const TissueInputs& inputs, bool left, const Fissure& f) {
   double apex = f.radius;
@@ -47,10 +43,10 @@ double apex_of(const TissueInputs& inputs, bool left, const Fissure& f) {
   return apex;
 }
 
-/// What skin between columns near an opening needs over a ball of `radius`: several times the height of a
-/// chord as long as they stand apart, for triangles span more than that, and what contact and the evening out
-/// of skin give way.
-double chord_room(const Columns& c, const std::vector<double>& opening, double radius) {
+/// Clearance over a ball of `radius` for the skin between columns near an opening: several times the sagitta
+/// of a chord as long as their spacing, because triangles span more than that, plus the give of contact and
+/// smoothing.
+double chord_clearance(const Columns& c, const std::vector<double>& opening, double radius) {
   double area = 0.0;
   int count = 0;
   for (size_t v = 0; v < opening.size(); ++v) {
@@ -61,8 +57,8 @@ double chord_room(const Columns& c, const std::vector<double>& opening, double r
   return 5e-4 + 5.0 * area / std::max(1, count) / (8.0 * radius);
 }
 
-/// How much deeper than a column, towards the eye's centre, the skin about it lies, metres: lids turn about
-/// that centre, so that what lies in the crease at rest comes so much nearer to the cornea than the column.
+/// How much deeper than a column, toward the eye's centre, the skin around it lies, metres: lids rotate about
+/// that centre, so that skin in the crease comes closer to the cornea than the column by this distance.
 std::vector<double> sunken_skin(const FaceRegion& region, const Columns& c, const std::vector<double>& near,
                                 const std::vector<double>& opening, const Fissure& f, double reach) {
   std::vector<double> sunken(near.size(), 0.0);
@@ -99,28 +95,29 @@ void add_eye(const TissueInputs& inputs, const FaceRegion& region, const Columns
   level.globe_radius.push_back(static_cast<float>(f.radius));
   const double bulge = m.cornea_radius_share * f.radius, apex = apex_of(inputs, left, f);
   const bool has_cornea = apex > f.radius + 1e-4;
-  const double room = chord_room(c, opening, bulge);
+  const double clearance = chord_clearance(c, opening, bulge);
+  const double growth = m.cornea_crease_depth / (cornea_spheres - 1);
   const auto first = static_cast<uint32_t>(level.globe_centre.size());
-  for (uint32_t step = 0; has_cornea && step < room_steps; ++step) {
+  for (uint32_t step = 0; has_cornea && step < cornea_spheres; ++step) {
     level.globe_centre.push_back((f.centre + (apex - bulge) * f.front).cast<float>());
-    level.globe_radius.push_back(static_cast<float>(bulge + room + step * room_step));
+    level.globe_radius.push_back(static_cast<float>(bulge + clearance + step * growth));
   }
   const auto& skin_opening =
       region.opening_distance[static_cast<size_t>(left ? Opening::eye_left : Opening::eye_right)];
-  const std::vector<double> sunken = sunken_skin(region, c, opening, skin_opening, f, deepest_crease);
+  const std::vector<double> sunken = sunken_skin(region, c, opening, skin_opening, f, m.cornea_crease_reach);
   for (size_t v = 0; v < n; ++v) {
     if (!(opening[v] < m.reach) || c.rim[v]) continue;
     const Vec3& p = c.mesh.vertices[v];
     const double place = f.place(p), distance = opening[v];
     const bool is_upper = f.is_upper(region, c.source[v], p);
-    // The plate goes as one, full at the edge and in the lining; none beyond the canthi. Above it the skin
-    // folds in at the crease, where the levator's aponeurosis holds it.
+    // The plate moves rigidly, fully at the edge and in the lining, not beyond the canthi. Above it the skin
+    // folds at the crease, where the levator's aponeurosis holds it.
     const double across = m.canthal_fade.rise(place) * m.canthal_fade.rise(1.0 - place);
     const double fade =
         (c.outer[v] ? (is_upper ? m.upper_plate : m.lower_plate).fall(distance) : 1.0) * across;
     const double unfolding = closing_share(inputs, c, f, v);
     const double held = std::max(fade, c.outer[v] && is_upper ? across * m.crease.fall(distance) : 0.0);
-    const auto step = std::min<uint32_t>(room_steps - 1, static_cast<uint32_t>(sunken[v] / room_step + 0.5));
+    const auto step = std::min<uint32_t>(cornea_spheres - 1, static_cast<uint32_t>(sunken[v] / growth + 0.5));
     for (const size_t node : {v, n + v}) {
       level.globe_contact_node.push_back(static_cast<uint32_t>(node));
       level.globe_contact_globe.push_back(first - 1);
@@ -139,9 +136,10 @@ void add_eye(const TissueInputs& inputs, const FaceRegion& region, const Columns
       };
       const double coarse = std::max(0.0, std::sqrt(c.area[v]) - medium_spacing);
       const double to_inner = (left ? -1.0 : 1.0) * (2.0 * place - 1.0);  // 1 at the inner canthus, -1 outer
-      const double lid = is_closed ? 0.0
-                                   : (m.closing + closing_of_spacing * coarse) * gap +
-                                         m.canthal_turn * std::max(to_inner, -outer_share * to_inner);
+      const double lid = is_closed
+                             ? 0.0
+                             : (m.closing + closing_per_spacing * coarse) * gap +
+                                   m.canthal_turn * std::max(to_inner, -m.canthal_outer_share * to_inner);
       const double lift =
           is_closed ? open_height * std::sin(EIGEN_PI * std::clamp(place, 0.0, 1.0)) : m.opening * lid;
       if (is_upper)
@@ -169,7 +167,7 @@ double closing_share(const TissueInputs& inputs, const Columns& c, const Fissure
   const double place = f.place(c.mesh.vertices[v]);
   const double distance = std::min(c.opening_distance[static_cast<size_t>(Opening::eye_left)][v],
                                    c.opening_distance[static_cast<size_t>(Opening::eye_right)][v]);
-  // Skin that the lid takes down unfolds from the crease, so that it goes less far than the edge.
+  // Skin that follows the lid unfolds from the crease, so that it moves less than the edge.
   return (c.outer[v] ? m.unfolding.fall(distance) : 1.0) * m.canthal_fade.rise(place) *
          m.canthal_fade.rise(1.0 - place);
 }

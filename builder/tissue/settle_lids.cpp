@@ -4,7 +4,7 @@
 
 #include "builder/tissue/actuators.h"
 #include "builder/tissue/lids.h"
-#include "sim/realtime/face.h"
+#include "sim/realtime/solver.h"
 
 namespace fascia::tissue {
 namespace {
@@ -204,7 +204,7 @@ void settle_lids(const TissueInputs& inputs, const FaceRegion& region, const Col
     if (!model.valid()) return;
     const sim::realtime::Model fast(model);
     if (!fast.valid()) return;
-    sim::realtime::Face face(fast, inputs.channels.size());
+    sim::realtime::Solver face(fast, inputs.channels.size());
     std::vector<rig::Vec3f> nodes(level.rest.size());
     sim::Controls controls;
     controls.activations = inputs.blink;

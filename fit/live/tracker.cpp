@@ -89,7 +89,7 @@ Tracker::Tracker(const sim::FaceModel& model, const sim::realtime::Model& fast_m
     : model_(&model),
       landmarks_(std::move(landmarks)),
       options_(options),
-      face_(std::make_unique<sim::realtime::Face>(fast_model, actuation.channels.size())),
+      face_(std::make_unique<sim::realtime::Solver>(fast_model, actuation.channels.size())),
       nodes_(model.rest().size()) {
   const std::vector<double> dearness = dearness_of(actuation);
   const sim::Sensitivity sensitivity(model);

@@ -10,7 +10,7 @@
 #include "fit/live/landmark.h"
 #include "fit/live/landmark_jacobian.h"
 #include "rig/model/rig.h"
-#include "sim/realtime/face.h"
+#include "sim/realtime/solver.h"
 
 namespace fascia::fit {
 
@@ -86,7 +86,7 @@ class Tracker {
   const sim::FaceModel* model_;
   std::vector<Landmark> landmarks_;
   TrackerOptions options_;
-  std::unique_ptr<sim::realtime::Face> face_;
+  std::unique_ptr<sim::realtime::Solver> face_;
   std::vector<uint32_t> fitted_;  ///< channels, those of the jaw last
   std::vector<StepBound> ranges_, bounds_;
   std::vector<double> dearness_, ridge_, smoothness_;  ///< by fitted channel

@@ -227,14 +227,14 @@ Target target_of(const Subject& subject, const std::vector<Match>& matches,
     const auto at = static_cast<Eigen::Index>(3 * match.vertex);
     offs[match.vertex] += match.weight * match.off();
     target.normals.segment<3>(at) += match.weight * match.normal;
-    target.trust[match.vertex] += match.weight;
+    target.confidence[match.vertex] += match.weight;
   }
   for (size_t v = 0; v < offs.size(); ++v) {
-    if (target.trust[v] <= 0.0) continue;
+    if (target.confidence[v] <= 0.0) continue;
     const auto at = static_cast<Eigen::Index>(3 * v);
     const Vec3 normal = target.normals.segment<3>(at).normalized();
     target.normals.segment<3>(at) = normal;
-    target.displacements.segment<3>(at) += offs[v] / target.trust[v] * normal;
+    target.displacements.segment<3>(at) += offs[v] / target.confidence[v] * normal;
   }
   return target;
 }

@@ -4,38 +4,12 @@
 #include <array>
 #include <cctype>
 
+#include "geometry/base64.h"
 #include "geometry/error.h"
 #include "geometry/text.h"
 
 namespace fascia::gltf {
 namespace {
-
-int base64_digit(char c) {
-  if (c >= 'A' && c <= 'Z') return c - 'A';
-  if (c >= 'a' && c <= 'z') return c - 'a' + 26;
-  if (c >= '0' && c <= '9') return c - '0' + 52;
-  if (c == '+' || c == '-') return 62;
-  if (c == '/' || c == '_') return 63;
-  return -1;
-}
-
-/// RFC 4648, either alphabet; other characters are passed over.
-std::vector<uint8_t> base64_bytes(std::string_view text) {
-  std::vector<uint8_t> bytes;
-  bytes.reserve(text.size() / 4 * 3);
-  uint32_t bits = 0;
-  int held = 0;
-  for (const char c : text) {
-    const int digit = base64_digit(c);
-    if (digit < 0) continue;
-    bits = bits << 6 | static_cast<uint32_t>(digit);
-    held += 6;
-    if (held < 8) continue;
-    held -= 8;
-    bytes.push_back(static_cast<uint8_t>(bits >> held));
-  }
-  return bytes;
-}
 
 int hex_digit(char c) {
   if (c >= '0' && c <= '9') return c - '0';
@@ -53,8 +27,7 @@ std::optional<DataUri> data_uri(std::string_view uri) {
   if (comma == std::string_view::npos || comma < 5 + marker.size() ||
       uri.substr(comma - marker.size(), marker.size()) != marker)
     throw Error("a data URI in the glTF file is not base 64");
-  return DataUri{base64_bytes(uri.substr(comma + 1)),
-                 std::string(uri.substr(5, uri.find_first_of(";,") - 5))};
+  return DataUri{from_base64(uri.substr(comma + 1)), std::string(uri.substr(5, uri.find_first_of(";,") - 5))};
 }
 
 std::string percent_decoded(std::string_view uri) {

@@ -1,7 +1,7 @@
-// The energy of each kind of element with its gradient, written once for doubles and for lanes (numbers.h).
-// Energies are in joules and are added to `energy`, gradients in newtons are added to `gradient`. `stiffer`
-// of a node grows by how much stiffer than at rest the element makes it, newton per metre: a bound of the
-// added curvature's diagonal, for solvers whose matrix is that of the rest pose.
+// The energy of each kind of element with its gradient, for doubles and for lanes (numbers.h). Energies are
+// in joules and are added to `energy`, gradients in newtons are added to `gradient`. `stiffer` of a node is
+// increased by an upper bound of the diagonal of the curvature added relative to rest, newton per metre, for
+// solvers that use the stiffness matrix of the rest pose.
 
 #pragma once
 
@@ -9,28 +9,26 @@
 
 namespace fascia::sim::formulas {
 
-// Where elements resist ever more.
-constexpr double crush_begin = 0.5;  ///< share of its area below which a membrane does
+// Limits of the barriers.
+constexpr double crush_begin = 0.5;  ///< ratio to its rest area below which a membrane has a barrier
 constexpr double crush_end = 0.1;    ///< share below which its resistance goes on as a parabola
 constexpr double turn_begin =
-    0.4;                          ///< share of its volume below which a prism resists being turned inside out
-constexpr double turn_end = 0.1;  ///< share below which its resistance goes on as a parabola
-constexpr double turn_modulus = 800.0;        ///< pascal, with which it does
-constexpr double segment_rounding = 6.25e-8;  ///< square metres: rounds off short stretches of fibre
-constexpr double fold_softness =
-    0.01;  ///< where a hinge's mean normal fades out: folds closer than 6 degrees
+    0.4;  ///< ratio to its rest volume below which a prism has a barrier against inversion
+constexpr double turn_end = 0.1;              ///< share below which its resistance goes on as a parabola
+constexpr double turn_modulus = 800.0;        ///< pascal: modulus of that barrier
+constexpr double segment_rounding = 6.25e-8;  ///< square metres: smooths the length of short fibre segments
+constexpr double fold_softness = 0.01;  ///< where a hinge's mean normal is faded out: folds within 6 degrees
 
-/// Bounds an element's curvature by that of its corners alone: neighbours pull along.
+/// Factor that bounds an element's curvature by its diagonal blocks.
 constexpr double corner_bound = 2.0;
 
-/// A resistance that begins where the share of the rest that is left falls below some value, with both
-/// derivatives by that share.
+/// A barrier as a function of the ratio to rest, with its first two derivatives.
 template <class N>
 struct Wall {
   N value, slope, curvature;
 };
-/// (begin / ratio - 1)^2 below `begin`; from `end` on its parabola, so that a step gone too far has a way
-/// back.
+/// (begin / ratio - 1)^2 below `begin`; below `end` its osculating parabola, so that inverted elements can
+/// recover.
 template <class N>
 FASCIA_INLINE Wall<N> wall_at(const N& ratio, double wall_begin, double wall_end) {
   const N begin = like(ratio, wall_begin), none = like(ratio, 0.0), r = greater(ratio, wall_end),
@@ -50,7 +48,7 @@ struct MembraneRest {
   N a, b, c, mu, lambda;
 };
 /// Corotated linear elasticity in plane stress: W = area (mu |F - R|^2 + lambda/2 (tr S - 2)^2), F = R S
-/// (Sifakis & Barbic 2012, section 3.3), and a wall mu (1 / (2 J) - 1)^2 against collapse.
+/// (Sifakis & Barbic 2012, section 3.3), and a barrier mu (1 / (2 J) - 1)^2 against collapse.
 template <class N>
 FASCIA_INLINE void membrane(const MembraneRest<N>& m, const Three<N>* x, Three<N>* gradient, N* stiffer,
                             N& energy) {
@@ -85,8 +83,8 @@ FASCIA_INLINE void membrane(const MembraneRest<N>& m, const Three<N>* x, Three<N
 }
 
 /// Volume of the prism between the outer corners p and the inner ones q, cubic metres, and six times its
-/// gradient by both (by q only when asked for). The closed surface has each bilinear side as the mean of its
-/// two diagonal splits; everything is taken from p[0].
+/// gradient by both (for q only on request). The closed surface has each bilinear side as the mean of its two
+/// diagonal splits; everything is taken from p[0].
 template <bool both, class N>
 FASCIA_INLINE N prism_volume(const Three<N>* p, const Three<N>* q, Three<N>* by_p, Three<N>* by_q) {
   const Three<N> p1 = p[1] - p[0], p2 = p[2] - p[0], q0 = q[0] - p[0], q1 = q[1] - p[0], q2 = q[2] - p[0];
@@ -104,13 +102,13 @@ FASCIA_INLINE N prism_volume(const Three<N>* p, const Three<N>* q, Three<N>* by_
 }
 
 /// A prism at rest: volume in cubic metres and its inverse (of its size, never zero), stiffness in pascal,
-/// and `guard`, the modulus against being turned inside out: turn_modulus, or 0 where it is inverted at rest.
+/// and `guard`, the modulus of the barrier against inversion: turn_modulus, or 0 if it is inverted at rest.
 template <class N>
 struct PrismRest {
   N volume, inverse_volume, stiffness, guard;
 };
-/// W = stiffness/(2 V0) (V - V0)^2 and, against being turned inside out, a wall of guard V0 (0.4 V0 / V -
-/// 1)^2. `pressure` is dW/dV, pascal; returned is d2W/dV2 of the wall alone.
+/// W = stiffness/(2 V0) (V - V0)^2 and a barrier against inversion, guard V0 (0.4 V0 / V - 1)^2. `pressure`
+/// is dW/dV, pascal; the result is d2W/dV2 of the barrier alone.
 template <class N>
 FASCIA_INLINE N prism_pressure(const PrismRest<N>& m, const N& volume, N& pressure, bool& has_wall,
                                N& energy) {
@@ -148,7 +146,7 @@ FASCIA_INLINE void prism(const PrismRest<N>& m, const Three<N>* p, const Three<N
 }
 
 /// An edge with two triangles at rest: weights (per metre) of its second end and of the corners opposite to
-/// it, the first end's being what lacks to a sum of zero; see sim::Hinge.
+/// it, that of the first end makes the sum zero; see sim::Hinge.
 template <class N>
 struct HingeRest {
   N weight_1, weight_2, weight_3, stiffness, bend, scale_a, scale_b;
@@ -161,9 +159,10 @@ FASCIA_INLINE Three<N> hinge_normal(const N& scale_a, const N& scale_b, const Th
   inverse_length = 1.0 / square_root(dot(normal, normal) + fold_softness);
   return inverse_length * normal;
 }
-/// W = stiffness/2 |L - bend n|^2, L the weighted sum of the four places: for a flat rest quadratic (Bergou
-/// et al. 2006), for a bent one smooth however its triangles shrink or fold (Garg et al. 2007). `x` and
-/// `gradient` are of the edge's ends, then of the opposite corners; the gradient is set, not added to.
+/// W = stiffness/2 |L - bend n|^2, L the weighted sum of the four positions: quadratic for a flat rest shape
+/// (Bergou et al. 2006), smooth for a curved one even when its triangles shrink or fold (Garg et al. 2007).
+/// `x` and `gradient` are of the edge's ends, then of the opposite corners; the gradient is set, not added
+/// to.
 template <class N>
 FASCIA_INLINE void hinge(const HingeRest<N>& h, const Three<N>* x, Three<N>* gradient, N& energy) {
   const Three<N> edge = x[1] - x[0], arm_a = x[2] - x[0], arm_b = x[3] - x[0];
@@ -184,14 +183,14 @@ FASCIA_INLINE void hinge(const HingeRest<N>& h, const Three<N>* x, Three<N>* gra
   energy += 0.5 * dot(force, miss);
 }
 
-/// A spring at rest: metres, newton per metre; `extra` is what the stiffness grows by past `limit` of
-/// stretch.
+/// A spring at rest: metres, newton per metre; `extra` is the additional stiffness beyond the stretch
+/// `limit`.
 template <class N>
 struct SpringRest {
   N length, stiffness, limit, extra;
 };
-/// Pull on the first end, against it on the second. `slack` is the stretch below which there is none: 0 for a
-/// one-sided spring, else no_slack.
+/// Force on the first end; the second has the opposite. `slack` is the stretch below which it is zero: 0 for
+/// a one-sided spring, else no_slack.
 constexpr double no_slack = -1e3;
 template <class N>
 FASCIA_INLINE Three<N> spring(const SpringRest<N>& s, const N& slack, const Three<N>& along, N& stiffer,
@@ -205,8 +204,8 @@ FASCIA_INLINE Three<N> spring(const SpringRest<N>& s, const N& slack, const Thre
   return (force / length) * along;
 }
 
-/// Force of a node held to a place it is `away` from: `tangential` newton per metre, `extra` more along the
-/// unit `normal`.
+/// Force of a tether with the offset `away` from its anchor: `tangential` newton per metre, plus `extra`
+/// along the unit `normal`.
 template <class N>
 FASCIA_INLINE Three<N> tether(const N& tangential, const N& extra, const Three<N>& normal,
                               const Three<N>& away, N& energy) {
@@ -215,7 +214,8 @@ FASCIA_INLINE Three<N> tether(const N& tangential, const N& extra, const Three<N
   return tangential * away + (extra * along) * normal;
 }
 
-/// Force of a node that is held to its carried place, `away` from it, and pulled by an actuator.
+/// Force of a carrier: a tether with the offset `away` from its rigidly moved position, and the pull of an
+/// actuator.
 template <class N>
 FASCIA_INLINE Three<N> held_and_pulled(const N& stiffness, const Three<N>& pull, const Three<N>& away,
                                        N& energy) {
@@ -224,21 +224,22 @@ FASCIA_INLINE Three<N> held_and_pulled(const N& stiffness, const Three<N>& pull,
   return hold - pull;
 }
 
-/// Depth of a node `away` from the centre of a ball below its surface, 0 outside, and its distance.
+/// Penetration depth of a node with the offset `away` from the centre of a ball, 0 outside, and its distance.
 template <class N>
 FASCIA_INLINE N depth_in_ball(const N& radius, const Three<N>& away, N& distance) {
   distance = greater(square_root(dot(away, away)), 1e-12);
   return positive(radius - distance);
 }
 
-/// Length of a stretch of fibre, rounded off below a quarter of a millimetre: one that has collapsed has no
-/// direction left to pull in, and without the rounding its force would jump from one side to the other.
+/// Length of a fibre segment, smoothed below a quarter of a millimetre: the direction of a collapsed segment
+/// is undefined, and without smoothing its force would be discontinuous.
 template <class N>
 FASCIA_INLINE N segment_length(const Three<N>& along) {
   return square_root(dot(along, along) + segment_rounding);
 }
-/// Tension of a fibre of the length `length`: its pull (newton at rest length) falls with its length and ends
-/// at its shortest, the rising limb of the force-length curve as a line. The integral is convex in length.
+/// Tension of a fibre of the length `length`: its force (newton at rest length) decreases with its length to
+/// zero at its minimum length, the ascending limb of the force-length curve as a line. The integral is convex
+/// in length.
 template <class N>
 FASCIA_INLINE N fibre_tension(const N& pull, const N& length, const N& rest_length, const N& shortest,
                               N& energy) {

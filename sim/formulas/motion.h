@@ -1,4 +1,4 @@
-// How bones and actuators turn places, written once for doubles and for lanes (numbers.h).
+// Rotations of positions by bones and actuators, for doubles and for lanes (numbers.h).
 
 #pragma once
 
@@ -6,14 +6,14 @@
 
 namespace fascia::sim::formulas {
 
-/// What turning about a unit axis adds to an arm (Rodrigues); the versine is 1 - cosine.
+/// Displacement of an arm by a rotation about a unit axis (Rodrigues); the versine is 1 - cosine.
 template <class N>
 FASCIA_INLINE Three<N> turned(const Three<N>& axis, const N& sine, const N& versine, const Three<N>& arm) {
   const Three<N> across = cross(axis, arm);
   return sine * across + versine * cross(axis, across);
 }
 
-/// What the jaw's rotation adds to an arm from its joint: by `open` radians about `lateral`, then by
+/// Displacement of an arm from the joint by the jaw's rotation: by `open` radians about `lateral`, then by
 /// `sideways` radians about `up`. See sim::Jaw.
 template <class N>
 FASCIA_INLINE Three<N> jaw_turn(const Three<N>& lateral, const Three<N>& up, const N& open, const N& sideways,
@@ -25,8 +25,8 @@ FASCIA_INLINE Three<N> jaw_turn(const Three<N>& lateral, const Three<N>& up, con
   return first + turned(up, sine, versine, arm + first);
 }
 
-/// Force with which an actuator pulls a node that it turns about an axis: `stiffness` newton per metre of the
-/// way that turning takes the node's `arm`. The angle in radians is `forward` at value 1, `backward` at -1.
+/// Force of an actuator on a node that it rotates about an axis: `stiffness` newton per metre of the
+/// displacement of the node's `arm`. The angle in radians is `forward` at value 1, `backward` at -1.
 template <class N>
 FASCIA_INLINE Three<N> rotary_pull(const N& stiffness, const N& value, const N& forward, const N& backward,
                                    const Three<N>& axis, const Three<N>& arm) {

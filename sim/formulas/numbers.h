@@ -1,6 +1,6 @@
-// What a formula may do with numbers, so that it is written once and works on a double as on sixteen floats
-// (sim/lanes/lanes.h): `N` below is either. No header of a library is included here, and every function is
-// inlined always, so that nothing compiled for a wider vector unit can be called by accident.
+// The number type `N` of the formulas: a double or sixteen floats (sim/lanes/lanes.h). No library header is
+// included here, and every function is always inlined, so that code compiled for a wider instruction set
+// cannot be called by accident.
 
 #pragma once
 
@@ -13,7 +13,7 @@ namespace {
 FASCIA_INLINE double square_root(double a) {
   return __builtin_sqrt(a);
 }
-/// The greater of both; `b` where `a` is not a number.
+/// The maximum; `b` if `a` is NaN.
 FASCIA_INLINE double greater(double a, double b) {
   return a > b ? a : b;
 }

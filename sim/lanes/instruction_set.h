@@ -2,11 +2,11 @@
 
 namespace fascia::sim::lanes {
 
-/// The vector units that loops are compiled for.
+/// The instruction sets that loops are compiled for.
 enum class InstructionSet { baseline, avx2, avx512 };
 
-/// The widest this processor runs; the environment variable FASCIA_SIMD=baseline|avx2 takes a narrower one.
-/// Loops on `Lanes` give the same bits on each.
+/// The widest that this processor supports; the environment variable FASCIA_SIMD=baseline|avx2 selects a
+/// narrower one. Loops on `Lanes` are bit-identical on each.
 InstructionSet instruction_set();
 
 }  // namespace fascia::sim::lanes

@@ -1,10 +1,10 @@
-// Sixteen floats that are worked on at once, whatever the width of the vector unit: one register of AVX-512,
-// two of AVX2, four of SSE2. Since every unit does the same IEEE operations on the same sixteen, all give the
-// same bits; nothing here may contract, estimate or reorder.
+// A vector of sixteen floats, whatever the register width: one register of AVX-512, two of AVX2, four of
+// SSE2. Every instruction set performs the same IEEE operations, so results are bit-identical; nothing here
+// may contract, approximate or reorder.
 //
-// Included once by each source that is compiled for one unit, which defines FASCIA_LANES_NAMESPACE before.
-// Everything here is local to the including source, so that nothing compiled for a wider unit can be called
-// by accident.
+// Included once by each source that is compiled for one instruction set, which defines FASCIA_LANES_NAMESPACE
+// before. Everything here is local to the including source, so that code compiled for a wider instruction set
+// cannot be called by accident.
 
 #pragma once
 
@@ -42,7 +42,7 @@ FASCIA_INLINE Lanes load(const float* from) {
     out.part[p] = *reinterpret_cast<const UnalignedPart*>(from + p * part_width);
   return out;
 }
-/// Sixteen floats of which only the upper halves are in memory; the lower ones are zero.
+/// Sixteen floats stored as their upper 16 bits; the lower ones are zero.
 FASCIA_INLINE Lanes load_upper_halves(const uint16_t* from) {
   Lanes out;
   for (size_t p = 0; p < part_count; ++p) {
@@ -127,7 +127,7 @@ FASCIA_INLINE Lanes square_root(const Lanes& a) {
   }
   return out;
 }
-/// The greater of each; `b` where `a` is not a number.
+/// The maximum of each; `b` if `a` is NaN.
 FASCIA_INLINE Lanes greater(const Lanes& a, const Lanes& b) {
   Lanes out;
   for (size_t p = 0; p < part_count; ++p) {
@@ -172,7 +172,7 @@ FASCIA_INLINE Lanes lesser(const Lanes& a, const Lanes& b) {
   return out;
 }
 
-/// Three coordinates of sixteen places.
+/// Three coordinates of sixteen positions.
 using Lanes3 = formulas::Three<Lanes>;
 
 /// `yes` where a < b, else `no`.

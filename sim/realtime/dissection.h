@@ -11,8 +11,8 @@
 
 namespace fascia::sim::realtime {
 
-/// How a symmetric matrix over nodes in space is eliminated: nested dissection by planes (George 1973), every
-/// separator and every last piece a supernode whose columns are treated as dense.
+/// Elimination order of a symmetric matrix over nodes in space: nested dissection by planes (George 1973);
+/// every separator and every leaf is a supernode with dense columns.
 class Dissection {
  public:
   /// `matrix` square, full; `places` of its unknowns.
@@ -25,7 +25,7 @@ class Dissection {
   struct Front {
     uint32_t first = 0, width = 0;  ///< of its unknowns in the order
     std::vector<uint32_t> rows;     ///< later unknowns, in the order, ascending
-    int32_t parent = -1;            ///< that takes what it leaves
+    int32_t parent = -1;            ///< that receives its update matrix
   };
   const std::vector<Front>& fronts() const { return fronts_; }  ///< children before parents
 
@@ -41,18 +41,17 @@ class Dissection {
 };
 
 /// The Cholesky factor of a matrix in an order of elimination, front by front in whole blocks of sixteen
-/// rows, rounded to the upper halves of floats (computed in
-/// single precision, and in double where that does not do). Diagonal parts are kept as their
-/// inverses.
+/// rows, stored as the upper halves of floats (computed in single precision, in double where that fails).
+/// Diagonal blocks are stored as their inverses.
 class PanelFactor {
  public:
-  /// Factors `matrix`, which must have the pattern `dissection` was made for. Returns false, and stays empty,
-  /// when the matrix is not positive definite.
+  /// Factors `matrix`, which must have the pattern `dissection` was made for. Returns false, and remains
+  /// empty, if the matrix is not positive definite.
   bool compute(const Dissection& dissection, const Eigen::SparseMatrix<double, Eigen::RowMajor>& matrix);
   Panels view() const { return {size_, fronts_.size(), fronts_.data(), rows_.data(), values_.data()}; }
   size_t entries() const { return values_.size(); }
   size_t columns() const { return size_; }
-  size_t scratch() const { return scratch_; }  ///< floats that a solve needs to work in
+  size_t scratch() const { return scratch_; }  ///< floats of scratch memory for a solve
 
  private:
   /// In numbers of the type `Real`.

@@ -165,7 +165,7 @@ Lanes pressure_energy(const Packed& packed, const Boundary& boundary, const floa
   return is_wanted ? energy : splat(0.0F);
 }
 
-/// Where the points of sixteen fibres are.
+/// Positions of the points of sixteen fibres.
 FASCIA_INLINE Lanes3 fibre_point(const FibrePointBatch& p, const Boundary& boundary, const float* x) {
   Lanes3 place = load3(p.base);
   if (!boundary.jaw_at_rest) {
@@ -190,7 +190,7 @@ Lanes fibre_energy(const Packed& packed, const Boundary& boundary, const float* 
         formulas::activation_force(positive(channel_values(boundary.values, f.channel))) * load(f.strength);
     if (!any_below(splat(0.0F), pull)) continue;
     const FibrePointBatch* points = packed.fibre_points + f.first;
-    // First where they run and how long they are; each segment's direction is kept.
+    // First the positions and lengths; the direction of each segment is kept.
     Lanes length = splat(0.0F);
     Lanes3 last = fibre_point(points[0], boundary, x);
     for (uint32_t p = 0; p + 1 < f.count; ++p) {
@@ -221,7 +221,7 @@ Lanes fibre_energy(const Packed& packed, const Boundary& boundary, const float* 
   return is_wanted ? energy : splat(0.0F);
 }
 
-/// Where `is_wanted` is false the energy is not summed, and 0 is returned; the gradient's bits are the same.
+/// If `is_wanted` is false the energy is not summed, and 0 is returned; the gradient is bit-identical.
 template <bool is_wanted>
 double total_energy(const Packed& packed, const Boundary& boundary, const float* x, float* gradient) {
   for (size_t i = 0; i < packed.places; i += 16)

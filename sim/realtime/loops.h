@@ -1,4 +1,4 @@
-// The loops of a face, included once by each of the sources that are compiled for one vector unit (see
+// The loops of a face, included once by each source that is compiled for one instruction set (see
 // sim/lanes/lanes.h), which define FASCIA_LOOPS. Everything else here is local to the including source.
 
 #include "sim/realtime/energy_loops.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-// What several of a face's loops need; see sim/realtime/loops.h.
+// Common parts of a face's loops; see sim/realtime/loops.h.
 
 #include "sim/lanes/lanes.h"
 #include "sim/realtime/packed.h"

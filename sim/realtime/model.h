@@ -13,7 +13,7 @@
 
 namespace fascia::sim::realtime {
 
-/// What a solve needs of memory beside a face's own state; handed from face to face.
+/// Workspace of a solve, shared by faces.
 struct Workspace {
   static constexpr size_t history = 6;
   Floats carried, start, begun_places, gradient, tether_normals, carrier_pulls,
@@ -28,24 +28,24 @@ struct Workspace {
   std::vector<uint32_t> near_bones;  // contacts that may touch
 };
 
-/// A face model laid out for the loops: the same energies, in single precision, with factors of its own.
-/// Immutable but for the workspaces it lends, so any number of faces and threads may use one.
+/// A face model with the data layout of the loops: the same energies in single precision, with factors of its
+/// own. Immutable except for its pool of workspaces, so any number of faces and threads may use it.
 class Model {
  public:
-  /// `face` must be valid and outlive this. Where its factors cannot be made `fault()` says so, and the model
-  /// must not be used.
+  /// `face` must be valid and outlive this. If its factors cannot be computed, `fault()` is set, and the
+  /// model must not be used.
   explicit Model(const FaceModel& face, lanes::InstructionSet instructions = lanes::instruction_set());
 
   const FaceModel& face() const { return *face_; }
   const Packed& packed() const { return packed_; }
   const Loops& loops() const { return *loops_; }
-  size_t places() const { return packed_.places; }  ///< floats of a list of places
+  size_t places() const { return packed_.places; }  ///< floats of a list of positions
   size_t unknowns() const { return slots_.size(); }
   size_t unknown_floats() const { return unknown_floats_; }     ///< of a list of unknowns
   const std::vector<int32_t>& slots() const { return slots_; }  ///< of each unknown in the factors' order
   const std::vector<int32_t>& prescribed_slots() const {
     return prescribed_slots_;
-  }  ///< of nodes that go with their bones alone
+  }  ///< of nodes that move rigidly with their bones
   int32_t slot_of(size_t node) const {
     const size_t columns = face_->lattice().columns;
     return static_cast<int32_t>(16 * (node % columns) + 4 * (node / columns));
@@ -65,16 +65,15 @@ class Model {
     list.rest = packed_.rest;
     return list;
   }
-  /// Triangles of columns as they lie in the batches, lane after lane: element of batch b and lane l, or one
-  /// past the last.
+  /// The element of batch b and lane l, or one past the last: the order of triangles in the batches.
   size_t triangle_at(size_t batch, size_t lane) const { return lane * packed_.triangle_batches + batch; }
   size_t factor_entries() const { return pose_factor_.entries(); }
   bool valid() const { return fault_.empty(); }
   const std::string& fault() const { return fault_; }
 
-  /// Lists and pointers for the controls of a solve; points into `work` and must be placed before use.
+  /// Boundary conditions of a solve; points into `work` and must be set before use.
   Boundary boundary(Workspace& work) const;
-  /// Numbers of the controls; see FaceModel::place. `values` one a channel, finite.
+  /// Sets the controls; see FaceModel::place. `values` one per channel, finite.
   void set_jaw(const JawPose& jaw, Boundary& boundary) const;
 
   std::unique_ptr<Workspace> borrow() const;
@@ -85,7 +84,7 @@ class Model {
   void pack_edges();
   void pack_held();
   void pack_fibres();
-  bool find_balance();  ///< false when it is not finite
+  bool find_balance();  ///< false if it is not finite
   Eigen::SparseMatrix<double, Eigen::RowMajor> fibre_stiffness() const;
   bool make_factors();
 
@@ -115,8 +114,8 @@ class Model {
   mutable std::vector<std::unique_ptr<Workspace>> workspaces_;
 };
 
-/// What keeps a face from being simulated on `lattice` with `jaw`, or empty: makes everything a face needs,
-/// and throws it away again. Takes as long as making a first face (about 100 ms at medium detail).
+/// The reason why `lattice` with `jaw` cannot be simulated, or empty; creates a complete model and discards
+/// it, which takes as long as creating the first face (about 100 ms at medium detail).
 std::string model_fault(const Lattice& lattice, const Jaw& jaw);
 
 }  // namespace fascia::sim::realtime

@@ -1,12 +1,12 @@
 #pragma once
 
-// What the loops of a face work on: plain numbers only, so that no inline function of a library is compiled
-// for a machine that may not be there.
+// Data of a face's loops: plain numbers only, so that no inline library function is compiled for an
+// unavailable instruction set.
 //
-// A place is four floats (x, y, z, nothing). The places of a column stand together on one cache line, skin,
-// SMAS, inner layer and an empty one: `at` in the lists below is 16 * column + 4 * layer. Elements are in
-// batches of sixteen, each number of a batch sixteen floats in a row; the last batch is filled up with
-// elements without stiffness.
+// A position is four floats (x, y, z, unused). The positions of a column share a cache line: skin, SMAS,
+// inner layer and an unused one; `at` in the lists below is 16 * column + 4 * layer. Elements are in batches
+// of sixteen, each member of a batch being sixteen consecutive floats; the last batch is padded with elements
+// without stiffness.
 
 #include <cstddef>
 #include <cstdint>
@@ -31,8 +31,8 @@ struct alignas(64) TriangleBatch {
   PrismBatch prism[2];
 };
 struct alignas(64) HingeBatch {
-  Sixteen weight[3];  ///< of the edge's second end and the opposite corners; the first's is what lacks to a
-                      ///< sum of zero
+  Sixteen weight[3];  ///< of the edge's second end and the opposite corners; that of the first makes the
+                      ///< sum zero
   Sixteen stiffness, bend, scale_a, scale_b;
 };
 struct alignas(64) SpringBatch {
@@ -52,7 +52,7 @@ struct alignas(64) LooseSpringBatch {
   SpringBatch spring;
   Sixteen slack;  ///< stretch below which there is no force: -1 km, or 0 when one-sided
 };
-/// Held to a place by its bones, stiffer or weaker along a normal; carriers are tethers with a pull.
+/// Anisotropic tethers to positions that move with the bones; carriers are tethers with an additional force.
 struct alignas(64) TetherBatch {
   SixteenAt at;
   Sixteen normal[3], tangential, extra;
@@ -84,7 +84,7 @@ struct alignas(64) PressureBatch {
   SixteenAt channel;
 };
 
-/// Everything of a model that its faces share.
+/// The data of a model shared by its faces.
 struct Packed {
   const TriangleBatch* triangles;
   const EdgeBatch* edges;
@@ -99,11 +99,11 @@ struct Packed {
       fibre_batches, pressure_batches;
   size_t places;           ///< 4 * columns
   const float* rest;       ///< places
-  const float* balance;    ///< places: gradient at rest; null while it is being found
-  const float* jaw_share;  ///< #places, one float each: how far the mandible carries it
+  const float* balance;    ///< positions: gradient at rest; null while it is computed
+  const float* jaw_share;  ///< #positions, one float each: jaw weight
 };
 
-/// What a solve is held by: bones, actuators and channel values.
+/// Boundary conditions of a solve: bones, actuators and channel values.
 struct Boundary {
   const float* values;  ///< by channel
   float jaw_origin[3], jaw_up[3], jaw_lateral[3];
@@ -111,14 +111,13 @@ struct Boundary {
   float glide[3];                             ///< at share 1
   float jaw_rotation[9], jaw_translation[3];  ///< of the mandible itself, rows
   bool jaw_at_rest;
-  float* carried;         ///< places: where each goes with its bones
+  float* carried;         ///< positions: under the rigid motion of the bones
   float* tether_normals;  ///< 3 x 16 a batch
   float* carrier_pulls;   ///< 3 x 16 a batch
-  float* fibre_scratch;   ///< 3 x 16 a point of the longest batch
+  float* fibre_scratch;   ///< 3 x 16 per point of the longest batch
 };
 
-/// A matrix over unknowns that x, y and z share, rows of 4-float places. Rows are filled up to a multiple of
-/// four entries.
+/// A sparse matrix over unknowns, the same for x, y and z. Rows are padded to a multiple of four entries.
 struct SparseRows {
   size_t size;
   const uint32_t* begin;  ///< size + 1
@@ -126,11 +125,11 @@ struct SparseRows {
   const float* value;
 };
 
-/// A Cholesky factor by fronts, see dissection.h. Of a front with the factor's diagonal part A and part B
-/// below it stands F = (A^-1; -B A^-1), so that going forward is one product with F and going back one with
-/// its transpose. Numbers are half as long as floats: a solve is bound by how fast fronts come from memory,
-/// and a preconditioner may be rounded, for both products round alike, so that it stays symmetric and
-/// definite.
+/// A Cholesky factor by fronts, see dissection.h. A front with the diagonal block A and the block B below it
+/// is stored as F = (A^-1; -B A^-1), so that forward substitution is one product with F and backward
+/// substitution one with its transpose. Numbers have 16 bits: a solve is limited by memory bandwidth, and a
+/// preconditioner may be rounded; both products use the same rounded numbers, so that it remains symmetric
+/// and definite.
 struct Panels {
   struct Front {
     uint32_t first, width;  ///< its unknowns
@@ -149,83 +148,82 @@ struct Panels {
   const uint16_t* value;  ///< the upper halves of floats
 };
 
-/// What a solve asks for and what holds it back: unknowns by their places, with the forces that act on each
-/// alone.
+/// The unknowns of a solve, with the forces of inertia, damping and acceleration.
 struct Unknowns {
   size_t count;
   const int32_t* slot;  ///< of each, into places
   const float* mass;
   const float* diagonal;             ///< of the factored matrix
   const float *rest, *x, *gradient;  ///< places
-  const float *ballistic, *begun;    ///< by unknown: where inertia, where bones alone would bring it
+  const float *ballistic, *begun;    ///< by unknown: inertial prediction; position under the rigid motion of
+                                     ///< the bones at the beginning
   float acceleration[3];
   float per_mass, drag, stiff;  ///< 1 / h^2 and dampings over h; all 0 in a static pose
 };
 
-/// One iteration without line search: each node goes along the direction by a step size of its own.
+/// One iteration without line search: each node moves along the direction with a step size of its own.
 struct NodeSteps {
   size_t count;            ///< unknowns
   const int32_t* slot;     ///< of each, into places
   const float* direction;  ///< 4 an unknown
-  bool judges;             ///< whether step sizes are chosen anew
-  /// Gradients now and before the last step, 4 an unknown; no gradient before where the last step was of
+  bool judges;             ///< whether step sizes are updated
+  /// Gradients now and before the last step, 4 per unknown; the latter is null if the last step was in
   /// another substep.
   const float *gradient, *gradient_before;
-  float* last;        ///< 4 an unknown: each node's last step, of whatever solve; on return the one taken
-  float* step_scale;  ///< of each unknown, 0.02 to 1: its step size; smaller where a step went too far
+  float* last;  ///< 4 an unknown: each node's last step, possibly of another solve; on return the current one
+  float* step_scale;  ///< of each unknown, 0.02 to 1: its step size; smaller where a step overshot
   float* x;           ///< places
 };
 
-/// Where a step of time begins.
+/// The initial guess of a time step.
 struct StepStart {
   size_t count;
   const int32_t* slot;
   const float *velocity, *carried, *carried_before, *step_scale;
   float seconds;
-  float* x;                  ///< places that unknowns leave for the first guess
+  float* x;                  ///< positions; unknowns are set to the initial guess
   float *ballistic, *begun;  ///< by unknown
   float* begun_places;       ///< as `begun`, by place
 };
 
 struct Loops {
-  /// Moves carried places, tether normals and carrier pulls.
+  /// Updates rigidly moved positions, tether normals and carrier forces.
   void (*place)(const Packed&, const Boundary&);
   /// Energy of everything but contact with bones and lips at `x` (places), joules; writes the gradient
-  /// (places), and in each place's fourth float by how much it is stiffer than at rest, newton per metre:
-  /// where walls stand and springs have stiffened.
+  /// (positions), and in each fourth float a bound of the stiffness added relative to rest, newton per metre,
+  /// by barriers and stiffened springs.
   double (*energy)(const Packed&, const Boundary&, const float* x, float* gradient);
   /// The same gradient without the energy: 0 is returned.
   double (*gradient)(const Packed&, const Boundary&, const float* x, float* gradient);
-  /// What is left of the volume of a batch's prisms at `x`, as shares of that at rest: 16 outer ones, then 16
-  /// inner ones.
+  /// Volume of a batch's prisms at `x`, relative to rest: 16 outer ones, then 16 inner ones.
   void (*volume_ratios)(const Packed&, size_t batch, const float* x, float* shares);
   /// out = matrix * x over unknowns.
   void (*multiply)(const SparseRows&, const float* x, float* out);
-  /// What unknowns have moved from where bones alone would bring them.
+  /// Displacement of the unknowns relative to the rigid motion of the bones.
   void (*subtract)(const Unknowns&, float* moved);
   /// Gradient over unknowns with inertia, damping and acceleration, whose energy is returned. `scaling`: S of
-  /// a step S P^-1 S with S^2 = p / (p + more), by which a node is moved less where it is stiffer than the
-  /// factor knows; one a float of `packed`.
+  /// a step S P^-1 S with S^2 = p / (p + more), which reduces the step of nodes that are stiffer than in the
+  /// factor; one per float of `packed`.
   double (*collect)(const Unknowns&, const float* moved, const float* damped, float* packed, float* scaling);
   /// out = factors * list, number by number; the two may be one.
   void (*scale)(const float* factors, const float* list, float* out, size_t count);
-  /// Solves in place over unknowns (4 x (size + 1) floats, the last place of no meaning). `scratch` as
-  /// PanelFactor::scratch says.
+  /// Solves in place over unknowns (4 x (size + 1) floats, the last position unused). `scratch` of the size
+  /// PanelFactor::scratch.
   void (*solve)(const Panels&, float* values, float* scratch);
-  /// One iteration without line search, made safe by two bounds: no node moves farther than a substep's
-  /// largest sensible motion, and each has a step size of its own. Within a substep it is the secant's along
-  /// the node's last step (Barzilai & Borwein 1988, node by node), between bounds; where a substep has one
-  /// iteration it shrinks where steps reverse and grows back where they do not (resilient propagation,
-  /// Riedmiller & Braun 1993). Hestenes-Stiefel momentum (Hestenes & Stiefel 1952), at most 1, over nodes
-  /// whose step sizes are near 1, finishes the line search along the last step that was left out.
+  /// One iteration without line search, with two safeguards: a bound on the displacement of a node, and a
+  /// step size for each node. Within a substep it is the secant's along the node's last step (Barzilai &
+  /// Borwein 1988, node by node), between bounds; where a substep has one iteration it shrinks where steps
+  /// reverse and grows back where they do not (resilient propagation, Riedmiller & Braun 1993).
+  /// Hestenes-Stiefel momentum (Hestenes & Stiefel 1952), at most 1, over nodes whose step sizes are near 1,
+  /// compensates for the missing line search along the last step.
   void (*take_steps)(const NodeSteps&);
-  /// Finds where inertia alone and where the bones alone would bring the unknowns, and starts x between the
-  /// two.
+  /// Computes the inertial prediction and the rigid motion with the bones for the unknowns, and sets x to an
+  /// initial guess between the two.
   void (*begin_step)(const StepStart&);
   double (*dot)(const float* a, const float* b, size_t count);
   void (*add)(float factor, const float* a, float* to,
               size_t count);  ///< to += factor * a; counts are multiples of 16
-  /// Largest squared length of a place.
+  /// Largest squared norm.
   float (*largest)(const float* a, size_t count);
 };
 const Loops& loops_baseline();

@@ -1,8 +1,8 @@
 #pragma once
 
-// What the files of realtime::Face share: its minimisation, and places in lists of floats.
+// What the files of realtime::Solver share: its minimisation, and places in lists of floats.
 
-#include "sim/realtime/face.h"
+#include "sim/realtime/solver.h"
 
 namespace fascia::sim::realtime {
 namespace solving {
@@ -21,7 +21,7 @@ inline void add_at(float* list, int32_t at, const Vec3& value) {
 }  // namespace solving
 
 /// One minimisation: what stands still while it runs.
-struct Face::Solve {
+struct Solver::Solve {
   Workspace& work;
   Boundary boundary;
   Panels factor;

@@ -19,7 +19,7 @@ void multiply(const SparseRows& m, const float* x, float* out) {
   }
 }
 
-/// So many accumulators of three coordinates fit a unit's registers.
+/// Number of accumulators of three coordinates that fit in the registers.
 constexpr size_t group_width = part_count == 1 ? 4 : part_count == 2 ? 2 : 1;
 
 /// Adds what `count` blocks of a front, all with every column, say of its own places.

@@ -1,7 +1,6 @@
 #pragma once
 
-// What a step of time does with unknowns: where it begins, what it asks for, how far it goes; see
-// sim/realtime/loops.h.
+// Loops of a time step over unknowns: initial guess, inertia, step sizes; see sim/realtime/loops.h.
 
 #include "sim/lanes/lanes.h"
 #include "sim/realtime/loops_common.h"
@@ -47,22 +46,21 @@ void scale(const float* factors, const float* list, float* out, size_t count) {
     store(out + i, load(factors + i) * load(list + i));
 }
 
-constexpr float farthest = 0.0015F;  // metres a node may go in one take_steps
-constexpr float noise = 1e-5F;       // metres below which turning back means nothing
+constexpr float farthest = 0.0015F;  // metres: largest displacement of a node in one take_steps
+constexpr float noise = 1e-5F;       // metres below which a reversal is ignored
 constexpr float least_step_scale = 0.02F;
 constexpr float inertia_steady = 0.7F,
-                inertia_unsteady = 0.5F;  // share of what inertia alone would do that the first guess takes
+                inertia_unsteady = 0.5F;  // fraction of the inertial motion in the initial guess
 
-constexpr float most_growth = 1.2F, most_shrinking = 0.4F;  ///< of a step size at one iteration
+constexpr float most_growth = 1.2F, most_shrinking = 0.4F;  ///< of a step size in one iteration
 
-/// How much of the last step a node of this step size still takes: all from 1 on, nothing below three
-/// quarters.
+/// Weight of momentum for a node of this step size: 1 from 1 on, 0 below three quarters.
 FASCIA_INLINE Lanes share_of_momentum(const Lanes& step_scale) {
   return positive(4.0F * step_scale - 3.0F);
 }
 
-/// A substep's only iteration, or its first: the direction before was that of other loads, so only its sign
-/// can be judged, and that only where no later iteration judges better.
+/// For the first or only iteration of a substep: the previous direction belongs to other loads, so only its
+/// sign is used, and only if no later iteration gives a better estimate.
 FASCIA_INLINE Lanes scale_by_sign(const Lanes& scale, const Lanes3& way, const Lanes3& last) {
   const Lanes none = splat(0.0F), one = splat(1.0F), squared = dot(way, way);
   const Lanes back =
@@ -71,9 +69,9 @@ FASCIA_INLINE Lanes scale_by_sign(const Lanes& scale, const Lanes3& way, const L
   return where_below(none, back, less, more);
 }
 
-/// The step size that would have ended the last step where its direction vanishes: along that step s, taken
-/// as `scale` times the direction d then wanted, the direction has become d' = d - lambda s, so that 1 /
-/// lambda = 1 / (1 / scale - d' s / s^2).
+/// The secant step size, for which the direction would have vanished after the last step: along that step s,
+/// taken as `scale` times the direction d then wanted, the direction has become d' = d - lambda s, so that 1
+/// / lambda = 1 / (1 / scale - d' s / s^2).
 FASCIA_INLINE Lanes scale_by_secant(const Lanes& scale, const Lanes3& way, const Lanes3& last) {
   const Lanes squared = dot(last, last);
   const Lanes inverse = 1.0F / scale - dot(way, last) / greater(squared, 1e-20F);
@@ -82,7 +80,7 @@ FASCIA_INLINE Lanes scale_by_secant(const Lanes& scale, const Lanes3& way, const
   return where_below(splat(0.01F * noise * noise), squared, bounded, scale);
 }
 
-/// Chooses the nodes' step sizes; returns how many times the last steps are added to the new directions.
+/// Updates the nodes' step sizes; returns the momentum coefficient.
 float judge_steps(const NodeSteps& s, const SixteenAt& at) {
   const Lanes none = splat(0.0F);
   Lanes step_before = none, step_now = none, way_before = none, way_now = none;

@@ -20,21 +20,21 @@ struct SheetOptions {
   lanes::InstructionSet instructions = lanes::instruction_set();
 };
 
-/// A sheet of inextensible springs, its first row pinned: structural ones to the next particle of row and
-/// column, shear ones along both diagonals, and skip-one ones against folding.
+/// A sheet of inextensible springs, its first row pinned: structural springs along rows and columns, shear
+/// springs along both diagonals, and skip-one springs against bending.
 ///
 /// Substeps of position-based dynamics (Macklin et al. 2019, "Small steps in physics simulation"). Columns,
 /// which carry the weight, are solved as whole chains: one Newton step of all their lengths together, a
 /// tridiagonal system each, sixteen columns at once (Goldenthal et al. 2007 on direct solves of inextensible
-/// threads); the other springs are relaxed one after the other, sixteen at once, in an order in which no two
-/// touch the same particle. Same bits on every processor.
+/// threads); the other springs are relaxed by Gauss-Seidel, sixteen at once, no two of which share a
+/// particle. Bit-identical on every processor.
 class Sheet {
  public:
   explicit Sheet(const SheetOptions& options);
   Sheet(Sheet&&) = default;  // its state points into its own memory: moved, not copied
   Sheet& operator=(Sheet&&) = default;
 
-  /// Lets `seconds` pass in as many substeps as the options say. Allocates nothing.
+  /// Advances by `seconds` in the number of substeps given by the options. Does not allocate.
   void step(float seconds);
 
   uint32_t spring_count() const;

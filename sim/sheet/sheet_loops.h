@@ -1,5 +1,5 @@
-// The loops of a sheet, included once by each of the sources that are compiled for one vector unit (see
-// lanes.h), which define FASCIA_SHEET_STEP. Everything else here is local to the including source.
+// The loops of a sheet, included once by each source that is compiled for one instruction set (see lanes.h),
+// which define FASCIA_SHEET_STEP. Everything else here is local to the including source.
 
 #include "sim/lanes/lanes.h"
 #include "sim/sheet/sheet_state.h"

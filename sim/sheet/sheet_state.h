@@ -1,14 +1,15 @@
 #pragma once
 
-// What the loops of a sheet work on: plain numbers only, so that no inline function of a library is compiled
-// for a machine that may not be there.
+// Data of a sheet's loops: plain numbers only, so that no inline library function is compiled for an
+// unavailable instruction set.
 
 #include <cstdint>
 
 namespace fascia::sim::sheet {
 
-/// Places stand as [row][column within its strip][strip], sixteen strips of neighbouring columns, one a lane,
-/// so that neighbours are in other registers and a register's particles touch no common spring.
+/// Positions are indexed [row][column within its strip][strip], with sixteen strips of neighbouring columns,
+/// one per lane, so that neighbours are in different registers and the particles of a register share no
+/// spring.
 struct State {
   uint32_t rows = 0, width = 0;  ///< width: columns of a strip
   float spacing = 0.0F;

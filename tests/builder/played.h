@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "runtime/asset.h"
-#include "sim/realtime/face.h"
+#include "sim/realtime/solver.h"
 
 namespace fascia::testing {
 
@@ -16,7 +16,7 @@ inline std::vector<std::vector<sim::Vec3f>> played(const runtime::Asset& asset, 
                                                    double amplitude = 0.4) {
   const size_t channels = asset.channel_names.size();
   const auto& bones = asset.bones();
-  sim::realtime::Face face(asset.realtime_model(level), channels);
+  sim::realtime::Solver face(asset.realtime_model(level), channels);
   std::vector<float> values(channels);
   std::vector<std::vector<sim::Vec3f>> out;
   for (int frame = 1; frame <= 2 * rate; ++frame) {

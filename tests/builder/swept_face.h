@@ -6,7 +6,7 @@
 
 #include "runtime/asset.h"
 #include "runtime/bound_mesh.h"
-#include "sim/realtime/face.h"
+#include "sim/realtime/solver.h"
 #include "tests/builder/crossings.h"
 
 namespace fascia::testing {
@@ -62,7 +62,7 @@ class SweptFace {
 
   std::shared_ptr<const runtime::Asset> asset_;
   const sim::FaceModel* model_;
-  sim::realtime::Face face_;
+  sim::realtime::Solver face_;
   std::vector<float> values_;
   sim::JawPose jaw_;
   sim::Vec3 acceleration_ = sim::Vec3::Zero();

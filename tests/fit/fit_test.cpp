@@ -123,8 +123,8 @@ TEST_F(Fit, TheGazeOfEyesThatAreNotSeenIsReadFromTheLids) {
     std::vector<float> values = rest();
     set(values, name, 0.4F);
     Target target = target_of(values);
-    for (size_t v = 0; v < target.trust.size(); ++v)
-      if (subject->eyes()[v] != 0) target.trust[v] = 0.0;
+    for (size_t v = 0; v < target.confidence.size(); ++v)
+      if (subject->eyes()[v] != 0) target.confidence[v] = 0.0;
     Fitter fitter(*subject);
     const FitResult result = fitter.fit(target);
     EXPECT_NEAR(result.activations[static_cast<size_t>(subject->channel(name))], 0.4F, 0.1F) << name;
@@ -132,9 +132,9 @@ TEST_F(Fit, TheGazeOfEyesThatAreNotSeenIsReadFromTheLids) {
     EXPECT_NEAR(result.activations[static_cast<size_t>(subject->channel("eye_yaw_right"))], 0.0F, 0.02F)
         << name;
     // Where the eyeballs are seen at rest, they count: the lids do not turn them.
-    for (size_t v = 0; v < target.trust.size(); ++v)
+    for (size_t v = 0; v < target.confidence.size(); ++v)
       if (subject->eyes()[v] != 0) {
-        target.trust[v] = 1.0;
+        target.confidence[v] = 1.0;
         target.displacements.segment<3>(static_cast<Eigen::Index>(3 * v)).setZero();
       }
     EXPECT_EQ(fitter.fit(target).activations[static_cast<size_t>(subject->channel(name))], 0.0F) << name;
@@ -145,12 +145,12 @@ TEST_F(Fit, VerticesNobodyTrustsDoNotCount) {
   std::vector<float> values = rest();
   set(values, "zygomaticus_minor_left", 0.6F);
   Target target = target_of(values);
-  for (size_t v = 0; v < target.trust.size(); v += 3) {
+  for (size_t v = 0; v < target.confidence.size(); v += 3) {
     target.displacements.segment<3>(static_cast<Eigen::Index>(3 * v)).setConstant(1.0);
-    target.trust[v] = 0.0;
+    target.confidence[v] = 0.0;
   }
   EXPECT_LT(Fitter(*subject).fit(target).rms_mm, 0.05);
-  std::fill(target.trust.begin(), target.trust.end(), 0.0);
+  std::fill(target.confidence.begin(), target.confidence.end(), 0.0);
   EXPECT_THROW(Fitter(*subject).fit(target), Error);
 }
 

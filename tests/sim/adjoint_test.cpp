@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "sim/face.h"
+#include "sim/reference_solver.h"
 #include "tests/sim/patch.h"
 
 namespace fascia::sim {
@@ -44,7 +44,7 @@ TEST(Adjoint, GradientsMatchDifferencesOfThePose) {
   const Patch patch;
   const FaceModel model(lattice_of(patch.level), patch.jaw);
   ASSERT_TRUE(model.valid()) << model.fault();
-  Face face(model, 4);
+  ReferenceSolver face(model, 4);
   PoseOptions tight;
   tight.solver = {400, 1e-10};
   const size_t nodes = patch.level.rest.size();

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "sim/face.h"
+#include "sim/reference_solver.h"
 #include "tests/sim/patch.h"
 
 namespace fascia::sim {
@@ -17,7 +17,7 @@ struct Compared {
 Compared compare(const rig::TissueLevel& level, const Jaw& jaw, const Controls& drive, size_t channels) {
   const FaceModel model(lattice_of(level), jaw);
   EXPECT_TRUE(model.valid()) << model.fault();
-  Face own(model, channels);
+  ReferenceSolver own(model, channels);
   BulletFace bullet(model, channels);
   std::vector<Vec3f> a(level.rest.size()), b(a);
   PoseOptions options;

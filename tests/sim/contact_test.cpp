@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "sim/face.h"
+#include "sim/reference_solver.h"
 #include "tests/sim/patch.h"
 
 namespace fascia::sim {
@@ -75,7 +75,7 @@ TEST(Contact, PressedTissueStopsAtTheBone) {
   const rig::TissueLevel level = patch_before_a_ball(o, 0);
   const FaceModel model(lattice_of(level), {});
   ASSERT_TRUE(model.valid()) << model.fault();
-  Face face(model, 0);
+  ReferenceSolver face(model, 0);
   std::vector<Vec3f> x(level.rest.size());
   const Controls press{{}, {}, Vec3(0, 0, -100.0)};
   EXPECT_TRUE(face.static_pose(press, {}, x).converged);
@@ -84,7 +84,7 @@ TEST(Contact, PressedTissueStopsAtTheBone) {
   alone.contact_node.clear();
   alone.contact_field.clear();
   const FaceModel free_model(lattice_of(alone), {});
-  Face free_face(free_model, 0);
+  ReferenceSolver free_face(free_model, 0);
   std::vector<Vec3f> y(level.rest.size());
   free_face.static_pose(press, {}, y);
   double with = 0.0, without = 0.0;
@@ -107,7 +107,7 @@ TEST(Contact, AFieldGoesWithItsBone) {
   jaw.forward_glide = 0.004;
   jaw.forward_drop = 0.0;
   const FaceModel model(lattice_of(level), jaw);
-  Face face(model, 0);
+  ReferenceSolver face(model, 0);
   std::vector<Vec3f> x(level.rest.size());
   EXPECT_TRUE(face.static_pose({{}, {0, 1, 0}, Vec3::Zero()}, {}, x).converged);
   const uint32_t middle = 2 * level.columns + column_at(o, 4, 4);
@@ -204,7 +204,7 @@ struct TwoLips : ::testing::Test {
 TEST_F(TwoLips, DoNotPassThroughEachOther) {
   const FaceModel model(lattice_of(level), jaw);
   ASSERT_TRUE(model.valid()) << model.fault();
-  Face face(model, 0);
+  ReferenceSolver face(model, 0);
   std::vector<Vec3f> x(level.rest.size());
   // The lower one is carried 4 mm up through a gap of one.
   EXPECT_TRUE(face.static_pose({{}, {0, 1, 0}, Vec3::Zero()}, {}, x).converged);
@@ -213,14 +213,14 @@ TEST_F(TwoLips, DoNotPassThroughEachOther) {
   alone.facing_prism.clear();
   alone.facing_side.clear();
   const FaceModel free_model(lattice_of(alone), jaw);
-  Face free_face(free_model, 0);
+  ReferenceSolver free_face(free_model, 0);
   free_face.static_pose({{}, {0, 1, 0}, Vec3::Zero()}, {}, x);
   EXPECT_LT(smallest_gap(x), -2e-3);
 }
 
 TEST_F(TwoLips, DoNotPassThroughEachOtherInTimeEither) {
   const FaceModel model(lattice_of(level), jaw);
-  Face face(model, 0);
+  ReferenceSolver face(model, 0);
   std::vector<Vec3f> x(level.rest.size());
   for (int frame = 0; frame < 30; ++frame) {
     ASSERT_EQ(
@@ -238,7 +238,7 @@ TEST_F(TwoLips, StickyOnesPartLater) {
     FaceModelOptions options;
     options.contact.stickiness = sticky;
     const FaceModel model(lattice_of(level), jaw, options);
-    Face face(model, 0);
+    ReferenceSolver face(model, 0);
     for (int frame = 0; frame < 15; ++frame)
       face.step(1.0 / 60, {{}, {0, 0.4F, 0}, Vec3::Zero()});
     for (int frame = 0; frame < 20; ++frame)
@@ -270,7 +270,7 @@ TEST(Contact, FrictionHoldsUntilCoulombsLimit) {
       FaceModelOptions options;
       options.contact.friction = rough * 0.5;
       const FaceModel model(lattice_of(level), {}, options);
-      Face face(model, 0);
+      ReferenceSolver face(model, 0);
       for (int i = 0; i < 15; ++i)
         face.step(1.0 / 60, {{}, {}, Vec3(0, 0, -150)});
       const uint32_t middle = 2 * level.columns + column_at(o, 4, 4);

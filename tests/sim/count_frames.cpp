@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "sim/realtime/face.h"
+#include "sim/realtime/solver.h"
 #include "sim/sheet/sheet.h"
 #include "tests/sim/patch.h"
 
@@ -27,7 +27,7 @@ void step_face(int frames) {
   testing::add_fibre(level, options, 1, 4, 20, 9, 0.4F);
   const sim::FaceModel reference(sim::lattice_of(level), sim::Jaw{});
   const sim::realtime::Model model(reference);
-  sim::realtime::Face face(model, 2);
+  sim::realtime::Solver face(model, 2);
   for (int frame = 0; frame < frames; ++frame) {
     const auto wave = 0.5F + 0.5F * std::sin(0.2F * static_cast<float>(frame));
     const std::vector<float> pull = {wave, 1.0F - wave};

@@ -10,7 +10,7 @@
 #include <functional>
 #include <random>
 
-#include "sim/face.h"
+#include "sim/reference_solver.h"
 #include "tests/sim/patch.h"
 
 namespace fascia::sim {
@@ -145,7 +145,7 @@ TEST(Newton, FindsThePoseThatQuasiNewtonFinds) {
   const FaceModel model(lattice_of(level), {});
   ASSERT_TRUE(model.valid()) << model.fault();
   const float full[] = {1.0F};
-  Face face(model, 1);
+  ReferenceSolver face(model, 1);
   std::vector<Vec3f> slow(level.rest.size()), quick(slow);
   PoseOptions only_first, mostly_newton;
   only_first.solver = {2000, 1e-7};

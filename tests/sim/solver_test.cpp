@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "sim/realtime/face.h"
+#include "sim/realtime/solver.h"
 #include "tests/sim/patch.h"
 
 // Whatever stands behind the interface of a solver, it keeps its promises.
@@ -25,8 +25,8 @@ struct Solvers : ::testing::Test {
     testing::add_fibre(level, options, 1, 2, 6, 2, 0.4F);
     model = std::make_unique<FaceModel>(lattice_of(level), Jaw{});
     lanes = std::make_unique<realtime::Model>(*model);
-    all.push_back(std::make_unique<Face>(*model, pull.size()));
-    all.push_back(std::make_unique<realtime::Face>(*lanes, pull.size()));
+    all.push_back(std::make_unique<ReferenceSolver>(*model, pull.size()));
+    all.push_back(std::make_unique<realtime::Solver>(*lanes, pull.size()));
   }
   std::vector<Vec3f> moved(const Solver& solver) const {
     std::vector<Vec3f> out(level.rest.size());

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "sim/realtime/face.h"
+#include "sim/realtime/solver.h"
 #include "tests/sim/patch.h"
 
 // A rig may hold any numbers. Whatever they are, a model is either refused with a reason, or its faces stay
@@ -82,8 +82,8 @@ bool comes_to_no_harm(const Patch& patch) {
   if (!face.valid()) return true;
   const realtime::Model model(face);
   if (!model.valid()) return true;
-  realtime::Face quick(model, 3);
-  Face reference(face, 3);
+  realtime::Solver quick(model, 3);
+  ReferenceSolver reference(face, 3);
   const std::vector<float> pull = {0.7F, 0.5F, 0.3F};
   std::vector<Vec3f> moved(patch.level.rest.size());
   const auto is_finite = [&] {

@@ -9,7 +9,7 @@
 #include "formats/scene.h"
 #include "geometry/connectivity.h"
 #include "geometry/error.h"
-#include "sim/face.h"
+#include "sim/reference_solver.h"
 #include "tests/paths/paths.h"
 
 namespace fascia::tissue {
@@ -123,7 +123,7 @@ TEST_F(Built, LipsArePartedAndTheJawTakesTheLowerOne) {
   const rig::TissueLevel& level = low().tissue.levels[0];
   const sim::FaceModel model(sim::lattice_of(level), sim::jaw_of(measured_head().jaw));
   ASSERT_TRUE(model.valid()) << model.fault();
-  sim::Face face(model, 3);
+  sim::ReferenceSolver face(model, 3);
   std::vector<sim::Vec3f> x(level.rest.size());
   EXPECT_EQ(face.static_pose({}, {}, x).iterations, 0);
   for (size_t i = 0; i < x.size(); ++i)
@@ -153,7 +153,7 @@ TEST_F(Built, LipsArePartedAndTheJawTakesTheLowerOne) {
 TEST_F(Built, LidsCloseTheFissure) {
   const rig::TissueLevel& level = low().tissue.levels[0];
   const sim::FaceModel model(sim::lattice_of(level), sim::jaw_of(measured_head().jaw));
-  sim::Face face(model, 3);
+  sim::ReferenceSolver face(model, 3);
   std::vector<sim::Vec3f> x(level.rest.size());
   const float left[] = {1.0F, 0.0F, 0.0F};
   EXPECT_TRUE(face.static_pose({left, {}, sim::Vec3::Zero()}, {}, x).converged);

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "geometry/error.h"
 #include "gltf/read/container.h"
@@ -115,6 +116,18 @@ TEST(Scene, ShadowsFallBehindWhatStandsInTheLight) {
   EXPECT_LT(darkest, 0.8);
 }
 
+/// The surface in flat light without shadows, with ambient occlusion and without.
+std::pair<Image, Image> with_and_without_occlusion(const DrawSurface& surface) {
+  DrawList list;
+  list.surfaces = {surface};
+  Look look;
+  look.light = "flat";
+  look.has_shadows = false;
+  Image with = renderer().draw_with(list, near_camera(), look);
+  look.has_occlusion = false;
+  return {std::move(with), renderer().draw_with(list, near_camera(), look)};
+}
+
 TEST(Scene, OcclusionDarkensAFold) {
   // Two walls that meet in a sharp valley.
   DrawSurface fold;
@@ -122,14 +135,7 @@ TEST(Scene, OcclusionDarkensAFold) {
                     Vec3(-0.05, 0.1, 0.08),  Vec3(0, -0.1, 0), Vec3(0.05, -0.1, 0.08),
                     Vec3(0.05, 0.1, 0.08),   Vec3(0, 0.1, 0)};
   fold.triangles = {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}};
-  DrawList list;
-  list.surfaces = {fold};
-  Look look;
-  look.light = "flat";
-  look.has_shadows = false;
-  const Image with = renderer().draw_with(list, near_camera(), look);
-  look.has_occlusion = false;
-  const Image without = renderer().draw_with(list, near_camera(), look);
+  const auto [with, without] = with_and_without_occlusion(fold);
   EXPECT_LT(brightness(with, size / 2, size / 2), 0.95 * brightness(without, size / 2, size / 2));
 }
 
@@ -137,14 +143,7 @@ TEST(Scene, APlaneIsAsOpenAtThePicturesEdgeAsInItsMiddle) {
   DrawSurface wall = square(0, 1.0);
   for (Vec3& p : wall.positions)
     p = Eigen::AngleAxisd(EIGEN_PI / 4, Vec3::UnitY()) * p;
-  DrawList list;
-  list.surfaces = {wall};
-  Look look;
-  look.light = "flat";
-  look.has_shadows = false;
-  const Image with = renderer().draw_with(list, near_camera(), look);
-  look.has_occlusion = false;
-  const Image without = renderer().draw_with(list, near_camera(), look);
+  const auto [with, without] = with_and_without_occlusion(wall);
   for (const int x : {0, 2, size / 2, size - 3, size - 1})
     EXPECT_GT(brightness(with, x, size / 2), 0.95 * brightness(without, x, size / 2)) << x;
 }

@@ -1,6 +1,6 @@
-/* All functions of Fascia's runtime as one table, for hosts that load the library themselves: look up
- * fascia_get_api alone (dlsym, GetProcAddress) and call the rest through the table. Each member is the
- * function of its name with fascia_ before it; see there. */
+/* All functions of Fascia's runtime in one table, for hosts that load the library dynamically: look up
+ * fascia_get_api only (dlsym, GetProcAddress) and call the other functions through the table. Each member is
+ * the function of the same name with the prefix fascia_; see there. */
 #ifndef FASCIA_API_H
 #define FASCIA_API_H
 
@@ -13,10 +13,10 @@
 extern "C" {
 #endif
 
-/* Grows at the end only while the major version stays. */
+/* Within a major version members are only appended. */
 typedef struct fascia_api {
-  uint32_t struct_size;     /* of the library's own table: members beyond it are not there */
-  uint32_t library_version; /* as fascia_version gives it */
+  uint32_t struct_size;     /* of the library's table: later members do not exist */
+  uint32_t library_version; /* as returned by fascia_version */
   uint32_t (*version)(void);
   const char* (*result_name)(fascia_result result);
   const char* (*last_message)(void);
@@ -109,9 +109,9 @@ typedef struct fascia_api {
                                         float* by_member);
 } fascia_api;
 
-/* The library's table, for a host that was made for `version` (FASCIA_VERSION_MAJOR << 16 |
+/* The library's table, for a host compiled for `version` (FASCIA_VERSION_MAJOR << 16 |
  * FASCIA_VERSION_MINOR
- * << 8): FASCIA_ERROR_VERSION when the library's major version is another, or its minor version smaller
+ * << 8): FASCIA_ERROR_VERSION if the library has another major version or a smaller minor version
  * (before 1.0 any other minor version). */
 FASCIA_API fascia_result fascia_get_api(uint32_t version, const fascia_api** api);
 

@@ -1,5 +1,4 @@
-// Fascia's runtime for C++20: the C interface (fascia/fascia.h) with owners, exceptions and spans. Header
-// only.
+// Fascia's runtime for C++20: the C interface (fascia/fascia.h) with RAII, exceptions and spans. Header only.
 //
 //     fascia::api::Asset asset = fascia::api::Asset::load(bytes);
 //     fascia::api::Face face(asset);
@@ -7,9 +6,9 @@
 //     face.step(1.0f / 60.0f);
 //     std::span<const std::array<float, 3>> positions = face.positions(0);
 //
-// Everything that can fail throws fascia::api::Error; fascia_face_step's FASCIA_ERROR_DIVERGED, after which a
-// face goes on, is returned instead. Handles are there for what is not wrapped:
-// fascia_face_energies(face.handle(), ...).
+// Everything that can fail throws fascia::api::Error, except that step returns false for
+// FASCIA_ERROR_DIVERGED, after which a face can be stepped again. Functions without a wrapper can be called
+// with the handle: fascia_face_energies(face.handle(), ...).
 #ifndef FASCIA_FASCIA_HPP
 #define FASCIA_FASCIA_HPP
 
@@ -30,7 +29,7 @@
 
 namespace fascia::api {
 
-// What went wrong, and the C interface's name for it.
+// A failure: its message, and its result code in the C interface.
 class Error : public std::runtime_error {
  public:
   Error(fascia_result result, const std::string& message) : std::runtime_error(message), result_(result) {}
@@ -44,7 +43,7 @@ inline void check(fascia_result result) {
   if (result != FASCIA_OK) throw Error(result, fascia_last_message());
 }
 
-// A structure of the C interface, zero but for its struct_size.
+// A structure of the C interface, zero except for its struct_size.
 template <class Struct>
 Struct sized() {
   Struct value{};
@@ -56,10 +55,10 @@ using Vector3 = std::array<float, 3>;
 using Vector4 = std::array<float, 4>;
 using Matrix4 = std::array<float, 16>;  // column-major
 
-// A loaded rig: immutable, shared by copies and by faces, for any thread.
+// A loaded rig: immutable, shared by copies and by faces, usable from any thread.
 class Asset {
  public:
-  // Throws Error when the bytes are not a sound rig.
+  // Throws Error if the bytes are not a valid rig.
   static Asset load(std::span<const std::byte> bytes) { return load(bytes.data(), bytes.size()); }
   static Asset load(std::span<const std::uint8_t> bytes) { return load(bytes.data(), bytes.size()); }
 
@@ -88,7 +87,7 @@ class Asset {
     check(fascia_asset_get_set(handle(), index, &info));
     return info;
   }
-  // -1 when there is none.
+  // -1 if there is none.
   std::int32_t find_channel(const std::string& name) const {
     return fascia_asset_find_channel(handle(), name.c_str());
   }
@@ -105,10 +104,10 @@ class Asset {
   std::shared_ptr<fascia_asset> handle_;
 };
 
-// Named values over time: immutable, shared by copies, for any thread.
+// Named values over time: immutable, shared by copies, usable from any thread.
 class Curves {
  public:
-  // Throws Error when the bytes are no file of curves.
+  // Throws Error if the bytes are not a curves file.
   static Curves load(std::span<const std::uint8_t> bytes, double frames_per_second = 0.0) {
     auto options = sized<fascia_curves_options>();
     options.frames_per_second = frames_per_second;
@@ -128,7 +127,7 @@ class Curves {
   std::shared_ptr<fascia_curves> handle_;
 };
 
-// One head; moves, does not copy. For one thread at a time.
+// One instance of a rig; movable, not copyable. For one thread at a time.
 class Face {
  public:
   explicit Face(const Asset& asset, const fascia_face_options& options = fascia_default_face_options())
@@ -181,7 +180,7 @@ class Face {
   void blend(float share, float seconds) { check(fascia_face_blend(handle(), share, seconds)); }
 
   void pose() { check(fascia_face_pose(handle())); }
-  // False when the simulation was put back to rest (FASCIA_ERROR_DIVERGED).
+  // False if the simulation was reset to rest (FASCIA_ERROR_DIVERGED).
   bool step(float seconds) {
     const fascia_result result = fascia_face_step(handle(), seconds);
     if (result == FASCIA_ERROR_DIVERGED) return false;
@@ -208,7 +207,7 @@ class Face {
     check(fascia_face_restore(handle(), bytes.data(), bytes.size()));
   }
 
-  // Views of the face's memory, valid while it lives; what they show changes with each pose or step.
+  // Views of the face's memory, valid during its lifetime; their contents change with each pose or step.
   std::span<const Vector3> positions(std::uint32_t mesh) {
     return view<Vector3>(fascia_face_positions, mesh);
   }
@@ -241,17 +240,17 @@ class Face {
   std::size_t channel_count_ = 0;
 };
 
-// Muscles and head pose from a stream of landmarks; moves, does not copy. For one thread at a time.
+// Activations and head pose from a stream of landmarks; movable, not copyable. For one thread at a time.
 class Fit {
  public:
-  // `set` is a detector's mark-up, "ibug68" or "mediapipe478".
+  // `set` is a detector's landmark set, "ibug68" or "mediapipe478".
   Fit(const Asset& asset, const std::string& set,
       const fascia_fit_options& options = fascia_default_fit_options()) {
     auto landmarks = sized<fascia_fit_landmarks>();
     landmarks.set = set.c_str();
     make(asset, landmarks, options);
   }
-  // Landmarks of the rig by name, one a point.
+  // Landmarks of the rig by name, one per point.
   Fit(const Asset& asset, std::span<const char* const> names,
       const fascia_fit_options& options = fascia_default_fit_options()) {
     auto landmarks = sized<fascia_fit_landmarks>();
@@ -260,7 +259,7 @@ class Fit {
     make(asset, landmarks, options);
   }
 
-  // Places on the skin, one a point.
+  // Points on the skin, one per point of a frame.
   Fit(const Asset& asset, std::span<const fascia_fit_place> places,
       const fascia_fit_options& options = fascia_default_fit_options()) {
     auto landmarks = sized<fascia_fit_landmarks>();
@@ -279,7 +278,7 @@ class Fit {
     check_sizes(points, weights);
     check(fascia_fit_set_neutral(handle(), points.data(), weights.empty() ? nullptr : weights.data()));
   }
-  // What it points at is valid until the next call.
+  // The result is valid until the next call.
   fascia_fit_result push(std::span<const float> points, std::span<const float> weights = {}) {
     check_sizes(points, weights);
     auto result = sized<fascia_fit_result>();

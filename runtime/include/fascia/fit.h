@@ -1,4 +1,4 @@
-/* Fascia's runtime the other way: from a stream of landmarks on a face to its muscles. See fascia/fascia.h.
+/* Fascia's runtime, inverse problem: from a stream of facial landmarks to activations. See fascia/fascia.h.
  *
  *     fascia_fit_landmarks landmarks = {.struct_size = sizeof landmarks, .set = "ibug68"};
  *     fascia_fit* fit = NULL;
@@ -21,42 +21,42 @@
 extern "C" {
 #endif
 
-typedef struct fascia_fit fascia_fit; /* one observed face with its history */
+typedef struct fascia_fit fascia_fit; /* a tracker of one observed face */
 
-/* A place on the skin: shares of a triangle's three corners. */
+/* A point on the skin, in barycentric coordinates of a triangle. */
 typedef struct fascia_fit_place {
   uint32_t mesh;        /* see fascia_asset_get_mesh */
   uint32_t vertices[3]; /* of the mesh */
   float shares[3];      /* at least 0, sum 1 */
 } fascia_fit_place;
 
-/* What the points of a frame are: one of set, names and places is given. */
+/* The meaning of a frame's points: exactly one of set, names and places must be given. */
 typedef struct fascia_fit_landmarks {
   uint32_t struct_size;
-  uint32_t count;           /* points a frame; with a set 0, or its own number */
-  const char* set;          /* a detector's mark-up: "ibug68" (3D, or 2D with a camera) or "mediapipe478" */
+  uint32_t count;  /* points per frame; with a set 0, or its number of points */
+  const char* set; /* a detector's landmark set: "ibug68" (3D, or 2D with a camera) or "mediapipe478" */
   const char* const* names; /* count landmarks of the rig: pronasale, cheilion_left, ...; NULL: not used */
   const fascia_fit_place* places; /* count */
 } fascia_fit_landmarks;
 
 typedef struct fascia_fit_options {
   uint32_t struct_size;
-  int32_t level;       /* of detail to simulate at: 0 the coarsest, which live use wants; -1 the finest */
-  int32_t iterations;  /* steps a frame, 1 to 32; each costs a static pose */
-  int32_t finds_scale; /* 1: the face may be larger or smaller than the rig's, found in the first frame or
+  int32_t level;       /* level of detail: 0 the coarsest, recommended for live use; -1 the finest */
+  int32_t iterations;  /* Gauss-Newton steps per frame, 1 to 32; each costs a static pose */
+  int32_t finds_scale; /* 1: the face's scale may differ from the rig's; estimated in the first frame or
                           the neutral one and kept; 0: both are in metres */
-  /* Costs in square millimetres of the mean squared distance: of squared values, of their sizes, and of
-   * squared changes from one frame to the next. 0 or more. */
+  /* Penalties, in square millimetres of the mean squared distance, on squared values, absolute values, and
+   * squared changes from frame to frame. 0 or more. */
   float ridge, sparsity, smoothness;
-  /* Points are pixels of a camera without distortion, x to the right, y down, where focal is not 0; else
-   * places in any right-handed axes and units. */
+  /* Points are pixels of a camera without distortion, x to the right, y down, if focal is not 0; otherwise
+   * points in any right-handed axes and units. */
   float focal[2], centre[2];
 } fascia_fit_options;
 
-/* What a fit has when it is made with NULL: the coarsest level, places, scale found. */
+/* The options of a fit that is created with NULL: the coarsest level, points in 3D, scale estimated. */
 FASCIA_API fascia_fit_options fascia_default_fit_options(void);
 
-/* Makes a fit. FASCIA_ERROR_NAME when a landmark or the set is not known, FASCIA_ERROR_ARGUMENT when fewer
+/* Creates a fit. FASCIA_ERROR_NAME if a landmark or the set is unknown, FASCIA_ERROR_ARGUMENT if fewer
  * than four landmarks lie on the rig's skin. Takes some 0.1 s at the coarsest level. */
 FASCIA_API fascia_result fascia_fit_create(fascia_asset* asset, const fascia_fit_landmarks* landmarks,
                                            const fascia_fit_options* options, fascia_fit** fit);
@@ -64,39 +64,38 @@ FASCIA_API void fascia_fit_release(fascia_fit* fit);
 
 typedef struct fascia_fit_info {
   uint32_t struct_size;
-  uint32_t point_count; /* a frame */
-  uint32_t dimensions;  /* floats a point: 3, or 2 with a camera */
-  uint32_t
-      landmark_count; /* of the points' landmarks, how many lie on the rig's skin: the others are not used */
-  const char* const* names; /* landmark_count; "" where they were given as places */
+  uint32_t point_count;     /* per frame */
+  uint32_t dimensions;      /* floats per point: 3, or 2 with a camera */
+  uint32_t landmark_count;  /* number of landmarks on the rig's skin: the others are not used */
+  const char* const* names; /* landmark_count; "" for those given as places */
 } fascia_fit_info;
 FASCIA_API fascia_result fascia_fit_get_info(const fascia_fit* fit, fascia_fit_info* info);
 
-/* Takes a frame of the same face at rest, by the same detector: where its points lie other than our
- * landmarks, and how this face's proportions differ from the rig's, no longer counts. Arguments as of
- * fascia_fit_push; forgets all frames. FASCIA_ERROR_ARGUMENT when too few points are seen to tell where the
- * head is. */
+/* Calibrates with a frame of the same face at rest, from the same detector: systematic differences between
+ * its points and the landmarks, and between the proportions of the face and the rig, are then compensated.
+ * Arguments as for fascia_fit_push; resets the tracking. FASCIA_ERROR_ARGUMENT if too few points are visible
+ * to determine the head's pose. */
 FASCIA_API fascia_result fascia_fit_set_neutral(fascia_fit* fit, const float* points, const float* weights);
 
-/* What a frame has told; valid until the next call with this fit. */
+/* The result of a frame; valid until the next call with this fit. */
 typedef struct fascia_fit_result {
   uint32_t struct_size;
-  uint32_t seen;       /* landmarks that counted; 0 when there were too few and all stays as it was */
-  float residual;      /* root mean square distance left between points and fitted face, metres of the head */
-  float scale;         /* of the head matrix */
-  float head[16];      /* from the rig's metres to the space of the points (with a camera: metres, x right,
-                          y down, z away), 4 x 4, column-major */
-  const float* values; /* channel_count: what fascia_face_values takes */
-  const float* landmarks; /* landmark_count * 3: where the fitted face has them, in that space */
+  uint32_t seen;  /* landmarks used; 0 if there were too few, and the state is unchanged */
+  float residual; /* root mean square distance between points and fitted face, metres in the head's scale */
+  float scale;    /* of the head matrix */
+  float head[16]; /* from the rig's metres to the space of the points (with a camera: metres, x right,
+                     y down, z away), 4 x 4, column-major */
+  const float* values;    /* channel_count: for fascia_face_values */
+  const float* landmarks; /* landmark_count * 3: of the fitted face, in that space */
 } fascia_fit_result;
 
-/* The next frame: point_count points and as many weights (0: not seen, 1: seen well; NULL: all 1). A point
- * that is not a number is not seen. Channels of which nothing is seen hold their values. `result` may be
- * NULL. Now and then a frame allocates, while the face's derivatives are renewed. */
+/* Fits the next frame: point_count points and as many weights (0: invisible, 1: fully visible; NULL: all 1).
+ * NaN marks an invisible point. Unobservable channels keep their values. `result` may be NULL. Some frames
+ * allocate, while the Jacobian is recomputed. */
 FASCIA_API fascia_result fascia_fit_push(fascia_fit* fit, const float* points, const float* weights,
                                          fascia_fit_result* result);
 
-/* Forgets all frames, as after a cut; the neutral stays. */
+/* Resets the tracking, as after a cut; the calibration of fascia_fit_set_neutral is kept. */
 FASCIA_API fascia_result fascia_fit_reset(fascia_fit* fit);
 
 #ifdef __cplusplus

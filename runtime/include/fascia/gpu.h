@@ -1,13 +1,13 @@
-/* Fascia's runtime for the graphics card: small vertex data, and skinning on the card. See fascia/fascia.h.
+/* Fascia's runtime for the GPU: compact vertex data, and skinning on the GPU. See fascia/fascia.h.
  *
- * Skinning on the card. A vertex of a face is
+ * Skinning on the GPU. The position of a vertex is
  *
  *     rest + sum of weight * displacement(node) + jaw * (jaw_matrix * rest - rest)
  *
- * or, for one of an eye, eye_matrix * rest. fascia_face_skinning gives what does not change, once, as vertex
- * attributes; each frame fascia_face_write_node_texture and fascia_face_bone_matrices give some ten thousand
- * numbers instead of every vertex. The shader functions are in skinning.glsl and skinning.wgsl (installed in
- * share/fascia/shaders). They give the positions of fascia_face_positions to within 1e-5 m.
+ * or, for a vertex of an eye, eye_matrix * rest. fascia_face_skinning gives the constant data once, as vertex
+ * attributes; in each frame fascia_face_write_node_texture and fascia_face_bone_matrices give about ten
+ * thousand numbers instead of every vertex. The shader functions are in skinning.glsl and skinning.wgsl
+ * (installed in share/fascia/shaders). They reproduce fascia_face_positions to within 1e-5 m.
  */
 #ifndef FASCIA_GPU_H
 #define FASCIA_GPU_H
@@ -24,22 +24,22 @@ typedef enum fascia_delta_format {
   FASCIA_DELTA_32 = 0x7fffffff
 } fascia_delta_format;
 
-/* Writes each vertex's displacement from rest, in the face's space, to memory of the host's, `stride` bytes
- * from one to the next. `scale` gets the largest coordinate's size, which 16-bit numbers count in (0 at
- * rest). FASCIA_ERROR_ARGUMENT when `capacity` vertices are too few. */
+/* Writes each vertex's displacement from rest, in the face's space, to the host's memory, `stride` bytes from
+ * one to the next. `scale` receives the largest absolute coordinate, the unit of 16-bit numbers (0 at rest).
+ * FASCIA_ERROR_ARGUMENT if `capacity`, in vertices, is too small. */
 FASCIA_API fascia_result fascia_face_write_deltas(fascia_face* face, uint32_t mesh,
                                                   fascia_delta_format format, void* to, size_t stride,
                                                   size_t capacity, float* scale);
 
-/* What moves a mesh's vertices, at the face's present level of detail; owned by the asset. */
+/* Skinning data of a mesh at the face's current level of detail; owned by the asset. */
 typedef struct fascia_skinning {
   uint32_t struct_size;
   uint32_t vertex_count;
-  uint32_t influences; /* nodes a vertex: a multiple of 4 */
+  uint32_t influences; /* nodes per vertex: a multiple of 4 */
   uint32_t node_count; /* of the level: texels of the node texture */
   const float* rest;   /* vertex_count * 3, in the face's space */
   const uint32_t* nodes;
-  const float* weights; /* vertex_count * influences each; weight 0 where a vertex has fewer */
+  const float* weights; /* vertex_count * influences each; weight 0 if a vertex has fewer */
   const float* jaw;     /* vertex_count: share of the jaw's motion */
   const uint32_t* eyes; /* vertex_count: 0 none, 1 the left eye, 2 the right */
 } fascia_skinning;
@@ -50,8 +50,8 @@ FASCIA_API fascia_result fascia_face_skinning(fascia_face* face, uint32_t mesh, 
 FASCIA_API fascia_result fascia_face_write_node_texture(fascia_face* face, uint32_t mesh, float* to,
                                                         size_t capacity);
 
-/* Writes 3 matrices, 4 x 4, column-major, of places in the face's space: the jaw, the left eye, the right
- * eye. */
+/* Writes 3 matrices, 4 x 4, column-major, that act on positions in the face's space: the jaw, the left eye,
+ * the right eye. */
 FASCIA_API fascia_result fascia_face_bone_matrices(fascia_face* face, uint32_t mesh, float matrices[48]);
 
 #ifdef __cplusplus

@@ -5,11 +5,11 @@ using namespace fascia::runtime;
 extern "C" {
 
 float* fascia_face_values(fascia_face* face) {
-  return face == nullptr ? nullptr : face->face->drive().values().data();
+  return face == nullptr ? nullptr : face->face->mixer().values().data();
 }
 
 const float* fascia_face_effective_values(const fascia_face* face) {
-  return face == nullptr ? nullptr : face->face->drive().effective().data();
+  return face == nullptr ? nullptr : face->face->mixer().effective().data();
 }
 
 fascia_result fascia_face_set(fascia_face* handle, const char* name, float value) {
@@ -17,7 +17,7 @@ fascia_result fascia_face_set(fascia_face* handle, const char* name, float value
     Face& face = checked(handle);
     require(std::isfinite(value), "the value is not a finite number");
     for_each_named(face, name,
-                   [&](const Driven& driven) { face.drive().set(0, driven.target, driven.share * value); });
+                   [&](const Driven& driven) { face.mixer().set(0, driven.target, driven.share * value); });
     return FASCIA_OK;
   });
 }
@@ -28,7 +28,7 @@ fascia_result fascia_face_get(const fascia_face* handle, const char* name, float
     require(value != nullptr, "the value to write is null");
     std::optional<float> found;
     for_each_named(face, name, [&](const Driven& driven) {
-      if (!found) found = face.drive().get(0, driven.target) / driven.share;
+      if (!found) found = face.mixer().get(0, driven.target) / driven.share;
     });
     *value = *found;
     return FASCIA_OK;
@@ -37,7 +37,7 @@ fascia_result fascia_face_get(const fascia_face* handle, const char* name, float
 
 fascia_result fascia_face_clear(fascia_face* handle) {
   return guarded([&] {
-    checked(handle).drive().clear(0);
+    checked(handle).mixer().clear(0);
     return FASCIA_OK;
   });
 }
@@ -49,7 +49,7 @@ fascia_result fascia_face_set_member(fascia_face* handle, uint32_t set, uint32_t
     check_index(set, sets.size(), "set");
     check_index(member, sets[set].size(), "member");
     require(std::isfinite(value), "the value is not a finite number");
-    face.drive().set(0, {Target::Kind::member, face.asset().first_member(set) + member}, value);
+    face.mixer().set(0, {Target::Kind::member, face.asset().first_member(set) + member}, value);
     return FASCIA_OK;
   });
 }
@@ -57,7 +57,7 @@ fascia_result fascia_face_set_member(fascia_face* handle, uint32_t set, uint32_t
 fascia_result fascia_face_set_layer(fascia_face* handle, uint32_t index, const fascia_layer* layer) {
   return guarded([&] {
     Face& face = checked(handle);
-    require(index >= 1 && index < Drive::most_layers, "layers of a face's own are 1 to 7");
+    require(index >= 1 && index < Mixer::most_layers, "layers of a face's own are 1 to 7");
     require(layer != nullptr, "the layer is null");
     const fascia_layer chosen = taken(layer, {sizeof(fascia_layer), FASCIA_COMBINE_ADD, 1.0F, 0, nullptr});
     require(chosen.combine >= FASCIA_COMBINE_ADD && chosen.combine <= FASCIA_COMBINE_OVERRIDE,
@@ -67,14 +67,14 @@ fascia_result fascia_face_set_layer(fascia_face* handle, uint32_t index, const f
     if (chosen.mask != nullptr) mask = {chosen.mask, face.asset().channel_names.size()};
     for (const float share : mask)
       require(share >= 0.0F && share <= 1.0F, "the mask's weights must lie between 0 and 1");
-    face.drive().set_layer(index, static_cast<Combine>(chosen.combine), chosen.weight, mask);
+    face.mixer().set_layer(index, static_cast<Combine>(chosen.combine), chosen.weight, mask);
     return FASCIA_OK;
   });
 }
 
 float* fascia_face_layer_values(fascia_face* face, uint32_t layer) {
-  if (face == nullptr || !face->face->drive().has_layer(layer)) return nullptr;
-  return face->face->drive().values(layer).data();
+  if (face == nullptr || !face->face->mixer().has_layer(layer)) return nullptr;
+  return face->face->mixer().values(layer).data();
 }
 
 fascia_result fascia_face_layer_set(fascia_face* handle, uint32_t layer, const char* name, float value) {
@@ -82,7 +82,7 @@ fascia_result fascia_face_layer_set(fascia_face* handle, uint32_t layer, const c
     Face& face = with_layer(handle, layer);
     require(std::isfinite(value), "the value is not a finite number");
     for_each_named(face, name, [&](const Driven& driven) {
-      face.drive().set(layer, driven.target, driven.share * value);
+      face.mixer().set(layer, driven.target, driven.share * value);
     });
     return FASCIA_OK;
   });
@@ -90,7 +90,7 @@ fascia_result fascia_face_layer_set(fascia_face* handle, uint32_t layer, const c
 
 fascia_result fascia_face_layer_clear(fascia_face* face, uint32_t layer) {
   return guarded([&] {
-    with_layer(face, layer).drive().clear(layer);
+    with_layer(face, layer).mixer().clear(layer);
     return FASCIA_OK;
   });
 }
@@ -101,7 +101,7 @@ fascia_result fascia_face_look_at(fascia_face* face, const float* point, float w
     std::optional<Vec3f> target;
     if (point != nullptr) target = Eigen::Map<const Vec3f>(point);
     require(!target || target->allFinite(), "the point is not finite");
-    checked(face).drive().look_at(target, weight);
+    checked(face).mixer().look_at(target, weight);
     return FASCIA_OK;
   });
 }
@@ -110,7 +110,7 @@ fascia_result fascia_face_blend(fascia_face* face, float share, float seconds) {
   return guarded([&] {
     require(share >= 0.0F && share <= 1.0F, "the share must lie between 0 and 1");
     require(std::isfinite(seconds) && seconds >= 0.0F, "seconds must be 0 or more");
-    checked(face).drive().blend(share, seconds);
+    checked(face).mixer().blend(share, seconds);
     return FASCIA_OK;
   });
 }

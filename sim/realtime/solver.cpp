@@ -1,4 +1,4 @@
-#include "sim/realtime/face.h"
+#include "sim/realtime/solver.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -22,7 +22,7 @@ constexpr int iterations_searched = 3, searches_a_frame = 1;
 
 }  // namespace
 
-Face::Face(const Model& model, size_t channels, const PoseOptions& pose, const StepOptions& step)
+Solver::Solver(const Model& model, size_t channels, const PoseOptions& pose, const StepOptions& step)
     : model_(&model),
       pose_options_(pose),
       step_options_(step),
@@ -38,8 +38,8 @@ Face::Face(const Model& model, size_t channels, const PoseOptions& pose, const S
   reset({});
 }
 
-void Face::place(const JawPose& jaw, std::span<const float> activations, Workspace& work,
-                 Boundary& boundary) const {
+void Solver::place(const JawPose& jaw, std::span<const float> activations, Workspace& work,
+                   Boundary& boundary) const {
   boundary = model_->boundary(work);
   for (size_t c = 0; c < work.values.size() && c < activations.size(); ++c)
     work.values[c] = std::isfinite(activations[c]) ? activations[c] : 0.0F;
@@ -47,21 +47,21 @@ void Face::place(const JawPose& jaw, std::span<const float> activations, Workspa
   model_->loops().place(model_->packed(), boundary);
 }
 
-void Face::fill_nodes(const float* x, Positions& nodes) const {
+void Solver::fill_nodes(const float* x, Positions& nodes) const {
   for (size_t i = 0; i < nodes.size(); ++i)
     nodes[i] = place_at(x, model_->slot_of(i));
 }
 
-MinimiseResult Face::static_pose(const Controls& controls, const PoseOptions& options,
-                                 std::span<Vec3f> positions) {
+MinimiseResult Solver::static_pose(const Controls& controls, const PoseOptions& options,
+                                   std::span<Vec3f> positions) {
   return pose_in_stages(controls, options, positions,
                         [this](const Controls& part, const PoseOptions& how, std::span<Vec3f> to) {
                           return pose_at_once(part, how, to);
                         });
 }
 
-MinimiseResult Face::pose_at_once(const Controls& controls, const PoseOptions& options,
-                                  std::span<Vec3f> positions) {
+MinimiseResult Solver::pose_at_once(const Controls& controls, const PoseOptions& options,
+                                    std::span<Vec3f> positions) {
   std::unique_ptr<Workspace> work = model_->borrow();
   const JawPose jaw = clamped(controls.jaw);
   Solve solve{*work,
@@ -106,7 +106,7 @@ MinimiseResult Face::pose_at_once(const Controls& controls, const PoseOptions& o
   return result;
 }
 
-void Face::reset(const Controls& controls) {
+void Solver::reset(const Controls& controls) {
   std::unique_ptr<Workspace> work = model_->borrow();
   time_.reset(controls);
   Boundary boundary{};
@@ -122,7 +122,7 @@ void Face::reset(const Controls& controls) {
   model_->give_back(std::move(work));
 }
 
-MinimiseResult Face::settle(const Controls& controls, const PoseOptions& options) {
+MinimiseResult Solver::settle(const Controls& controls, const PoseOptions& options) {
   const MinimiseResult result = static_pose(controls, options, {});
   reset(controls);
   time_.settle(controls);
@@ -130,8 +130,8 @@ MinimiseResult Face::settle(const Controls& controls, const PoseOptions& options
   return result;
 }
 
-MinimiseResult Face::substep(const Controls& now, const StepOptions& options, int& searches_left,
-                             Workspace& work) {
+MinimiseResult Solver::substep(const Controls& now, const StepOptions& options, int& searches_left,
+                               Workspace& work) {
   const FaceModel& face = model_->face();
   const double h = face.options().substep;
   Solve solve{work,
@@ -216,7 +216,7 @@ MinimiseResult Face::substep(const Controls& now, const StepOptions& options, in
   return result;
 }
 
-bool Face::sound(const float* carried, double largest) const {
+bool Solver::sound(const float* carried, double largest) const {
   const auto most = f(largest * largest);
   for (const int32_t at : model_->slots()) {
     float squared = 0.0F;
@@ -229,7 +229,7 @@ bool Face::sound(const float* carried, double largest) const {
   return true;
 }
 
-StepResult Face::step(double seconds, const Controls& controls, const StepOptions& options) {
+StepResult Solver::step(double seconds, const Controls& controls, const StepOptions& options) {
   int searches_left = searches_a_frame;
   std::unique_ptr<Workspace> work;
   const auto solve = [&](const Controls& now, MinimiseResult& solved) {
@@ -247,7 +247,7 @@ StepResult Face::step(double seconds, const Controls& controls, const StepOption
   return result;
 }
 
-void Face::displacements(std::span<Vec3f> out) const {
+void Solver::displacements(std::span<Vec3f> out) const {
   const float *x = position_.data(), *before = before_.data(), *rest = model_->packed().rest,
               back = f(time_.back());
   for (size_t i = 0; i < out.size() && i < model_->face().rest().size(); ++i) {
@@ -258,13 +258,13 @@ void Face::displacements(std::span<Vec3f> out) const {
   }
 }
 
-void Face::positions(std::span<Vec3f> out) const {
+void Solver::positions(std::span<Vec3f> out) const {
   displacements(out);
   for (size_t i = 0; i < out.size() && i < model_->face().rest().size(); ++i)
     out[i] += model_->face().lattice().rest[i];
 }
 
-bool Face::exchange_state(StateBytes& bytes) {
+bool Solver::exchange_state(StateBytes& bytes) {
   for (Floats* list : {&position_, &velocity_, &carried_, &before_, &last_direction_, &step_scale_})
     bytes.list(list->data(), list->size());
   bytes.list(facing_.data(), facing_.size());
@@ -276,7 +276,7 @@ bool Face::exchange_state(StateBytes& bytes) {
                      [this](const FacingPair& pair) { return pair.fits(model_->face().rest().size()); });
 }
 
-size_t Face::memory() const {
+size_t Solver::memory() const {
   return sizeof *this +
          sizeof(float) * (position_.size() + velocity_.size() + carried_.size() + before_.size() +
                           last_direction_.size() + step_scale_.size() + pose_offset_.size()) +

@@ -20,7 +20,7 @@ constexpr double steepest = 1.25;
 }  // namespace
 
 /// Bones, the other lip, friction and touches: few nodes, one after the other.
-double Face::contact_energy(Solve& solve, const float* x, float* gradient) {
+double Solver::contact_energy(Solve& solve, const float* x, float* gradient) {
   const Contacts& contacts = model_->face().contacts();
   double energy = 0.0;
   const Mat3 to_mandible = solve.mandible.rotation.transpose();
@@ -56,7 +56,7 @@ double Face::contact_energy(Solve& solve, const float* x, float* gradient) {
 }
 
 /// Energy at `x` where it is wanted, its gradient over unknowns in `work.packed`.
-double Face::evaluate(Solve& solve, const float* x, bool wants_energy) {
+double Solver::evaluate(Solve& solve, const float* x, bool wants_energy) {
   Workspace& w = solve.work;
   const Loops& loops = model_->loops();
   float* const gradient = w.gradient.data();
@@ -75,9 +75,9 @@ double Face::evaluate(Solve& solve, const float* x, bool wants_energy) {
 
 /// Unknowns in single precision, for sim::minimise: those of the model's places `x`, preconditioned by the
 /// factor, scaled where a node is stiffer than it knows.
-struct Face::Space {
+struct Solver::Space {
   static constexpr size_t history = Workspace::history;
-  Face& face;
+  Solver& face;
   Solve& solve;
   float* x;
   Workspace& w = solve.work;
@@ -130,13 +130,13 @@ struct Face::Space {
   }
 };
 
-MinimiseResult Face::minimise(Solve& solve, const MinimiseOptions& options, float* x) {
+MinimiseResult Solver::minimise(Solve& solve, const MinimiseOptions& options, float* x) {
   constexpr LineSearch single_precision{16, 1e-6, 0.2};
   Space space{*this, solve, x};
   return sim::minimise(space, options, single_precision);
 }
 
-MinimiseResult Face::iterate(Solve& solve, const MinimiseOptions& options, float* x) {
+MinimiseResult Solver::iterate(Solve& solve, const MinimiseOptions& options, float* x) {
   Workspace& w = solve.work;
   Space space{*this, solve, x};
   MinimiseResult result;

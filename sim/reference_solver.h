@@ -9,29 +9,30 @@
 
 namespace fascia::sim {
 
-/// How a static pose is solved.
+/// Options of a static pose.
 ///
-/// Quasi-Newton steps first, which end soon in most poses; what they have not brought to an end, Newton steps
-/// do.
+/// Quasi-Newton steps converge quickly in most poses; otherwise Newton steps follow.
 struct PoseOptions {
   MinimiseOptions solver{120, 2e-6, 0.005};
   NewtonOptions newton;
-  int contact_rounds = 4;           ///< how often at most lips and lids look again for what they face
-  double contact_tolerance = 1e-4;  ///< metres a gap may still change when they do
-  bool from_last_pose = false;      ///< start from the last static pose instead of the bones' motion alone
-  double jaw_stage = 0.17;  ///< the jaw opens in stages of at most this share of its way, each begun from
-                            ///< the one before: carried at once, the mouth's corners may settle folded
+  int contact_rounds = 4;           ///< maximum number of contact searches between lips and between lids
+  double contact_tolerance = 1e-4;  ///< metres: change of a gap at which they have converged
+  bool from_last_pose =
+      false;  ///< warm start from the last static pose instead of the rigid motion of the bones
+  double jaw_stage =
+      0.17;  ///< the jaw opens in stages of at most this fraction of its range, each started from
+             ///< the previous one: in a single stage the corners of the mouth may settle folded
 };
 
-/// How time passes for a face.
+/// Options of a time step.
 struct StepOptions {
   ActivationDynamics dynamics;
   MinimiseOptions solver{16, 3e-7};
-  int largest_number_of_substeps = 16;  ///< a longer frame loses the rest of its time
-  double largest_displacement = 0.15;   ///< metres: beyond it the watchdog calls the face diverged
+  int largest_number_of_substeps = 16;  ///< longer frames are truncated
+  double largest_displacement = 0.15;   ///< metres: beyond it the watchdog reports divergence
 };
 
-/// How the derivative of a static pose is solved.
+/// Options of the derivative of a static pose.
 struct AdjointOptions {
   int iterations = 400;
   double tolerance = 1e-6;  ///< of the residual, relative
@@ -39,47 +40,49 @@ struct AdjointOptions {
 
 struct AdjointResult {
   int iterations = 0;
-  double residual = 0.0;  ///< left of the linear system, relative
+  double residual = 0.0;  ///< of the linear system, relative
   bool converged = false;
 };
 
-/// One face: its own state on a shared model. Not for two threads at once; different faces are free.
+/// One face: its state, on a shared model. Not thread-safe; different faces are independent.
 ///
-/// Positions are #nodes in the head's frame, metres. Nothing here but the constructor, `static_gradient` and
-/// the first hard static pose allocates, and nothing throws.
-class Face final : public Solver {
+/// Positions are #nodes in the head's frame, metres. Only the constructor, `static_gradient` and the first
+/// static pose that needs Newton steps allocate, and nothing throws.
+class ReferenceSolver final : public Solver {
  public:
-  /// `model` must be valid, have its factors and outlive the face; `channels` is how many activations it
-  /// listens to. The options are those of `settle` and `step` without options.
-  Face(const FaceModel& model, size_t channels, const PoseOptions& pose = {}, const StepOptions& step = {});
+  /// `model` must be valid, have its factors and outlive the face; `channels` is the number of activations.
+  /// The options are the defaults of `settle` and `step`.
+  ReferenceSolver(const FaceModel& model, size_t channels, const PoseOptions& pose = {},
+                  const StepOptions& step = {});
 
-  /// The pose in which all forces of `controls` balance. Does not touch the state that `step` moves.
+  /// Solves for the static equilibrium under `controls`. Does not change the dynamic state.
   MinimiseResult static_pose(const Controls& controls, const PoseOptions& options,
                              std::span<Vec3f> positions);
 
-  /// The derivative of a loss of the last static pose, which `controls` must have made: one linear solve,
-  /// whatever the number of channels. `slope` is d loss / d position (#nodes, per metre); out come d loss / d
-  /// activation (#channels) and the same for the jaw's open, forward and lateral. Exact but for contact
-  /// between lips, whose normals are held still. Allocates at its first call.
+  /// The derivative of a loss of the last static pose, which must have been solved for `controls`: one
+  /// adjoint solve, whatever the number of channels. `slope` is d loss / d position (#nodes, per metre); the
+  /// results are d loss / d activation (#channels) and the same for the jaw's open, forward and lateral.
+  /// Exact except for contact between lips, whose normals are held fixed. Allocates at its first call.
   AdjointResult static_gradient(const Controls& controls, std::span<const Vec3> slope,
                                 std::span<double> by_channel, std::array<double, 3>& by_jaw,
                                 const AdjointOptions& options = {});
 
-  /// Lets `seconds` pass while the controls go from the last step's to `controls` along a line; time is cut
-  /// into the model's substeps, so the frame rate hardly changes the motion. Implicit Euler on the same
-  /// energies.
+  /// Advances time by `seconds` with controls interpolated linearly from the last step's to `controls`, in
+  /// the model's fixed substeps, so that the motion hardly depends on the frame rate. Implicit Euler on the
+  /// same energies.
   StepResult step(double seconds, const Controls& controls, const StepOptions& options);
   StepResult step(double seconds, const Controls& controls) override {
     return step(seconds, controls, step_options_);
   }
 
-  /// Puts the face at rest under `controls`'s bones, without velocity.
+  /// Resets the face to rest on the bones of `controls`, with zero velocity.
   void reset(const Controls& controls = {}) override;
-  /// Takes a static pose as the state, without velocity.
+  /// Sets the state to a static pose, with zero velocity.
   MinimiseResult settle(const Controls& controls, const PoseOptions& options);
   MinimiseResult settle(const Controls& controls) override { return settle(controls, pose_options_); }
 
-  /// Where `step` has brought the nodes, between the last two states where a frame ends there. #nodes.
+  /// Node positions after `step`, interpolated between the last two states if the frame ends between them.
+  /// #nodes.
   void positions(std::span<Vec3f> out) const;
   /// The same, minus rest: exactly zero at rest.
   void displacements(std::span<Vec3f> out) const override;
@@ -90,7 +93,7 @@ class Face final : public Solver {
   JawPose shown_jaw(const JawPose&) const override { return time_.shown_jaw(); }
   /// Kinetic plus potential energy of the state, joules.
   double total_energy();
-  std::span<const float> activations() const { return time_.activations(); }  ///< after their dynamics
+  std::span<const float> activations() const { return time_.activations(); }  ///< after activation dynamics
   const FaceModel& model() const { return *model_; }
   const Positions& velocities() const { return velocity_; }
   Positions& velocities() { return velocity_; }
@@ -106,7 +109,7 @@ class Face final : public Solver {
   MinimiseResult substep(const Controls& now, const StepOptions& options);
   bool sound(const StepOptions& options) const;
 
-  /// What `static_gradient` needs of memory.
+  /// Workspace of `static_gradient`.
   struct Adjoint {
     Positions lambda, direction, product, moved, work, residual, packed, scratch;
     void resize(size_t nodes, size_t unknowns) {

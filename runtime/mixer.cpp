@@ -1,4 +1,4 @@
-#include "runtime/drive.h"
+#include "runtime/mixer.h"
 
 #include <algorithm>
 #include <cmath>
@@ -40,12 +40,12 @@ Layer::Layer(const Asset& asset)
       taken_weight(curve_channels),
       mask(values.size(), 1.0F) {}
 
-Drive::Drive(const Asset& asset)
+Mixer::Mixer(const Asset& asset)
     : asset_(&asset), effective_(asset.channel_rest), scratch_(asset.channel_rest) {
   layers_[0] = std::make_unique<Layer>(asset);
 }
 
-void Drive::set_layer(uint32_t index, Combine combine, float weight, std::span<const float> mask) {
+void Mixer::set_layer(uint32_t index, Combine combine, float weight, std::span<const float> mask) {
   if (!layers_[index]) layers_[index] = std::make_unique<Layer>(*asset_);
   Layer& layer = *layers_[index];
   layer.combine = combine;
@@ -54,44 +54,44 @@ void Drive::set_layer(uint32_t index, Combine combine, float weight, std::span<c
   std::copy(mask.begin(), mask.end(), layer.mask.begin());
 }
 
-void Drive::set(uint32_t layer, const Target& target, float value) {
+void Mixer::set(uint32_t layer, const Target& target, float value) {
   auto& list = target.kind == Target::Kind::channel ? layers_[layer]->values : layers_[layer]->members;
   list[target.index] = value;
 }
 
-float Drive::get(uint32_t layer, const Target& target) const {
+float Mixer::get(uint32_t layer, const Target& target) const {
   const auto& list = target.kind == Target::Kind::channel ? layers_[layer]->values : layers_[layer]->members;
   return list[target.index];
 }
 
-void Drive::clear(uint32_t layer) {
+void Mixer::clear(uint32_t layer) {
   layers_[layer]->values = asset_->channel_rest;
   std::fill(layers_[layer]->members.begin(), layers_[layer]->members.end(), 0.0F);
 }
 
-void Drive::add(uint32_t layer, const Target& target, float value, float weight) {
+void Mixer::add(uint32_t layer, const Target& target, float value, float weight) {
   if (target.kind == Target::Kind::channel)
     layers_[layer]->curve_channels[target.index] += weight * (value - asset_->channel_rest[target.index]);
   else
     layers_[layer]->curve_members[target.index] += weight * value;
 }
 
-void Drive::take_over(uint32_t layer, uint32_t channel, float value, float weight) {
+void Mixer::take_over(uint32_t layer, uint32_t channel, float value, float weight) {
   layers_[layer]->taken[channel] += weight * value;
   layers_[layer]->taken_weight[channel] += weight;
 }
 
-void Drive::look_at(const std::optional<Vec3f>& point, float weight) {
+void Mixer::look_at(const std::optional<Vec3f>& point, float weight) {
   gaze_.point = point.value_or(Vec3f::Zero());
   gaze_.weight = point ? weight : 0.0F;
 }
 
-void Drive::blend(float share, float seconds) {
+void Mixer::blend(float share, float seconds) {
   blend_ = {blend_.share, blend_.share, share, seconds, 0.0F};
   if (seconds <= 0.0F) blend_.share = share;
 }
 
-void Drive::sum_up(Layer& layer, std::vector<float>& sums) const {
+void Mixer::sum_up(Layer& layer, std::vector<float>& sums) const {
   for (std::size_t c = 0; c < sums.size(); ++c)
     sums[c] = (std::isfinite(layer.values[c]) ? layer.values[c] : asset_->channel_rest[c]) +
               finite(layer.curve_channels[c]);
@@ -108,12 +108,12 @@ void Drive::sum_up(Layer& layer, std::vector<float>& sums) const {
     std::fill(list->begin(), list->end(), 0.0F);
 }
 
-void Drive::clamp(std::vector<float>& values) const {
+void Mixer::clamp(std::vector<float>& values) const {
   for (std::size_t c = 0; c < values.size(); ++c)
     values[c] = std::clamp(values[c], asset_->channel_minimum[c], asset_->channel_maximum[c]);
 }
 
-void Drive::join(const Layer& layer) {
+void Mixer::join(const Layer& layer) {
   for (std::size_t c = 0; c < effective_.size(); ++c) {
     const float rest = asset_->channel_rest[c];
     const float weight = layer.weight * finite(layer.mask[c]);
@@ -123,7 +123,7 @@ void Drive::join(const Layer& layer) {
   }
 }
 
-void Drive::turn_eyes() {
+void Mixer::turn_eyes() {
   if (gaze_.weight <= 0.0F) return;
   const BoneChannels& bones = asset_->bones();
   const rig::Skull& skull = asset_->rig().skull;
@@ -141,7 +141,7 @@ void Drive::turn_eyes() {
   }
 }
 
-void Drive::gather(double seconds) {
+void Mixer::gather(double seconds) {
   sum_up(*layers_[0], effective_);
   clamp(effective_);
   for (uint32_t i = 1; i < most_layers; ++i) {
@@ -163,21 +163,21 @@ void Drive::gather(double seconds) {
   clamp(effective_);
 }
 
-uint64_t Drive::layers_there() const {
+uint64_t Mixer::layers_there() const {
   uint64_t which = 0;
   for (uint32_t i = 0; i < most_layers; ++i)
     which |= uint64_t{has_layer(i)} << i;
   return which;
 }
 
-bool Drive::has_layers_of(std::span<const uint8_t> state) const {
+bool Mixer::has_layers_of(std::span<const uint8_t> state) const {
   auto bytes = sim::StateBytes::from(state);
   uint64_t which = 0;
   bytes.value(which);
   return which == layers_there();
 }
 
-bool Drive::exchange_state(sim::StateBytes& bytes) {
+bool Mixer::exchange_state(sim::StateBytes& bytes) {
   uint64_t which = layers_there();
   bytes.value(which);
   if (which != layers_there()) return false;

@@ -31,12 +31,12 @@ struct Layer {
 
 /// What moves a face: layers of values, the gaze, and the share of all that is let through. Gathered once a
 /// frame into one value a channel.
-class Drive {
+class Mixer {
  public:
   static constexpr uint32_t most_layers = 8;
 
   /// With layer 0, which is always there. `asset` must outlive this.
-  explicit Drive(const Asset& asset);
+  explicit Mixer(const Asset& asset);
 
   /// Makes layer `index` (1 .. most_layers - 1) or changes how it joins. `mask` #channels, or empty for all
   /// channels alike. Allocates when the layer is new.

@@ -1,6 +1,6 @@
 #include <array>
 
-#include "sim/realtime/face.h"
+#include "sim/realtime/solver.h"
 
 namespace fascia::sim::realtime {
 namespace {
@@ -36,7 +36,7 @@ struct Way {
 
 }  // namespace
 
-bool Face::is_upright(Workspace& work, size_t layer, size_t triangle, float* x) const {
+bool Solver::is_upright(Workspace& work, size_t layer, size_t triangle, float* x) const {
   const FaceModel& face = model_->face();
   const auto& corners = face.lattice().triangles[triangle];
   const Prism& prism = face.prisms()[layer * face.lattice().triangles.size() + triangle];
@@ -70,7 +70,7 @@ bool Face::is_upright(Workspace& work, size_t layer, size_t triangle, float* x) 
   return false;
 }
 
-bool Face::untangle(Workspace& work, float* x) const {
+bool Solver::untangle(Workspace& work, float* x) const {
   const auto& triangles = model_->face().lattice().triangles;
   bool all_upright = true;
   for (size_t b = 0; b < model_->packed().triangle_batches; ++b) {

@@ -3,36 +3,35 @@
 #include <span>
 #include <vector>
 
-#include "sim/face.h"
 #include "sim/realtime/model.h"
+#include "sim/reference_solver.h"
 
 namespace fascia::sim::realtime {
 
-/// How time passes for a face in real time.
+/// Options of a time step in real time.
 struct StepOptions {
   ActivationDynamics dynamics;
-  /// Of each substep; one far from settled after two or more takes some further ones that are searched along,
-  /// once a frame, and from eight on all are.
+  /// Of each substep. A substep with a large residual after two or more is continued with line search, once
+  /// per frame; from eight on all iterations use line search.
   int iterations = 2;
-  double tolerance = 3e-7;  ///< metres: largest move of a node still wanted when a substep ends earlier
-  bool checks_last =
-      false;  ///< whether iterations are searched along however few they are; costs as much as one more
-  int largest_number_of_substeps = 16;  ///< a longer frame loses the rest of its time
-  double largest_displacement = 0.15;   ///< metres: beyond it the watchdog calls the face diverged
+  double tolerance = 3e-7;   ///< metres: a substep ends early if no node would move farther
+  bool checks_last = false;  ///< whether all iterations use line search; costs about one more iteration
+  int largest_number_of_substeps = 16;  ///< longer frames are truncated
+  double largest_displacement = 0.15;   ///< metres: beyond it the watchdog reports divergence
 };
 
-/// One face on a model laid out for the loops: what sim::Face does, on the same energies, many times faster.
+/// One face in real time: the counterpart of sim::ReferenceSolver, with the same energies, many times faster.
 ///
-/// Positions are single precision and work memory is borrowed from the model, so a face is small. Not for two
-/// threads at once; different faces are free. Nothing but the constructor and the first use of borrowed
-/// memory allocates; nothing throws.
-class Face final : public Solver {
+/// Positions are in single precision and scratch memory is borrowed from the model, so a face is small. Not
+/// thread-safe; different faces are independent. Only the constructor and the first use of scratch memory
+/// allocate; nothing throws.
+class Solver final : public sim::Solver {
  public:
-  /// `model` must be valid and outlive the face; `channels` is how many activations it listens to. The
-  /// options are those of `settle` and `step` without options.
-  Face(const Model& model, size_t channels, const PoseOptions& pose = {}, const StepOptions& step = {});
+  /// `model` must be valid and outlive the face; `channels` is the number of activations. The options are the
+  /// defaults of `settle` and `step`.
+  Solver(const Model& model, size_t channels, const PoseOptions& pose = {}, const StepOptions& step = {});
 
-  /// See sim::Face.
+  /// See sim::ReferenceSolver.
   MinimiseResult static_pose(const Controls& controls, const PoseOptions& options,
                              std::span<Vec3f> positions);
   StepResult step(double seconds, const Controls& controls, const StepOptions& options);
@@ -50,7 +49,7 @@ class Face final : public Solver {
   bool exchange_state(StateBytes& bytes) override;
   JawPose shown_jaw(const JawPose&) const override { return time_.shown_jaw(); }
 
-  /// Bytes this face keeps for itself.
+  /// Bytes of memory owned by this face.
   size_t memory() const;
   std::span<const float> activations() const { return time_.activations(); }
 
@@ -71,10 +70,10 @@ class Face final : public Solver {
   MinimiseResult iterate(Solve& solve, const MinimiseOptions& options, float* x);
   MinimiseResult substep(const Controls& now, const StepOptions& options, int& searches_left,
                          Workspace& work);
-  /// Takes the nodes of prisms that a substep of few iterations has turned inside out back towards where it
-  /// began; false when some are left.
+  /// Moves the nodes of prisms inverted by a substep of few iterations back toward its beginning; false if
+  /// some remain inverted.
   bool untangle(Workspace& work, float* x) const;
-  /// False when a prism was not upright; its nodes are then taken back if that helps, and marked.
+  /// False if a prism was inverted; its nodes are then moved back if that helps, and marked.
   bool is_upright(Workspace& work, size_t layer, size_t triangle, float* x) const;
   bool sound(const float* carried, double largest) const;
 
@@ -84,8 +83,8 @@ class Face final : public Solver {
   Floats position_, velocity_, carried_, before_, last_direction_, step_scale_, pose_offset_;
   std::vector<FacingPair> facing_;
   struct BoneReach {
-    float place[3] = {0, 0, 0};  ///< in the bone's frame, where the distance was last looked up
-    float free = -1.0F;          ///< metres from there within which it cannot touch; negative: not known
+    float place[3] = {0, 0, 0};  ///< in the bone's frame, at the last evaluation of the distance
+    float free = -1.0F;          ///< radius around it without contact, metres; negative: unknown
   };
   std::vector<BoneReach> reach_;  ///< of each contact with bone
   Substeps time_;

@@ -1,4 +1,4 @@
-#include "sim/face.h"
+#include "sim/reference_solver.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,8 @@
 
 namespace fascia::sim {
 
-Face::Face(const FaceModel& model, size_t channels, const PoseOptions& pose, const StepOptions& step)
+ReferenceSolver::ReferenceSolver(const FaceModel& model, size_t channels, const PoseOptions& pose,
+                                 const StepOptions& step)
     : model_(&model),
       pose_options_(pose),
       step_options_(step),
@@ -27,7 +28,7 @@ Face::Face(const FaceModel& model, size_t channels, const PoseOptions& pose, con
   model.step_factor();
 }
 
-MinimiseResult Face::find_pose(const PoseOptions& options) {
+MinimiseResult ReferenceSolver::find_pose(const PoseOptions& options) {
   const auto energy = [this](const Vec3* x, Vec3* gradient) {
     return model_->energy(pose_frame_, x, gradient);
   };
@@ -48,16 +49,16 @@ MinimiseResult Face::find_pose(const PoseOptions& options) {
   return result;
 }
 
-MinimiseResult Face::static_pose(const Controls& controls, const PoseOptions& options,
-                                 std::span<Vec3f> positions) {
+MinimiseResult ReferenceSolver::static_pose(const Controls& controls, const PoseOptions& options,
+                                            std::span<Vec3f> positions) {
   return pose_in_stages(controls, options, positions,
                         [this](const Controls& part, const PoseOptions& how, std::span<Vec3f> to) {
                           return pose_at_once(part, how, to);
                         });
 }
 
-MinimiseResult Face::pose_at_once(const Controls& controls, const PoseOptions& options,
-                                  std::span<Vec3f> positions) {
+MinimiseResult ReferenceSolver::pose_at_once(const Controls& controls, const PoseOptions& options,
+                                             std::span<Vec3f> positions) {
   model_->place(controls, pose_frame_);
   for (size_t i = 0; i < pose_.size(); ++i) {
     pose_[i] = pose_frame_.carried[i];
@@ -80,7 +81,7 @@ MinimiseResult Face::pose_at_once(const Controls& controls, const PoseOptions& o
   return result;
 }
 
-void Face::reset(const Controls& controls) {
+void ReferenceSolver::reset(const Controls& controls) {
   model_->place({{}, controls.jaw, Vec3::Zero()}, frame_);
   position_ = frame_.carried;
   previous_ = position_;
@@ -89,7 +90,7 @@ void Face::reset(const Controls& controls) {
   time_.reset(controls);
 }
 
-MinimiseResult Face::settle(const Controls& controls, const PoseOptions& options) {
+MinimiseResult ReferenceSolver::settle(const Controls& controls, const PoseOptions& options) {
   const MinimiseResult result = static_pose(controls, options, {});
   reset(controls);
   time_.settle(controls);
@@ -99,7 +100,7 @@ MinimiseResult Face::settle(const Controls& controls, const PoseOptions& options
   return result;
 }
 
-MinimiseResult Face::substep(const Controls& now, const StepOptions& options) {
+MinimiseResult ReferenceSolver::substep(const Controls& now, const StepOptions& options) {
   const double h = model_->options().substep;
   carried_ = frame_.carried;
   const RigidTransform mandible = frame_.mandible;
@@ -148,7 +149,7 @@ MinimiseResult Face::substep(const Controls& now, const StepOptions& options) {
   return result;
 }
 
-bool Face::sound(const StepOptions& options) const {
+bool ReferenceSolver::sound(const StepOptions& options) const {
   for (size_t i = 0; i < position_.size(); ++i) {
     const double away = (position_[i] - frame_.carried[i]).norm();
     if (!(away <= options.largest_displacement)) return false;  // also when it is not a number
@@ -156,7 +157,7 @@ bool Face::sound(const StepOptions& options) const {
   return true;
 }
 
-StepResult Face::step(double seconds, const Controls& controls, const StepOptions& options) {
+StepResult ReferenceSolver::step(double seconds, const Controls& controls, const StepOptions& options) {
   const auto solve = [&](const Controls& now, MinimiseResult& solved) {
     solved = substep(now, options);
     return sound(options);
@@ -167,19 +168,19 @@ StepResult Face::step(double seconds, const Controls& controls, const StepOption
   return result;
 }
 
-void Face::displacements(std::span<Vec3f> out) const {
+void ReferenceSolver::displacements(std::span<Vec3f> out) const {
   const double back = time_.back();
   for (size_t i = 0; i < out.size() && i < position_.size(); ++i)
     out[i] = (position_[i] - model_->rest()[i] + back * (previous_[i] - position_[i])).cast<float>();
 }
 
-void Face::positions(std::span<Vec3f> out) const {
+void ReferenceSolver::positions(std::span<Vec3f> out) const {
   displacements(out);
   for (size_t i = 0; i < out.size() && i < position_.size(); ++i)
     out[i] += model_->lattice().rest[i];
 }
 
-bool Face::exchange_state(StateBytes& bytes) {
+bool ReferenceSolver::exchange_state(StateBytes& bytes) {
   for (Positions* list : {&position_, &previous_, &velocity_, &frame_.carried})
     bytes.list(list->data(), list->size());
   bytes.list(frame_.facing.data(), frame_.facing.size());
@@ -189,7 +190,7 @@ bool Face::exchange_state(StateBytes& bytes) {
                      [this](const FacingPair& pair) { return pair.fits(position_.size()); });
 }
 
-double Face::total_energy() {
+double ReferenceSolver::total_energy() {
   double energy = model_->energy(frame_, position_.data(), work_.data());
   for (const uint32_t i : model_->unknowns())
     energy += 0.5 * model_->masses()[i] * velocity_[i].squaredNorm();
