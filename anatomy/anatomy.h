@@ -12,10 +12,10 @@
 #include "anatomy/side.h"
 #include "geometry/mesh.h"
 
-/// What is true of every human face: its named points, tissue depths, muscles, layers, channels and
-/// expression tables, and a generic head and skull. The data are files a specialist can read and
-/// correct (anatomy/data); this is their reader. Everything here is in metres and radians, right-handed,
-/// +X to the subject's left, +Y up, the face looking along +Z; the files are in millimetres and degrees.
+/// The generic anatomy of the human face: named points, tissue depths, muscles, layers, channels, expression
+/// tables, and a generic head and skull. The data are files that a specialist can read and correct
+/// (anatomy/data); this is their reader. Everything here is in metres and radians, right-handed, +X to the
+/// subject's left, +Y up, the face looking along +Z; the files are in millimetres and degrees.
 namespace fascia::anatomy {
 
 /// A named point of the face or the skull.
@@ -25,7 +25,7 @@ struct Landmark {
   std::string definition;
   Side side = Side::midline;
   bool craniometric = false;   ///< defined on bone; else cephalometric, defined on skin
-  bool required = false;       ///< of the few a person has to place on a head of theirs
+  bool required = false;       ///< one of the few landmarks that detection needs
   std::optional<Vec3> skin;    ///< on the generic head's skin
   Vec3 normal = Vec3::Zero();  ///< unit outward skin normal; zero without a skin point
   Vec3 tangent =
@@ -33,7 +33,7 @@ struct Landmark {
   std::optional<Vec3> bone;         ///< on the generic skull
   Vec3 bone_normal = Vec3::Zero();  ///< unit outward normal of the bone; zero without a bone point
   bool bone_from_depth = false;     ///< bone = skin - depth * normal; else measured on a skull
-  std::string depth;                ///< its key in the tissue depth tables; empty when none knows it
+  std::string depth;                ///< its key in the tissue depth tables; empty if there is none
 };
 
 /// A named curve of the face or the skull, as points in order along it.
@@ -50,13 +50,13 @@ struct Curve {
 struct TissueDepth {
   std::string key;         ///< bone landmark abbreviation, the `depth` of a Landmark
   double mean = 0.0;       ///< metres
-  double deviation = 0.0;  ///< standard deviation, metres; 0 when the source gives none
+  double deviation = 0.0;  ///< standard deviation, metres; 0 if the source gives none
 };
 
 struct TissueDepthTable {
   std::string name;
-  std::string population;          ///< whom it was measured on
-  std::string sex, age, ancestry;  ///< the same in single words, such as female, adult; empty: not told apart
+  std::string population;          ///< the population it was measured on
+  std::string sex, age, ancestry;  ///< the same as keywords, such as female, adult; empty: not distinguished
   std::string source;
   std::vector<TissueDepth> depths;
 
@@ -77,10 +77,10 @@ struct SkinRegion {
   size_t first = 0, count = 0;
 };
 
-/// Where one end of a muscle is fastened.
+/// What one end of a muscle is attached to.
 enum class Attachment { cranium, mandible, hyoid, galea, smas, skin, modiolus, tarsus, fascia };
 
-/// A patch in which fibres begin or end: corners in order around it, near the surface named.
+/// A patch in which fibres begin or end: its corners in cyclic order, near the named surface.
 struct Region {
   Attachment on = Attachment::smas;
   std::vector<Vec3> polygon;
@@ -94,27 +94,27 @@ struct OrificeBand {
   double inner = 0.0, outer = 0.0;            ///< metres
   double begin_angle = 0.0, end_angle = 0.0;  ///< radians, begin < end
   bool medial_on_bone =
-      false;  ///< the ring's medial end hangs on the canthal ligament and the bone behind it
+      false;  ///< the ring's medial end is attached to the canthal ligament and the bone behind it
   bool upper() const { return begin_angle + end_angle > 0.0; }
 };
 
 enum class MuscleKind { strap, sheet, fan, sphincter_ring, compressor };
 
-/// How some faces differ from the usual.
+/// An anatomical variant of a muscle.
 struct Variant {
   std::string name;         ///< absent, bifid, ...
   double prevalence = 0.0;  ///< share of faces, 0..1
   std::string note;
-  bool is_absent = false;                ///< the muscle is not there
-  double width = 1.0;                    ///< times the usual width
+  bool is_absent = false;                ///< the muscle is missing
+  double width = 1.0;                    ///< factor of the usual width
   Vec3 insertion_offset = Vec3::Zero();  ///< from the usual insertion, metres on the generic head
 };
 
 /// A muscle, or the part of one that has a channel of its own.
 struct Muscle {
   std::string name;   ///< with its side, such as frontalis_medial_left
-  std::string whole;  ///< the muscle it is a part of, with its side; its own name when it has no parts
-  std::string title;  ///< for people
+  std::string whole;  ///< the muscle it is a part of, with its side; its own name if it has no parts
+  std::string title;  ///< display name
   std::string group;  ///< mimic, masticatory or lid
   Side side = Side::midline;
   MuscleKind kind = MuscleKind::strap;
@@ -134,7 +134,7 @@ struct Muscle {
   std::string source;
 };
 
-/// A labelled area of the skin: the polygon in order around it, on the generic head's skin.
+/// A labelled area of the skin: a polygon on the generic head's skin, corners in cyclic order.
 struct Zone {
   std::string name;  ///< with its side
   Side side = Side::midline;
@@ -156,7 +156,7 @@ struct RetainingLigament {
   std::string source;
 };
 
-/// How deep the SMAS lies in the neighbourhood of one landmark (or of both of a pair).
+/// Depth of the SMAS near one landmark (or near both of a pair).
 struct SmasDepth {
   std::string landmark;     ///< without side for a pair: "malare" stands for malare_left and malare_right
   double fraction = 0.0;    ///< of the way from the skin to the bone
@@ -179,7 +179,7 @@ struct Actuator {
   double minimum = 0.0, maximum = 1.0, rest = 0.0;
   std::string unit;        ///< "1" or "rad"
   std::string note;        ///< what the positive direction is
-  bool is_muscle = false;  ///< then a Muscle bears the same name
+  bool is_muscle = false;  ///< then a Muscle has the same name
 };
 
 /// A name that stands for several actuators at once, such as orbicularis_oculi_left.
@@ -191,7 +191,7 @@ struct Whole {
 /// One name of a vocabulary as a linear combination of actuators.
 struct Expression {
   std::string name;
-  std::string corrects;  ///< the expression it is added to, when it is a corrective; else empty
+  std::string corrects;  ///< the expression it is added to if it is a corrective; else empty
   std::string note;
   std::vector<std::pair<std::string, double>> weights;  ///< actuator name and weight; negative relaxes
   std::vector<double> response;  ///< share of the row at each of the set's response_weights; none: the weight
@@ -213,7 +213,7 @@ struct GenericAnatomy {
   std::vector<Curve> curves;
   std::vector<TissueDepthTable> depth_tables;  ///< the first is the default
   std::vector<MeshObject> head;                ///< skin, eyes, ... of the generic head
-  std::string head_source;                     ///< head.obj as it stands: polygons whole
+  std::string head_source;                     ///< the text of head.obj, with untriangulated polygons
   std::vector<SkinRegion> skin_regions;        ///< of the generic head
   std::vector<MeshObject> skull;               ///< cranium, mandible, teeth
   std::vector<Muscle> muscles;                 ///< both sides
@@ -235,26 +235,24 @@ struct GenericAnatomy {
   const ExpressionSet* expression_set(std::string_view name) const;
 };
 
-/// The anatomy built into the library; needs no file on the machine.
+/// The anatomy compiled into the library; reads no file.
 GenericAnatomy load_generic();
 
-/// The anatomy in `directory`, laid out as anatomy/data: to work with a corrected copy of it. A file that is
-/// not there is the one built in, so that a directory may hold just the corrected ones.
-/// Throws fascia::Error naming the file, the entry and the remedy when a file is malformed, a reference does
-/// not resolve, the directory holds none of the files, or it holds a JSON or OBJ file of another name.
+/// The anatomy in `directory`, with the structure of anatomy/data, for corrected copies. For a missing file
+/// the built-in one is used, so that a directory may contain only the corrected files. Throws fascia::Error
+/// naming the file, the entry and the remedy if a file is malformed, a reference does not resolve, the
+/// directory contains none of the files, or it contains a JSON or OBJ file of another name.
 GenericAnatomy load_generic(const std::filesystem::path& directory);
 
-/// Which data files of `directory`, by name, stand in for those built in and are not the same to the byte.
+/// Names of the data files of `directory` that differ from the built-in ones.
 std::vector<std::string> corrected_files(const std::filesystem::path& directory);
 
 /// Adds the tables of a file of the form of anatomy/data/tissue_depths.json and returns their names. A table
-/// that bears the name of one there is takes its place. Throws fascia::Error naming the file and the entry at
-/// fault.
+/// replaces an existing one of the same name. Throws fascia::Error naming the file and the entry at fault.
 std::vector<std::string> add_depth_tables(GenericAnatomy& anatomy, const std::filesystem::path& file);
 
-/// Adds a muscle with its channel, and its name to its whole's members. One that bears the name of a muscle
-/// there is takes its place. Throws fascia::Error when the name is that of a channel or whole of another
-/// kind.
+/// Adds a muscle with its channel, and its name to the members of its group. It replaces an existing muscle
+/// of the same name. Throws fascia::Error if the name belongs to a channel or group of another kind.
 void add_muscle(GenericAnatomy& anatomy, Muscle muscle);
 
 /// Adds the muscles of a file of the form of anatomy/data/muscles.json, drawn on the generic head, as

@@ -10,7 +10,7 @@
 #include "anatomy/anatomy.h"
 #include "geometry/error.h"
 
-/// Checked access to the data files: whatever is wrong is reported with the file and the entry.
+/// Checked access to the data files: errors name the file and the entry.
 namespace fascia::anatomy {
 
 using Json = nlohmann::json;
@@ -20,14 +20,14 @@ class DataFiles {
  public:
   DataFiles() = default;  ///< those built in
   explicit DataFiles(std::filesystem::path directory) : directory_(std::move(directory)) {}
-  /// Texts by file name in place of those built in.
+  /// Texts by file name that replace the built-in ones.
   explicit DataFiles(std::map<std::string, std::string> texts) : texts_(std::move(texts)) {}
-  /// Throws fascia::Error when the directory holds no data file, or one that nothing would read.
+  /// Throws fascia::Error if the directory contains no data file, or one of an unknown name.
   void check_directory() const;
   /// The bytes of file `name`, of the directory's or, where it has none, the built-in one; throws
   /// fascia::Error when there is neither.
   std::string read(const std::string& name) const;
-  /// Where file `name` stands, for messages.
+  /// Path of file `name`, for messages.
   std::string place(const std::string& name) const;
   Json json(const std::string& name) const;
 
@@ -36,7 +36,7 @@ class DataFiles {
   std::map<std::string, std::string> texts_;
 };
 
-/// A JSON object and where it stands, for messages such as "muscles.json, risorius: ...".
+/// A JSON object and its location, for messages such as "muscles.json, risorius: ...".
 class Fields {
  public:
   Fields(const Json& object, std::string where);
@@ -58,8 +58,8 @@ class Fields {
   Fields object(const char* key) const;
   const Json& raw(const char* key) const;
   std::vector<std::string> keys() const;
-  /// Throws fascia::Error when there is a key that is not among `known`: what nothing reads would be
-  /// corrected in vain.
+  /// Throws fascia::Error if there is a key that is not among `known`: correcting an unused value would have
+  /// no effect.
   void allow_only(std::initializer_list<const char*> known) const;
   [[noreturn]] void fail(const std::string& what) const;
 

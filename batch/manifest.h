@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-/// Many heads, one after another or side by side: what is to be built, by whom, and what came of it.
+/// Batch processing: heads to build, their distribution over tasks, and their results.
 namespace fascia::batch {
 
 /// One head to build.
@@ -26,7 +26,7 @@ std::vector<Head> read_heads(const std::filesystem::path& source);
 /// Those of task `index` of `count`: every count-th, so that each head is in exactly one task.
 std::vector<Head> share(const std::vector<Head>& heads, size_t index, size_t count);
 
-/// Which part of the heads this process has, of how many.
+/// Index of this task, and number of tasks.
 struct Task {
   size_t index = 0, count = 1;
 };

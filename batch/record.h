@@ -6,13 +6,13 @@
 
 namespace fascia::batch {
 
-/// What came of one head, kept as job.json in its folder.
+/// The result of one head, stored as job.json in its folder.
 struct Record {
   std::string id, head;  ///< head: the mesh's path as it was given
   std::string key;       ///< key_of the head: what the results depend on
   bool is_done = false;  ///< there is a rig
-  std::string cause;     ///< of a failure, in a few words that many heads share; empty when done
-  std::string message;   ///< the tool's own words
+  std::string cause;     ///< category of a failure; empty if done
+  std::string message;   ///< message of the tool
   int attempts = 0;
   double seconds = 0.0;  ///< wall time of all steps, last attempt
   double cpu_seconds = 0.0;
@@ -23,7 +23,7 @@ struct Record {
   std::vector<std::string> warnings;       ///< of the build
 };
 
-/// Reads and writes `folder`/job.json; a record that is not there or not sound is none. Writing is atomic.
+/// Reads and writes `folder`/job.json; a missing or invalid record is empty. Writing is atomic.
 bool read_record(const std::filesystem::path& folder, Record& record);
 void write_record(const std::filesystem::path& folder, const Record& record);
 

@@ -25,11 +25,11 @@ struct Options {
   bool retries_failed = false;   ///< heads that failed before, too
 };
 
-/// What became of a head in this run.
+/// Outcome of a head in this run.
 enum class Fate {
   done,      ///< built now
-  failed,    ///< tried now, in vain
-  kept,      ///< done or refused before, with the same files and options
+  failed,    ///< tried now, failed
+  kept,      ///< done or failed before, with the same files and options
   elsewhere  ///< another process is at it
 };
 
@@ -38,12 +38,12 @@ struct Report {
   std::vector<Fate> fates;
 };
 
-/// Builds the heads in processes of their own, `jobs` at a time. Each head's results appear in `output`/ID
-/// whole or not at all: rig.glb, build.json, check.json, thumbnail.png and job.json; of a failure job.json
-/// alone. A head whose results are there and whose files, options and tool are the same is not built again.
-/// Several of these may run into one folder, also on several machines where they share its locks (flock):
-/// each head is built by one. `told` is called as each head ends, one at a time. When `stop` becomes true
-/// what runs is ended and nothing of it stays. Throws fascia::Error when nothing can be written.
+/// Builds the heads in processes of their own, `jobs` at a time. Each head's results appear atomically in
+/// `output`/ID: rig.glb, build.json, check.json, thumbnail.png and job.json; of a failure job.json alone. A
+/// head whose results are there and whose files, options and tool are the same is not built again. Several of
+/// these may run into one folder, also on several machines where they share its locks (flock): each head is
+/// built by one. `told` is called as each head ends, one at a time. When `stop` becomes true what runs is
+/// ended and nothing of it stays. Throws fascia::Error when nothing can be written.
 Report run_all(const std::vector<Head>& heads, const Options& options, const std::atomic<bool>& stop,
                const std::function<void(size_t head, const Record& record, Fate fate)>& told);
 

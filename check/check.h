@@ -9,31 +9,31 @@
 
 namespace fascia::check {
 
-/// One measure: what was found, what it may be, and what to do when it is not.
+/// One measurement: its value, its bounds, and the remedy when it is outside them.
 struct Row {
   std::string name;             ///< such as blink.lid_gap_left
-  double value = 0.0;           ///< in `unit`; not finite values are written as a failure
+  double value = 0.0;           ///< in `unit`; values that are not finite count as failures
   std::string unit;             ///< mm, degrees, share, per_mille, count
-  std::optional<double> least;  ///< as it holds for a face of this size
+  std::optional<double> least;  ///< scaled to this face
   std::optional<double> most;
   bool ok = true;
   std::string remedy;         ///< what to do when the row fails
-  std::string pose;           ///< in which pose it was found
-  std::optional<Vec3> place;  ///< where, in that pose: metres, rig frame
+  std::string pose;           ///< the pose in which it was measured
+  std::optional<Vec3> place;  ///< location in that pose: metres, rig frame
 };
 
 struct Options {
   bool is_quick = false;     ///< the poses marked quick alone, without mirror images and crossings
-  double rest_motion = 0.0;  ///< metres that the player's rest is off the file's
+  double rest_motion = 0.0;  ///< metres: deviation of the player's rest from the file's
 };
 
 /// Plays the poses of `checks` on `head` and measures each: lids, mouth, landmarks, mirror images, triangles,
-/// edges, crossings, eyes and what should be still. A row whose subject the head does not have (eyes, teeth,
-/// hair) is left out; so is every row of a pose for which the player has no shape.
+/// edges, crossings, eyes and what should be still. Rows about parts that the head lacks (eyes, teeth, hair)
+/// are omitted, and so are those of poses for which the player has no shape.
 std::vector<Row> run(const Head& head, const Player& player, const anatomy::Checks& checks,
                      const Options& options = {});
 
-/// How many rows have failed.
+/// Number of failed rows.
 int failed(const std::vector<Row>& rows);
 
 }  // namespace fascia::check

@@ -7,7 +7,7 @@
 
 namespace fascia::check {
 
-/// How deep one surface has gone through another.
+/// Penetration of one surface by another.
 struct Depth {
   double most = 0.0;  ///< metres
   Vec3 place = Vec3::Zero();
@@ -16,7 +16,8 @@ struct Depth {
   }
 };
 
-/// Where places of a surface lie behind another surface: how deep, one a place, 0 for those that do not.
+/// Penetration depth of points of a surface behind another, one per point, 0 for those that are not behind
+/// it.
 ///
 /// A place has crossed when it lies behind the nearest place of `other`, straight behind and not beside an
 /// edge, no farther than `deepest` metres, its normal against the other's: farther behind or facing the same
@@ -32,7 +33,7 @@ class CrossingPair {
   /// `around`: the skin of both sides and some more.
   CrossingPair(const Skin& skin, Patch places, Patch other, Patch around, double deepest);
 
-  /// The deepest crossing in a pose beyond what is crossed at rest.
+  /// The largest penetration in a pose beyond that at rest.
   Depth find(const std::vector<Vec3>& skin) const;
 
  private:

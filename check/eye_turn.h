@@ -6,7 +6,7 @@
 
 namespace fascia::check {
 
-/// How an eyeball has moved.
+/// The motion of an eyeball.
 struct EyeTurn {
   double yaw = 0.0, pitch = 0.0;  ///< radians: of straight ahead, to the subject's left and upward
   double angle = 0.0;             ///< radians altogether
@@ -14,7 +14,7 @@ struct EyeTurn {
   double bent = 0.0;              ///< metres: largest distance from a rigid motion
 };
 
-/// Middle of the sphere that fits `vertices` best; nothing when they are flat or no part of one sphere.
+/// Centre of the least squares sphere of `vertices`; nothing if they are flat or not part of a sphere.
 bool sphere_centre(const std::vector<Vec3>& vertices, Vec3& centre, double& radius);
 
 /// The motion from `rest` to `now`, vertex by vertex; `centre` is the eyeball's own.

@@ -8,7 +8,7 @@
 
 namespace fascia::check {
 
-/// What amounts of motion are measured against: how large this face and its parts are against an adult's.
+/// Reference lengths of motions: size of this face and its parts relative to an adult's.
 struct Sizes {
   double face = 1.0;   ///< spread of the landmarks of face, against the adult mean
   double mouth = 1.0;  ///< width of the mouth likewise

@@ -7,7 +7,7 @@
 
 namespace fascia::check {
 
-/// How far things have moved that should not.
+/// Displacement of parts that must not move.
 struct Stillness {
   std::string name;   ///< hair, glasses, clothes, neck
   double most = 0.0;  ///< metres

@@ -10,7 +10,7 @@
 
 namespace fascia::fit {
 
-/// An expression of the person: what it looks like, and what the rig's tables say makes it.
+/// An expression of the person: the observation, and its activations by the rig's tables.
 struct CalibrationCase {
   std::string name;
   Target target;
@@ -20,19 +20,19 @@ struct CalibrationCase {
 struct CalibrationOptions {
   int rounds = 3;  ///< Gauss-Newton steps
   double prior =
-      0.02;  ///< what a gain of 1 costs beside 0 or 2, in shares of the expressions' mean squared motion
+      0.02;  ///< penalty for a gain of 0 or 2 instead of 1, relative to the expressions' mean squared motion
   double weakest = 0.4;  ///< bounds of a gain: muscle cross-sections of adults vary by about these factors...
   double strongest = 2.0;  ///< ...(docs/fit.md)
-  double pairing = 0.1;    ///< what left differing from right costs, in the same shares
+  double pairing = 0.1;    ///< penalty for differences between left and right, likewise
   /// Bounds of the factors of a physique: depths of soft tissue have standard deviations of a sixth to a
-  /// third of their means between adults (anatomy/data/tissue_depths.json), and no more is granted to the
-  /// rest.
+  /// third of their means between adults (anatomy/data/tissue_depths.json), and the same bounds are used for
+  /// the others.
   double least_factor = 0.7, most_factor = 1.4;
   size_t searched_cases =
-      12;  ///< the physique is found from as many expressions at most, those that move most
+      12;  ///< largest number of expressions used for the physique, those with the largest motion
 };
 
-/// The subject with another physique, or null when it cannot be made.
+/// The subject with another physique, or null if it cannot be built.
 using Remake = std::function<std::unique_ptr<Subject>(const Physique&)>;
 
 struct CaseFigures {
@@ -43,19 +43,18 @@ struct CaseFigures {
 };
 
 struct Calibration {
-  std::vector<double>
-      gains;  ///< one a channel: how much more strongly this person's muscle answers; 1: as the table
+  std::vector<double> gains;  ///< one per channel: gain of this person's muscle relative to the table
   Physique physique;
   std::vector<CaseFigures> cases;
   double before_share = 0.0, after_share = 0.0, left_out_share = 0.0;  ///< of all expressions' squared motion
 };
 
-/// Finds what tells this person's muscles from the tables': one gain a channel, the same in every expression,
-/// by Gauss-Newton on the full simulation of all `cases` at once, left like right and near 1 unless the scans
-/// say otherwise; the price of that is raised where it serves expressions left out. With `remake`, first the
-/// person's physique: one factor after the other is tried on the full simulation, each with the gains that
-/// would then suit best, and kept where the expressions want it (profile likelihood). Each case is then
-/// judged by gains, and a physique, found without it. Throws fascia::Error when there are no cases.
+/// Identifies the gains of a person's muscles: one per channel, the same in every expression, by Gauss-Newton
+/// on the full simulation of all `cases` at once, regularised towards 1 and towards symmetry, with the weight
+/// of the regularisation chosen by cross-validation. With `remake`, the person's physique is identified
+/// first: a search over one factor after another on the full simulation, each with re-optimised gains
+/// (profile likelihood). Finally each case is evaluated with gains and a physique found without it. Throws
+/// fascia::Error if there are no cases.
 Calibration calibrate(Subject& subject, const std::vector<CalibrationCase>& cases,
                       const CalibrationOptions& options = {}, const Remake& remake = {});
 

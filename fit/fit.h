@@ -9,48 +9,47 @@
 
 namespace fascia::fit {
 
-/// What a face should look like: where each vertex should go, and how much it is to be weighted.
+/// A target: the displacement of each vertex, and its weight.
 struct Target {
   Eigen::VectorXd displacements;   ///< 3 x #vertices of the subject, metres from rest
-  std::vector<double> confidence;  ///< #vertices, 0 where nothing is known of a vertex
-  /// 3 x #vertices, unit, or empty. Where given, only the distance along it counts (and a little the rest):
-  /// the vertex may slide over a surface it was matched to (Chen & Medioni 1992).
+  std::vector<double> confidence;  ///< #vertices, 0 for unobserved vertices
+  /// 3 x #vertices, unit, or empty. If given, the error is mainly the distance along it (point to plane, Chen
+  /// & Medioni 1992): the vertex may slide over the surface it was matched to.
   Eigen::VectorXd normals = {};
 };
 
 struct FitOptions {
-  /// What activations cost, in square millimetres of mean squared error: their squares, and their sizes.
-  /// Channels that the rig's expression tables seldom use cost more.
+  /// Penalties in square millimetres of mean squared error, on squared and absolute activations. They are
+  /// larger for channels that the rig's expression tables rarely use.
   double ridge = 2e-4;
   double sparsity = 2e-4;
-  /// The same for the square of a change from one frame to the next.
+  /// The same for squared changes from frame to frame.
   double smoothness = 2e-3;
-  int iterations = 30;         ///< Gauss-Newton steps at most
-  std::vector<uint32_t> held;  ///< channels that stay where they are
+  int iterations = 30;         ///< maximum number of Gauss-Newton steps
+  std::vector<uint32_t> held;  ///< channels that are kept fixed
 };
 
 struct FitResult {
-  std::vector<float> activations;  ///< one a channel of the rig
+  std::vector<float> activations;  ///< one per channel of the rig
   double share = 0.0;              ///< 1 - sum |u - v|^2 / sum |v|^2 over weighted vertices
-  double error_mm = 0.0;  ///< mean distance left where the target moves more than 0.5 mm; else over all
-  double rms_mm = 0.0;    ///< root mean square distance left over weighted vertices
+  double error_mm = 0.0;  ///< mean residual where the target moves more than 0.5 mm; otherwise over all
+  double rms_mm = 0.0;    ///< root mean square residual over weighted vertices
   int iterations = 0;
   bool converged = false;
   Eigen::VectorXd
       displacements;  ///< 3 x #vertices, metres: the fitted pose, solved from rest as `pose` would
-  /// By channel: how far the activation may go, all others following as suits best, before the root mean
-  /// square error has risen by 0.05 mm (from the Hessian of the fit); 0 for channels that are not fitted.
+  /// By channel: change of the activation, with all others re-optimised, that raises the root mean square
+  /// error by 0.05 mm (from the Hessian of the fit); 0 for channels that are not fitted.
   std::vector<double> spread;
-  /// Pairs of channels in use that the target hardly tells apart: correlation beyond 0.9 in that Hessian's
-  /// inverse.
+  /// Pairs of active channels that the target hardly distinguishes: correlation above 0.9 in the inverse of
+  /// that Hessian.
   std::vector<std::pair<uint32_t, uint32_t>> alike;
 };
 
-/// Adds up what a fit leaves, place by place.
+/// Accumulates the residual statistics of a fit.
 class Misses {
  public:
-  /// `left`: from where the fit has a place to where it should be; `moved`: how far it should have moved;
-  /// metres. `confidence` above 0.
+  /// `left`: residual of a point; `moved`: its target displacement; metres. `confidence` above 0.
   void add(double left, double moved, double confidence = 1.0);
   double motion() const { return whole_; }  ///< weighted squares of what should have moved
   /// Writes share, error_mm and rms_mm.
@@ -61,7 +60,7 @@ class Misses {
   size_t count_ = 0, count_moved_ = 0;
 };
 
-/// A pose and how its mean squared distance from a target answers activations.
+/// The mean squared distance of a pose from a target, with derivatives with respect to activations.
 struct Linearised {
   std::vector<uint32_t> channels;  ///< that rows and columns below stand for
   Eigen::MatrixXd hessian;         ///< Gauss-Newton, of half the mean squared distance, mm^2
@@ -70,27 +69,27 @@ struct Linearised {
   double target_square = 0.0;      ///< of the target's own motion, mm^2
 };
 
-/// Finds the activations whose static pose comes nearest to targets: Gauss-Newton steps on the full
-/// simulation, with contact, in the channels' ranges (Sifakis, Neverov & Fedkiw 2005, "Automatic
-/// determination of facial muscle activations from sparse motion capture marker data", section 4), gradients
-/// by the adjoint of the equilibrium.
+/// Fits the activations of a static pose to targets: Gauss-Newton on the full simulation, with contact,
+/// within the channels' ranges (Sifakis, Neverov & Fedkiw 2005, "Automatic determination of facial muscle
+/// activations from sparse motion capture marker data", section 4), gradients by the adjoint of the
+/// equilibrium.
 ///
-/// Channels that only move the mandible, as its own three do, stay at rest, so that the answer is one; the
-/// eyes turn as their meshes do, or as their lids show where nothing is known of the meshes.
+/// Channels that only move the mandible, like its own three, stay at rest, so that the solution is unique;
+/// eyes are fitted to their meshes, or to the lids if their meshes are not observed.
 class Fitter {
  public:
   explicit Fitter(Subject& subject, const FitOptions& options = {});
 
   /// Throws fascia::Error when the target has no confidence in any vertex that the rig moves.
   FitResult fit(const Target& target);
-  /// The next frame of a take: begins at the last result and keeps near it.
+  /// The next frame of a take: starts from the last result, with the smoothness penalty.
   FitResult follow(const Target& target);
 
   /// The pose of `values` beside `target`; costs do not count. Throws fascia::Error when the target has no
   /// confidence in any vertex that the rig moves, or the pose has no derivative.
   Linearised linearised(const Target& target, const std::vector<float>& values);
 
-  /// Other costs and steps from now on.
+  /// Changes the penalties and the number of steps.
   void set_options(const FitOptions& options);
 
  private:
@@ -98,7 +97,7 @@ class Fitter {
   void take_weights(const Target& target);
   /// Half the gradient of the mean squared distance, by the adjoint or by the columns at hand.
   Eigen::VectorXd slope_of(const Eigen::VectorXd& difference, bool by_columns) const;
-  /// Mean squared error and cost of `values`; poses the subject.
+  /// Mean squared error plus penalties of `values`; poses the subject.
   double objective(const Target& target, const std::vector<float>& values, bool warm,
                    Eigen::VectorXd& difference);
   double cost(const std::vector<float>& values) const;
@@ -119,7 +118,7 @@ class Fitter {
   std::vector<uint32_t> driven_;    ///< channels fitted that tissue listens to, eyes among them by their lids
   std::vector<uint32_t> fitted_;    ///< those, then the jaw's
   std::vector<bool> is_held_;       ///< by channel
-  std::vector<double> dearness_;    ///< by channel: cost beside that of a common one
+  std::vector<double> dearness_;    ///< by channel: penalty relative to that of a common one
   std::vector<float> last_;         ///< the last frame's activations
   std::vector<float> linear_at_;    ///< where the columns below were taken
   Eigen::MatrixXd node_columns_;    ///< 3 #nodes x #fitted

@@ -10,7 +10,7 @@
 #include "sim/jaw_muscles.h"
 #include "sim/realtime/solver.h"
 
-/// Which muscles, how strongly: activations from what a face looks like.
+/// The inverse problem: activations from observations of a face.
 namespace fascia::fit {
 
 /// A rig as a function from activations to vertices, at one level of detail. Lengths in metres, in the rig's
@@ -40,7 +40,7 @@ class Subject {
   const Eigen::SparseMatrix<double, Eigen::RowMajor>& weights() const { return weights_; }
   const std::vector<float>& jaw_shares() const { return jaw_shares_; }  ///< #vertices
   const std::vector<uint8_t>& eyes() const { return eyes_; }  ///< #vertices: 0 none, 1 left, 2 right
-  /// True where tissue or jaw moves the vertex; eyes are moved apart.
+  /// True if tissue or jaw moves the vertex; eyes move separately.
   bool follows(size_t vertex) const;
   /// Triangles of all that the rig binds as skin, by vertices of the subject.
   std::vector<Triangle> skin_triangles() const;
@@ -49,14 +49,12 @@ class Subject {
   int32_t channel(const std::string& name) const;
   sim::Controls controls(std::span<const float> activations) const;
 
-  /// Poses the face statically, from the last pose when `warm`; afterwards `nodes` and `displacements` are
-  /// those of it.
+  /// Computes a static pose, with a warm start if `warm`; `nodes` and `displacements` then refer to it.
   void pose(std::span<const float> activations, bool warm);
   const sim::Positions& nodes() const { return nodes_; }  ///< #nodes, metres
   /// 3 x #vertices, metres.
   Eigen::VectorXd displacements(std::span<const float> activations) const;
-  /// d displacement / d jaw (open, forward, lateral) of vertices that hang on the jaw itself: 3 x #vertices
-  /// rows.
+  /// d displacement / d jaw (open, forward, lateral) of vertices bound to the jaw itself: 3 x #vertices rows.
   Eigen::MatrixXd jaw_slopes(std::span<const float> activations) const;
 
  private:

@@ -2,7 +2,7 @@
 
 #include "formats/extend.h"
 
-/// One writer a format; `formats::rewrite` chooses among them.
+/// The writers of the formats; `formats::rewrite` chooses among them.
 namespace fascia::formats::detail {
 
 void rewrite_gltf(Scene& scene, const std::vector<MeshExtension>& extensions);

@@ -10,7 +10,7 @@ namespace fascia::formats {
 
 /// Landmarks as a file gives them: points on the skin, or on the bone, in the head file's axes.
 struct LandmarkFile {
-  std::string units;  ///< "m", "cm", "mm", metres a unit, or empty when the file does not say
+  std::string units;  ///< "m", "cm", "mm", metres per unit, or empty if the file does not say
   std::map<std::string, Vec3> points;
 };
 
@@ -18,11 +18,11 @@ enum class LandmarkSurface { skin, bone };
 
 /// Reads 3D Slicer Markups (`.mrk.json`; LPS taken as is, RAS with x and y negated) or
 /// `{"units":"mm","landmarks":{NAME:[x,y,z]}}`, where a landmark may also be
-/// `{"skin":[x,y,z],"bone":[x,y,z]}` as `fascia export` writes it; then the point on `surface` is taken, and
-/// a landmark without it is passed over.
+/// `{"skin":[x,y,z],"bone":[x,y,z]}` as `fascia export` writes it; then the point on `surface` is used, and a
+/// landmark without it is skipped.
 ///
-/// Throws fascia::Error naming the file and the entry when it is missing, not JSON, of another form,
-/// or a coordinate is not a finite number.
+/// Throws fascia::Error naming the file and the entry if it is missing, not JSON, of another structure, or a
+/// coordinate is not finite.
 LandmarkFile read_landmarks(const std::filesystem::path& path,
                             LandmarkSurface surface = LandmarkSurface::skin);
 

@@ -20,21 +20,22 @@ struct Shape {
   std::vector<ShapePart> parts;
 };
 
-/// When each shape weighs how much: of the file's first animation that moves weights. Meshes are animated
-/// each on its own, whatever their morph targets are called, so that here every mesh has its own shapes.
+/// Key frames of morph target weights, from the file's first animation that has any. Meshes are animated
+/// independently, even if their morph targets have equal names, so that every mesh has shapes of its own
+/// here.
 struct ShapeCurves {
-  std::vector<Shape> shapes;                 ///< one a morph target of an animated mesh
+  std::vector<Shape> shapes;                 ///< one per morph target of an animated mesh
   std::vector<double> times;                 ///< seconds, rising
-  std::vector<std::vector<double>> weights;  ///< by time, one a shape: beyond the base mesh's
+  std::vector<std::vector<double>> weights;  ///< by time, one per shape, relative to the base mesh
 };
 
-/// The morph targets of a glTF file, in the file's order, by `mesh.extras.targetNames`; of those alone whose
-/// names `is_wanted`, where it is given. Throws fascia::Error when an accessor is damaged or of a kind that
-/// is not read here.
+/// The morph targets of a glTF file, in the file's order, by `mesh.extras.targetNames`; optionally restricted
+/// to names that satisfy `is_wanted`. Throws fascia::Error if an accessor is damaged or of an unsupported
+/// type.
 std::vector<Shape> morph_shapes(const Scene& scene,
                                 const std::function<bool(const std::string& name)>& is_wanted = {});
 
-/// Key frames of the weights of morph targets; empty when nothing moves them. Throws as `morph_shapes`.
+/// Key frames of the weights of morph targets; empty if they are not animated. Throws as `morph_shapes`.
 ShapeCurves shape_curves(const Scene& scene);
 
 }  // namespace fascia::formats

@@ -7,12 +7,11 @@
 
 namespace fascia::formats {
 
-/// A file that is written beside its target, under a name no other has, and renamed into its place once it is
-/// whole; removed again otherwise, by an interrupted program too. Every step throws fascia::Error with the
-/// system's own words when it fails.
+/// A temporary file beside its target, renamed to the target when it is complete and removed otherwise, also
+/// by an interrupted program. Every step throws fascia::Error with the system's message on failure.
 class NewFile {
  public:
-  /// `target` may be a symbolic link: what it leads to is replaced.
+  /// `target` may be a symbolic link: its destination is replaced.
   explicit NewFile(const std::filesystem::path& target);
   NewFile(NewFile&& other) noexcept;
   NewFile& operator=(NewFile&&) = delete;
@@ -21,7 +20,7 @@ class NewFile {
   ~NewFile();
 
   void write(std::span<const uint8_t> bytes);
-  /// Flushes, closes and renames it, with the rights of the file that it replaces.
+  /// Flushes, closes and renames it, with the permissions of the file that it replaces.
   void put_in_place();
 
  private:
@@ -30,10 +29,10 @@ class NewFile {
   int file_ = -1;
 };
 
-/// Writes all of `bytes` to an open file; false with errno set when that fails.
+/// Writes all of `bytes` to an open file; false with errno set on failure.
 bool write_all(int file, std::span<const uint8_t> bytes);
 
-/// Throws fascia::Error of a path that cannot be written, in the words of errno's value `error`.
+/// Throws fascia::Error for a path that cannot be written, with the message of the errno value `error`.
 [[noreturn]] void fail_to_write(const std::filesystem::path& path, int error);
 
 }  // namespace fascia::formats

@@ -4,12 +4,12 @@
 
 namespace fascia::formats {
 
-/// Files that are being written beside their place, so that a program which is interrupted can take them
-/// away. Of more than 64 at a time, or paths of more than 4,095 bytes, the rest are not remembered.
+/// A register of temporary files, so that an interrupted program can delete them. At most 64 files at a time,
+/// with paths of at most 4,095 bytes, are registered.
 void remember_partial(const std::filesystem::path& path);
 void forget_partial(const std::filesystem::path& path);
 
-/// Deletes what is remembered. May be called in a signal handler.
+/// Deletes the registered files. May be called in a signal handler.
 void remove_partial_files();
 
 }  // namespace fascia::formats

@@ -8,10 +8,10 @@
 
 namespace fascia {
 
-/// While it lives, this thread's arithmetic is as IEEE 754 has it by default: rounded to nearest, subnormal
-/// numbers kept, no traps; afterwards it is the host's again, with the exceptions it had raised and no other.
-/// Hosts set other modes (flush to zero is common in audio and game engines), and the same frame has to come
-/// out under all of them.
+/// During its lifetime, this thread uses IEEE 754's default arithmetic: rounding to nearest, subnormal
+/// numbers, no traps; the destructor restores the host's mode, with the exception flags it had raised and no
+/// others. Hosts set other modes (flush to zero is common in audio and game engines), and results must not
+/// depend on them.
 class ArithmeticMode {
  public:
 #if defined(__SSE2__)

@@ -2,8 +2,9 @@
 
 #include <Eigen/Core>
 
-/// Products of matrices of any size, compiled once: Eigen's kernels take the compiler a second for every pair
-/// of types they multiply. Operands may be parts of matrices (`leftCols`, `block`); they are read in place.
+/// Products of dynamically sized matrices, compiled once: Eigen's kernels take the compiler a second for
+/// every pair of types they multiply. Operands may be parts of matrices (`leftCols`, `block`); they are read
+/// in place.
 namespace fascia::dense {
 
 using Matrix = Eigen::MatrixXd;

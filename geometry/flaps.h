@@ -4,17 +4,18 @@
 
 namespace fascia {
 
-/// Which triangles of `mesh` to keep so that as few edges as possible have more than two: small patches that
-/// hang on such an edge (fins, inner walls, left-over faces) are left out, smallest first. A patch is what
-/// hangs together across edges of two triangles; none larger than `largest` of the whole area goes.
+/// Selects the triangles of `mesh` to keep so that as few non-manifold edges as possible remain: small
+/// patches attached to such an edge (fins, inner walls, surplus faces) are removed, the smallest first. A
+/// patch is a set of triangles connected by manifold edges; none larger than the share `largest` of the total
+/// area is removed.
 ///
-/// Returns one flag a triangle, true where it stays.
+/// Returns one flag per triangle, true to keep it.
 std::vector<bool> without_flaps(const TriangleMesh& mesh, double largest = 0.02);
 
-/// Which triangles of `mesh` to turn over so that neighbours face the same way: in each patch of triangles
-/// that share edges by two, those on the side of less area. Edges of more than two triangles part patches.
+/// Selects the triangles of `mesh` to flip for a consistent orientation: in each patch connected by manifold
+/// edges, those of the orientation with less area.
 ///
-/// Returns one flag a triangle, true where it faces against its patch.
+/// Returns one flag per triangle, true to flip it.
 std::vector<bool> facing_against(const TriangleMesh& mesh);
 
 }  // namespace fascia

@@ -5,9 +5,9 @@
 
 namespace fascia {
 
-/// Runs `part` for 0 .. count - 1, in any order and perhaps side by side, and returns when all are done; what
-/// a part throws comes out. Who calls a room decides how: rooms themselves start no threads. Empty: one after
-/// the other.
+/// Runs `part` for 0 .. count - 1, in any order and possibly in parallel, and returns when all are done;
+/// exceptions are propagated. The caller of a module provides it: modules start no threads of their own.
+/// Empty: sequential.
 using ForEach = std::function<void(size_t count, const std::function<void(size_t)>& part)>;
 
 inline void run_each(const ForEach& for_each, size_t count, const std::function<void(size_t)>& part) {

@@ -40,19 +40,19 @@ struct Bounds {
 /// Position of `point` on `mesh`.
 Vec3 position(const TriangleMesh& mesh, const SurfacePoint& point);
 
-/// Unit normal of triangle `triangle`; zero when the triangle has no area.
+/// Unit normal of triangle `triangle`; zero for a degenerate triangle.
 Vec3 triangle_normal(const TriangleMesh& mesh, int triangle);
 
 /// Area of triangle `triangle`, in the square of the mesh's unit.
 double triangle_area(const TriangleMesh& mesh, int triangle);
 
-/// Area-weighted unit vertex normals, one a vertex; zero for vertices without area around them.
+/// Area-weighted unit vertex normals, one per vertex; zero for vertices without area around them.
 std::vector<Vec3> vertex_normals(const TriangleMesh& mesh);
 
-/// `point` carried by the affine map `map`.
+/// `point` transformed by the affine map `map`.
 Vec3 transform_point(const Mat4& map, const Vec3& point);
 
-/// Bounds of `points`; of no points, lower > upper.
+/// Bounds of `points`; without points, lower > upper.
 Bounds bounds(const std::vector<Vec3>& points);
 
 }  // namespace fascia

@@ -5,15 +5,15 @@
 
 namespace fascia {
 
-/// Those of `known` that look most like `name`, nearest first, `most` at the most; none when nothing is near.
-/// Case, separators (`-`, `_`, `.`, `:`, spaces) and the order of neighbouring letters count for little; a
-/// name that contains the other counts as near. Distance: optimal string alignment (Damerau 1964, "A
-/// technique for computer detection and correction of spelling errors").
+/// The names of `known` most similar to `name`, closest first, at most `most`; empty if none is similar.
+/// Case, separators (`-`, `_`, `.`, `:`, spaces) and transposed neighbouring letters cost little; a name that
+/// contains the other counts as similar. Distance: optimal string alignment (Damerau 1964, "A technique for
+/// computer detection and correction of spelling errors").
 std::vector<std::string> nearest_names(const std::string& name, const std::vector<std::string>& known,
                                        size_t most = 3);
 
-/// What to put behind an unknown name in a message: " (did you mean 'a', 'b' or 'c'?)", or nothing when none
-/// is near.
+/// A suffix for messages about unknown names: " (did you mean 'a', 'b' or 'c'?)", or empty if none is
+/// similar.
 std::string did_you_mean(const std::string& name, const std::vector<std::string>& known, size_t most = 3);
 
 }  // namespace fascia

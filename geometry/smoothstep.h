@@ -4,7 +4,7 @@
 
 namespace fascia {
 
-/// 0 up to `low`, 1 from `high` on (low < high), between them the cubic whose slope is 0 at both.
+/// 0 up to `low`, 1 from `high` on (low < high), in between the cubic with zero slope at both ends.
 inline double smoothstep(double low, double high, double x) {
   const double t = std::clamp((x - low) / (high - low), 0.0, 1.0);
   return t * t * (3.0 - 2.0 * t);

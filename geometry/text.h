@@ -6,13 +6,13 @@
 
 namespace fascia {
 
-/// `text` with A to Z as a to z; every other byte stays, in any locale.
+/// `text` with ASCII letters in lower case, independent of the locale.
 std::string lower_case(std::string_view text);
 
-/// The file name's ending in lower case with its dot, ".glb" of "Head.GLB"; empty where there is none.
+/// The file name's extension in lower case with its dot, ".glb" for "Head.GLB"; empty if there is none.
 std::string extension_of(const std::filesystem::path& path);
 
-/// `text` as HTML and XML show it: markup characters as entities, control characters that XML 1.0 forbids as
+/// `text` escaped for HTML and XML: markup characters as entities, control characters that XML 1.0 forbids as
 /// '?'.
 std::string escaped_markup(std::string_view text);
 

@@ -32,10 +32,10 @@ class Player {
   /// Poses of every channel alone at the end of its range, and of every shape of the rig's set `arkit`.
   std::vector<Pose> all_poses() const;
 
-  /// The balance of `values`, found from rest: what was posed before leaves no trace.
+  /// The static pose of `values`, solved from rest, independent of earlier poses.
   void pose(const Values& values);
-  /// The first frame of curves, at balance; then each after the other. False when the simulation was put
-  /// back to rest.
+  /// The first frame of curves as a static pose, then frame by frame. False if the simulation was reset to
+  /// rest.
   void begin(const fascia_curves* curves);
   bool step(const fascia_curves* curves, double time, double seconds);
 

@@ -12,8 +12,8 @@ namespace fascia::snapshot {
 
 /// A take's curves: the bytes of its file.
 struct TakeFile {
-  std::string name;  ///< as messages shall name it
-  std::string path;  ///< as the snapshot shall keep it
+  std::string name;  ///< name in messages
+  std::string path;  ///< path stored in the snapshot
   std::vector<uint8_t> bytes;
 };
 
@@ -29,17 +29,17 @@ struct Request {
   size_t frames_kept = 24;          ///< of each take at most, spread evenly
   RegionOptions region_options;
   int threads = 0;  ///< 0: as many as the machine has
-  /// Called as poses and takes are done, from any thread but one at a time: how many of how many.
+  /// Progress callback: number of finished poses and takes, and total; called from any thread, serialised.
   std::function<void(size_t done, size_t all)> progress;
 };
 
-/// Plays what `request` wants on the rig and keeps it. `name` is the rig's file, for messages. The numbers
-/// are the same at any number of threads. Throws fascia::Error.
+/// Plays the requested poses and takes on the rig and records them. `name` is the rig's file, for messages.
+/// The numbers are the same at any number of threads. Throws fascia::Error.
 Snapshot record(std::span<const uint8_t> rig, const std::string& name, const Request& request);
 
-/// Plays what `wanted` has, on `rig`: the same regions, poses and frames. `takes` has a file for each of
-/// wanted's takes, in order. Throws fascia::Error when the rig has not the meshes, channels or level, or a
-/// take is another file than was recorded.
+/// Records the regions, poses and frames of `wanted` on `rig`. `takes` has a file for each of wanted's takes,
+/// in order. Throws fascia::Error if the rig lacks the meshes, channels or level, or if a take's file has
+/// changed.
 Snapshot replay(std::span<const uint8_t> rig, const std::string& name, const Snapshot& wanted,
                 const std::vector<TakeFile>& takes, int threads,
                 const std::function<void(size_t done, size_t all)>& progress);

@@ -6,13 +6,13 @@
 #include <utility>
 #include <vector>
 
-/// Where a face's skin goes, kept as numbers: recorded once, checked ever after.
+/// Recorded displacements of a face's skin, for regression tests.
 namespace fascia::snapshot {
 
 /// A mesh of the rig's file that has watched vertices.
 struct Mesh {
-  uint32_t mesh = 0, primitive = 0;  ///< where it is in the file
-  uint32_t vertex_count = 0;         ///< to notice another mesh
+  uint32_t mesh = 0, primitive = 0;  ///< indices in the file
+  uint32_t vertex_count = 0;         ///< to detect a different mesh
 };
 
 /// A watched vertex.
@@ -23,14 +23,14 @@ struct Vertex {
   auto operator<=>(const Vertex&) const = default;
 };
 
-/// Vertices that are watched together, of one mesh or several.
+/// A group of watched vertices, of one mesh or several.
 struct Region {
   std::string name;
   std::vector<Vertex> vertices;  ///< ascending
-  double tolerance_mm = 0.0;     ///< root mean square difference that is still allowed
+  double tolerance_mm = 0.0;     ///< allowed root mean square difference
 };
 
-/// Values of channels or members of vocabularies by name: a pose at balance.
+/// Values of channels or members of vocabularies by name: a static pose.
 using Values = std::vector<std::pair<std::string, double>>;
 
 struct Pose {
@@ -38,7 +38,7 @@ struct Pose {
   Values values;
 };
 
-/// A file of curves that is simulated in time, and which frames of it are kept.
+/// A curves file that is simulated, and the frames that are recorded.
 struct Take {
   std::string name;                 ///< the file's own name
   std::string path;                 ///< from the snapshot's folder
@@ -58,7 +58,7 @@ struct Snapshot {
   std::string rig;    ///< formats::content_hash of the rig's file
   std::string level;  ///< low, medium or high
   double quantum_mm = 0.01;
-  std::vector<std::string> reasons;  ///< why it was recorded, and each time anew
+  std::vector<std::string> reasons;  ///< why it was recorded and updated
   std::vector<Mesh> meshes;
   std::vector<Region> regions;
   std::vector<Pose> poses;

@@ -8,7 +8,7 @@
 
 namespace fascia::view {
 
-/// A soft box: a bright round patch of the surroundings.
+/// A soft box: a bright disc in the environment.
 struct SoftBox {
   Vec3 direction;  ///< unit, toward it, in the scene's axes
   Vec3 radiance;   ///< linear
@@ -16,7 +16,7 @@ struct SoftBox {
       outer;  ///< cosines of the angles from its middle within which it is whole and beyond which gone
 };
 
-/// A photographer's room: graded walls, soft boxes, and the one light that casts shadows.
+/// A studio environment: graded walls, soft boxes, and one light that casts shadows.
 struct Environment {
   Vec3 ceiling, wall, floor;  ///< radiance of the room itself, linear
   std::vector<SoftBox> boxes;
@@ -24,7 +24,7 @@ struct Environment {
   Vec3 key_irradiance;     ///< on a surface that faces it, over pi
   double key_size = 0.12;  ///< half width of its penumbra's cone: tangent of its half angle
 
-  /// What is seen of the room in a direction (unit).
+  /// Radiance of the room from a direction (unit).
   Vec3 radiance(const Vec3& direction) const;
 };
 
@@ -35,7 +35,7 @@ Environment environment(const std::string& name);
 /// Hanrahan 2001, An efficient representation for irradiance environment maps.
 std::array<Vec3, 9> irradiance(const Environment& environment);
 
-/// The room blurred for reflections of roughness `roughness`: one face of a cube map after OpenGL's order,
+/// The room prefiltered for reflections of the given roughness: one face of a cube map in OpenGL's order,
 /// `size` x `size`, RGB. Karis 2013, Real shading in Unreal Engine 4.
 std::vector<float> reflection_face(const Environment& environment, int face, int size, double roughness);
 

@@ -10,7 +10,7 @@
 #include "geometry/mesh.h"
 #include "view/image.h"
 
-/// What is to be drawn: surfaces with their materials, lines, lights. Plain data, no OpenGL.
+/// A scene to draw: surfaces with materials, lines, lights. Plain data, no OpenGL.
 namespace fascia::view {
 
 /// An RGBA picture on a surface, rows from the top, wrapped around at its edges. Renderers keep their copy of
@@ -21,18 +21,18 @@ struct Texture {
   bool is_srgb = true;          ///< colours are; normals and roughness are linear
 };
 
-/// How light and a surface meet.
+/// Shading models.
 enum class Shading {
-  plain,   ///< rough or metallic stuff by its own figures
-  skin,    ///< light bleeds red through shadows' edges, thin parts glow, an oily sheen
+  plain,   ///< standard rough or metallic material
+  skin,    ///< subsurface scattering at shadow edges and thin parts, oily specular layer
   mucosa,  ///< skin under saliva
   tooth,   ///< enamel under saliva
   eye,     ///< an eyeball; without a colour map, iris and pupil are drawn after `eye_coordinates`
   hair,    ///< lashes, brows, hair
   bone,
   muscle,
-  xray,  ///< glass that is densest where it is seen edge on
-  data,  ///< heat maps: colours come out as they went in, form only hinted at
+  xray,  ///< transparent, most opaque at grazing angles
+  data,  ///< heat maps: colours are preserved, with weak shading
 };
 
 /// A surface to draw.
@@ -53,7 +53,7 @@ struct DrawSurface {
   std::shared_ptr<const Texture> colour_map, normal_map;
   std::shared_ptr<const Texture> surface_map;  ///< green roughness, blue metalness (glTF's order)
   double normal_strength = 1.0;
-  double alpha_cutoff = -1.0;  ///< 0 or more: what of the colour map is more transparent is left out
+  double alpha_cutoff = -1.0;  ///< 0 or more: alpha threshold of cut-outs
   bool is_blended = false;     ///< the colour map's transparency is blended
 
   /// Unit normals, one a vertex; none: from the triangles, smooth across `seams`.
@@ -80,10 +80,10 @@ struct DrawList {
   std::vector<DrawLines> lines;
 };
 
-/// How a picture is lit and finished.
+/// Lighting and post-processing of a picture.
 struct Look {
   Colour background = {38, 42, 48};
-  bool has_backdrop = false;     ///< the background fades toward its corners, as a lit wall does
+  bool has_backdrop = false;     ///< the background darkens toward its corners
   std::string light = "studio";  ///< studio, soft, dramatic, outdoor or flat (see environment.h)
   bool has_shadows = true;
   bool has_occlusion = true;  ///< ambient occlusion

@@ -7,7 +7,7 @@
 
 namespace fascia::geodesics {
 
-/// What a path went through, for logs and tests (THESIS names the counts of section 5.3.1).
+/// Statistics of a path, for logs and tests (the counts of Aina 2011, section 5.3.1).
 struct PathCounters {
   int traced_triangles = 0;        ///< triangles the first strip crosses
   bool cut = false;                ///< the projected trace stalled and the strip was cut by a plane instead
@@ -43,7 +43,7 @@ struct PathOptions {
   bool search_first = false;
 };
 
-/// Memory that paths reuse, so that only the first on a surface allocates: one a thread, given to every call.
+/// Scratch memory, so that only the first path on a surface allocates: one per thread, passed to every call.
 class Workspace {
  public:
   /// Strips: half-edges crossed, each in the triangle that is left.
@@ -68,12 +68,11 @@ class Workspace {
   std::vector<int> point_crossing;
 };
 
-/// The straightest path from `from` to `to` with both ends fixed: a strip of triangles by vector
-/// projection (section 5.2 of the thesis; by A* search over edges where that stalls), pulled straight
-/// at once by a funnel (section 5.3), and led around every vertex that shortens it (section 5.4),
-/// until at each vertex it passes both sides measure at least π. That is a locally shortest path; no
-/// homotopic change near it shortens it. After Aina 2011, chapter 5; Lee & Preparata 1984 (funnel);
-/// Xin & Wang 2007 (strips).
+/// The locally shortest path from `from` to `to`: a strip of triangles by vector projection (Aina 2011,
+/// section 5.2; by A* search over edges if that fails), straightened by the funnel algorithm (section 5.3),
+/// and rerouted around every vertex that shortens it (section 5.4), until at each vertex it passes both sides
+/// measure at least π. That is a locally shortest path; no homotopic change near it shortens it. After Aina
+/// 2011, chapter 5; Lee & Preparata 1984 (funnel); Xin & Wang 2007 (strips).
 ///
 /// The same points in reverse give the same path reversed, bit by bit. O(triangles crossed) a pass.
 /// Throws `Error` when the ends lie on parts that no chain of triangles connects.

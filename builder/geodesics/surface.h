@@ -7,14 +7,13 @@
 
 namespace fascia::geodesics {
 
-/// A surface made ready for geodesics: built once in O(n log n), read-only afterwards and safe to
-/// share between threads.
+/// A surface preprocessed for geodesics in O(n log n); immutable and safe to share between threads.
 ///
-/// Half-edge `3*t+e` runs from corner `e` of triangle `t` to corner `(e+1)%3`, the triangle on its
-/// left. All lengths and angles come from edge lengths alone, so a path depends on the surface's
-/// inner geometry only. Triangles without area are made proper by lengthening every edge by the same
-/// tiny amount (`mollification`, metres; Sharp & Crane 2020, "A Laplacian for Nonmanifold Triangle
-/// Meshes", section 4.5), at most 1e-10 of the mean edge length.
+/// Half-edge `3*t+e` runs from corner `e` of triangle `t` to corner `(e+1)%3`, the triangle on its left. All
+/// lengths and angles come from edge lengths alone, so a path depends on the surface's inner geometry only.
+/// Degenerate triangles are treated by lengthening every edge by the same tiny amount (`mollification`,
+/// metres; Sharp & Crane 2020, "A Laplacian for Nonmanifold Triangle Meshes", section 4.5), at most 1e-10 of
+/// the mean edge length.
 struct Surface {
   TriangleMesh mesh;
   /// The same edge in the neighbouring triangle, -1 at a boundary or a non-manifold edge.
@@ -25,7 +24,7 @@ struct Surface {
   std::vector<double> length;
   /// Angle of the triangle at the half-edge's origin, radians.
   std::vector<double> angle;
-  /// Piece of each triangle: triangles that no chain of shared edges joins have different numbers.
+  /// Connected component of each triangle, by shared edges.
   std::vector<int> piece;
   double mollification = 0.0;
 

@@ -11,14 +11,13 @@
 
 namespace fascia::landmarks {
 
-/// All skin landmarks of `anatomy` on this head: the given ones as they are, the others carried over from the
-/// generic head by the thin-plate spline through the given ones and put on the skin.
+/// All skin landmarks of `anatomy` on this head: the given ones unchanged, the others mapped from the generic
+/// head by the thin-plate spline through the given ones and projected onto the skin.
 ///
-/// `skin` is the welded skin, metres, rig frame. A carried landmark's confidence falls with its distance from
-/// the given ones and with how far from the skin the spline left it. Given names that the anatomy does not
-/// know are kept out and listed in `unknown` when not null. Throws fascia::Error naming the landmarks when
-/// required ones are missing and cannot be carried over: fewer than four known ones are given, or they lie in
-/// one plane.
+/// `skin` is the welded skin, metres, rig frame. The confidence of a mapped landmark decreases with its
+/// distance from the given ones and with the distance of its projection. Given names unknown to the anatomy
+/// are ignored and listed in `unknown` if not null. Throws fascia::Error naming the landmarks when required
+/// ones are missing and cannot be mapped: fewer than four known ones are given, or they are coplanar.
 std::map<std::string, SkinLandmark> complete(const std::map<std::string, Vec3>& given,
                                              const anatomy::GenericAnatomy& anatomy,
                                              const spatial::SurfaceQuery& skin,

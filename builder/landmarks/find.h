@@ -14,9 +14,8 @@
 
 namespace fascia::landmarks {
 
-/// The required landmarks where the coarse fit carries them: beside the mesh by a few millimetres, in its own
-/// axes and units. Enough to tell units, axes and parts by. Those that fall beyond the edge of a mesh that is
-/// part of a head are left out.
+/// The required landmarks as mapped by the coarse fit, a few millimetres off the mesh, in its axes and units:
+/// accurate enough to determine units, axes and parts. Those beyond the edge of a partial head are omitted.
 std::map<std::string, Vec3> rough_landmarks(const GenericFace& face, const anatomy::GenericAnatomy& anatomy,
                                             const FoundHead& found);
 
@@ -25,7 +24,7 @@ struct KnownEyes {
   std::optional<Ball> left, right;
 };
 
-/// Landmarks, and the generic head bent onto the skin, by which anything else of it can be carried over.
+/// Landmarks, and the generic head deformed onto the skin, which maps everything else.
 struct FoundFace {
   std::map<std::string, SkinLandmark> landmarks;
   Registration fit;
@@ -34,11 +33,11 @@ struct FoundFace {
 
 /// All skin landmarks of `anatomy` on `skin`, the welded skin in metres, rig frame.
 ///
-/// The generic head settles on the skin near `start` (same frame) and is bent onto it; the corners and
-/// margins of open lids are looked for where the fit says the eyes are and steer it on; `given` landmarks
-/// (same frame) are kept as they are and steer it too. A found one's confidence falls with the distance that
-/// the fit leaves about it; one that falls more than 8 mm beyond the edge of the mesh stays beside it, where
-/// the bent generic head has it, with little confidence.
+/// The generic head is registered to the skin from `start` (same frame) and deformed onto it; the corners and
+/// margins of open lids are detected near the fitted eyes and constrain the fit; `given` landmarks (same
+/// frame) are kept and are constraints too. The confidence of a detected landmark decreases with the residual
+/// of the fit around it; one more than 8 mm beyond the edge of the mesh stays off the mesh, where the
+/// deformed generic head has it, with low confidence.
 FoundFace find(const GenericFace& face, const anatomy::GenericAnatomy& anatomy,
                const spatial::SurfaceQuery& skin, const Placement& start,
                const std::map<std::string, Vec3>& given = {}, const KnownEyes& eyes = {});

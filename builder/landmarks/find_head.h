@@ -17,24 +17,24 @@ struct FoundHead {
   Likeness likeness;
   size_t surface = 0;          ///< which of the surfaces searched
   bool is_inside_out = false;  ///< its triangles face inward
-  bool is_doubtful = false;    ///< less like a face than people's are: to be looked at
+  bool is_doubtful = false;    ///< a low face score: to be inspected
 };
 
-/// What is known of a head before it is looked for.
+/// Prior information about the pose of a head.
 struct HeadHints {
-  std::vector<Anchor> given;  ///< places of landmarks; two and more tell where the head stands
+  std::vector<Anchor> given;  ///< given landmarks; two or more determine the pose
   std::optional<Vec3> up;     ///< unit vector, the meshes' axes: the crown is within 60 degrees of it
 };
 
 /// Finds the head in `surfaces`, which share axes and units: any pose, size and place; a bust, a whole body,
-/// or a face alone. They are ways to look at one file (all of it, without hair and clothes, mesh by mesh),
-/// likely ones first: the search ends with the first face that is beyond doubt, else takes the best.
+/// or a face alone. They are subsets of one file (all of it, without hair and clothes, mesh by mesh), the
+/// most likely first: the search ends with the first conclusive face, otherwise the best is used.
 ///
-/// Where a head may stand is told by round lumps, by pairs of eyeballs, by what stands out as a nose does,
-/// and by the given landmarks, which leave nothing to search where there are two and more. On each such place
-/// the generic head is drawn close by iterative closest points, then bent onto the mesh a little, and how
-/// face-like that is (Likeness::score) decides, the same for all. Throws fascia::Error when nothing is like a
-/// face and fewer than two landmarks are given; `path` names the file in the message.
+/// Candidates come from round lumps, pairs of eyeballs, nose-like protrusions, and the given landmarks, of
+/// which two or more determine the pose. Each candidate is refined by iterative closest points, the generic
+/// head is deformed slightly onto the mesh, and the candidates are compared by Likeness::score. Throws
+/// fascia::Error if nothing resembles a face and fewer than two landmarks are given; `path` names the file in
+/// the message.
 FoundHead find_head(const GenericFace& face, std::span<const TriangleMesh> surfaces, const std::string& path,
                     const HeadHints& hints = {});
 

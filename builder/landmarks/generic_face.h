@@ -8,17 +8,17 @@
 
 namespace fascia::landmarks {
 
-/// How far a surface stands out of its surroundings at each of some points, at two scales (see likeness.h).
+/// Height of a surface above its surroundings at some points, at two scales (see likeness.h).
 struct Relief {
   std::vector<double> fine, broad;
 };
 
-/// The generic head as what is compared with a mesh: points of its outer skin, dense about eyes, nose and
+/// The generic head as it is registered to a mesh: points of its outer skin, dense around eyes, nose and
 /// mouth.
 struct GenericFace {
   Samples points;                         ///< metres, rig frame; mirror-symmetric about x = 0
   std::vector<int> mirror;                ///< the other side's point; a midline point's own index
-  std::vector<double> weights;            ///< what a point says about the head's place: 1 face .. 0 neck
+  std::vector<double> weights;            ///< weight of a point in the registration: 1 face .. 0 neck
   std::vector<bool> is_face;              ///< in front of the ears, between hairline and chin
   std::vector<bool> is_feature;           ///< about eyes, nose and mouth
   Relief relief;                          ///< at `points`

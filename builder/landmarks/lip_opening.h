@@ -14,7 +14,7 @@ struct MouthRegion {
   Vec3 forward;      ///< of the head
 };
 
-/// How a skin hangs together: found once for all mouths that are looked for on it.
+/// Connectivity of a skin, computed once for all searches on it.
 struct SkinLinks {
   explicit SkinLinks(const TriangleMesh& skin);
   Connectivity triangles;
@@ -26,9 +26,9 @@ struct LipOpening {
   Vec3 left, right;  ///< on the skin
 };
 
-/// Looks at the mouth from the front, column by column: where the way over the skin from one line of sight to
-/// the one below leads through the inside of the mouth or around its corners, the lips part. Nothing where
-/// they are one surface, or no run of such columns lies about the middle. `links` are those of `skin`.
+/// Casts rays at the mouth from the front, column by column: where the path on the skin from one hit to the
+/// one below leads through the oral cavity or around the corners, the lips part. Nothing if the lips are one
+/// surface, or if there is no run of such columns around the middle. `links` are those of `skin`.
 std::optional<LipOpening> lip_opening(const spatial::SurfaceQuery& skin, const SkinLinks& links,
                                       const MouthRegion& mouth);
 

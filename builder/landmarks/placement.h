@@ -6,7 +6,7 @@
 
 namespace fascia::landmarks {
 
-/// Where the generic head stands on a mesh: a point x of it lies at scale * rotation * x + shift.
+/// Pose of the generic head on a mesh: its point x is mapped to scale * rotation * x + shift.
 struct Placement {
   double scale = 1.0;
   Mat3 rotation = Mat3::Identity();
@@ -15,7 +15,7 @@ struct Placement {
   Vec3 inverse(const Vec3& y) const { return rotation.transpose() * (y - shift) / scale; }
 };
 
-/// A point of the generic head that must come to lie at a known one of the target.
+/// A correspondence between a point of the generic head and a known point of the target.
 struct Anchor {
   Vec3 generic, target;  ///< generic head's frame; mesh's frame
   double weight = 1.0;   ///< of a correspondence found is at most 1

@@ -10,20 +10,21 @@ namespace fascia::landmarks {
 /// One stage of the fit.
 struct RegistrationStage {
   double lambda;  ///< smoothing of the thin plate, metres; about (smoothing length)^3 / (point spacing)^2
-  int stride;     ///< takes every so many points of the generic face; points of the last stage are judged
-  int rounds;     ///< closest points and spline anew, so often
+  int stride;     ///< uses every stride-th point of the generic face; residuals are those of the last stage
+  int rounds;     ///< number of iterations of closest points and spline
 };
 
 struct RegistrationOptions {
   std::vector<RegistrationStage> stages;
   double reach = 0.03,
-         last_reach = 0.006;  ///< correspondences farther than this count for nothing: first, last stage
+         last_reach = 0.006;  ///< correspondences farther than this are ignored: first, last stage
 };
 
-/// A few stiff stages on few points: to tell a face by, and where its parts are to a few millimetres.
+/// A few stiff stages on few points: sufficient for a face score, and for the location of parts within a few
+/// millimetres.
 RegistrationOptions coarse_fit();
 
-/// The generic head bent onto a mesh.
+/// The generic head deformed onto a mesh.
 struct Registration {
   Placement placement;
   splines::Warp warp;              ///< generic head's frame onto itself; `placement` leads on to the mesh
@@ -38,17 +39,17 @@ struct Registration {
   Vec3 operator()(const Vec3& generic) const { return placement(warp(generic)); }
 };
 
-/// Bends the generic head by thin-plate splines onto `target` (its frame: the mesh's): correspondences run
-/// from a generic point to the nearest target samples that face the same way, averaged over their tangent
-/// plane, so that points are free to slide; the plate softens from stage to stage. `start` is a warp to go on
-/// from.
+/// Deforms the generic head by thin-plate splines onto `target` (in the mesh's frame): correspondences are
+/// from a generic point to the nearest target samples with compatible normals, averaged over their tangent
+/// plane, so that points are free to slide; stiffness decreases from stage to stage. `start` is an initial
+/// warp.
 Registration register_face(const GenericFace& face, const Samples& target, const Placement& placement,
                            const std::vector<Anchor>& anchors = {},
                            const RegistrationOptions& options = coarse_fit(),
                            const splines::Warp& start = {});
 
-/// The similarity that `fit` moved, turned and grew the face by on the whole; what is then left to bend is
-/// proportions. Whatever placement a fit began from, a few rounds of this lead to the same one.
+/// The similarity transform contained in the deformation of `fit`; the remaining deformation is that of
+/// proportions. A few iterations converge to the same placement from any start.
 Placement similarity_of(const GenericFace& face, const Registration& fit);
 
 /// Metres along the surface from which on a point is beyond the mesh's edge: samples are some 4 mm apart.

@@ -20,19 +20,18 @@ struct Samples {
   }
 };
 
-/// A ball of space; radius 0 stands for all of it.
+/// A ball; radius 0 stands for all of space.
 struct Ball {
   Vec3 centre = Vec3::Zero();
   double radius = 0.0;
 };
 
-/// About `count` points spread evenly by area over the triangles whose first corner is in `within`, always
-/// the same ones for the same mesh. Triangles without area and coordinates that are not finite are passed
-/// over.
+/// About `count` points spread evenly by area over the triangles whose first corner is in `within`,
+/// deterministic for a given mesh. Degenerate triangles and coordinates that are not finite are skipped.
 Samples sample_evenly(const TriangleMesh& mesh, int count, const Ball& within = {});
 
 /// Those of `samples` from which the ray along the normal leaves `surface`: the lining of mouth, nose and
-/// sockets, and what lies inside the head, drop out.
+/// sockets, and what lies inside the head, are excluded.
 Samples open_samples(const Samples& samples, const spatial::SurfaceQuery& surface);
 
 /// True when the normals of `surface` point inward by and large: from most of `samples` the ray against the
@@ -52,7 +51,7 @@ class Neighbours {
   /// Index of the nearest sample, with its squared distance, where it lies within `radius` of `point`.
   std::optional<std::pair<size_t, double>> nearest_within(const Vec3& point, double radius) const;
 
-  /// Indices of the samples within `radius` of `point`, in no order of note.
+  /// Indices of the samples within `radius` of `point`, in no particular order.
   void within(const Vec3& point, double radius, std::vector<size_t>& indices) const;
 
  private:

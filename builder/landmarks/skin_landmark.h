@@ -9,13 +9,13 @@ namespace fascia::landmarks {
 
 /// A landmark on the skin of this head.
 struct SkinLandmark {
-  Vec3 position = Vec3::Zero();  ///< metres, on the skin; beside it where the mesh ends before
-  double confidence = 1.0;       ///< 1: given by hand; less: found, or carried over from the generic head
+  Vec3 position = Vec3::Zero();  ///< metres, on the skin; off it where the mesh ends before
+  double confidence = 1.0;       ///< 1: given; less: detected, or mapped from the generic head
   bool is_given = true;
 };
 
-/// The skin point that stands for a carried one: the nearest that faces as `normal` does, so that nothing
-/// lands on the lining of mouth or lids; the nearest of all when none does.
+/// Projection of a mapped point onto the skin: the nearest point with a normal compatible with `normal`, so
+/// that nothing is projected onto the lining of mouth or lids; otherwise the nearest of all.
 std::optional<spatial::ClosestPoint> facing_point(const spatial::SurfaceQuery& skin, const Vec3& carried,
                                                   const Vec3& normal);
 

@@ -11,25 +11,25 @@ namespace fascia::landmarks {
 
 using spatial::MirrorPlane;
 
-/// The mirror plane of a face, and how well the face lies on its own image across it.
+/// The symmetry plane of a face, and how well the face matches its mirror image.
 struct FaceMirror {
   MirrorPlane plane;
-  bool is_exact = false;  ///< as modelled heads are; else as people are
+  bool is_exact = false;  ///< as in modelled heads; otherwise approximate, as in people
 };
 
-/// The mirror plane of a face whose two sides are more or less alike: drawn onto the skin about the landmarks
-/// between it and its mirror image. Nothing when a tenth of the places tried are farther from their image
-/// than two millimetres of an adult's face.
+/// The symmetry plane of an approximately symmetric face: registered between the skin around the landmarks
+/// and its mirror image. Nothing if a tenth of the tested points are farther from their image than two
+/// millimetres of an adult's face.
 std::optional<FaceMirror> face_mirror(const std::map<std::string, SkinLandmark>& landmarks,
                                       const spatial::SurfaceQuery& skin);
 
-/// Makes found landmarks of both sides each other's images, and puts those of the midline onto it; on a face
-/// that is no exact mirror image, only what was found more than three millimetres of an adult's face apart.
-/// What was given by hand stays, and so does what would leave the skin. Returns how many were moved.
+/// Makes detected landmarks of both sides symmetric, and moves those of the midline onto the plane; on an
+/// approximately symmetric face, only those more than three millimetres of an adult's face apart. Given
+/// landmarks stay, and so do those that would leave the skin. Returns the number of moved landmarks.
 int make_symmetric(const FaceMirror& mirror, const spatial::SurfaceQuery& skin,
                    std::map<std::string, SkinLandmark>& landmarks);
 
-/// The least turn that leads the plane's normal to the rig frame's left.
+/// The smallest rotation of the plane's normal to the rig frame's left.
 Mat3 upright(const MirrorPlane& plane);
 
 }  // namespace fascia::landmarks

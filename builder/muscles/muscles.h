@@ -13,7 +13,7 @@
 
 namespace fascia::muscles {
 
-/// A point of a fibre, where it lies and how it hangs on the SMAS.
+/// A point of a fibre, and its binding to the SMAS.
 struct FibrePoint {
   Vec3 position = Vec3::Zero();  ///< metres
   /// Nearest place of the SMAS, and the height over it along the SMAS' smooth normal (negative: deeper),
@@ -37,7 +37,7 @@ struct Muscle {
   anatomy::MuscleKind kind = anatomy::MuscleKind::strap;
   anatomy::Attachment origin_on = anatomy::Attachment::smas, insertion_on = anatomy::Attachment::smas;
   std::vector<Vec3> origin, insertion;  ///< the regions carried to this head, metres; empty for rings
-  std::vector<Fibre> fibres;            ///< side by side, no two of them cross
+  std::vector<Fibre> fibres;            ///< in order; no two of them cross
   int bundles = 1;
   double peak_shortening = 0.0;
   double strength = 0.0;       ///< force at full activation, newton, all fibres together
@@ -46,13 +46,14 @@ struct Muscle {
   double area = 0.0;                                        ///< of the sheet the fibres span, square metres
   double volume = 0.0;                                      ///< cross-section times mean length, cubic metres
   double thickness = 0.0;                                   ///< volume over area, metres; 0 without an area
-  /// Farthest fibre end from what the muscle is fastened to there (bone, skin, or the SMAS, as the modiolus
-  /// is in it), metres; 0 where that is no surface of this head (hyoid, fascia, galea, tarsus).
+  /// Largest distance of a fibre end from its surface of attachment (bone, skin, or the SMAS, which contains
+  /// the modiolus), metres; 0 if that is not a surface of this head (hyoid, fascia, galea, tarsus).
   double origin_distance = 0.0, insertion_distance = 0.0;
   int crossings = 0;  ///< places where two of its fibres cross; see crossings()
 };
 
-/// What the muscles are laid on. Meshes and landmarks in metres, in this head's frame: face along +Z, +Y up.
+/// Surfaces and landmarks that muscles are placed on. Meshes and landmarks in metres, in this head's frame:
+/// face along +Z, +Y up.
 struct Inputs {
   const TriangleMesh* smas = nullptr;
   const spatial::SurfaceQuery* skin = nullptr;
@@ -66,13 +67,13 @@ struct Inputs {
   std::span<const anatomy::Muscle> muscles;
 };
 
-/// A region drawn on this head that stands for the generic one.
+/// A region drawn on this head that replaces the generic one.
 struct Sketch {
   std::vector<Vec3> points;  ///< metres, on the head: its skin, its SMAS or its bones
-  bool is_curve = false;     ///< they go round the region in order; else they lie anywhere in it
+  bool is_curve = false;     ///< its boundary in order; otherwise points anywhere in it
 };
 
-/// What a user changed of one muscle.
+/// The user's changes to one muscle.
 struct Edit {
   double strength = 1.0;  ///< times the generic strength
   double width = 1.0;     ///< times the width of both regions across the course, or of a ring's band
@@ -101,8 +102,7 @@ struct Options {
   double modiolus_radius = 0.005;
 };
 
-/// The node lateral to a corner of the mouth in which muscles are interwoven; what one of them pulls, the
-/// others feel.
+/// The node lateral to a corner of the mouth in which muscles are interwoven and mechanically coupled.
 struct Modiolus {
   std::string name;  ///< modiolus_left or modiolus_right
   anatomy::Side side = anatomy::Side::left;
@@ -117,16 +117,15 @@ struct Result {
   std::vector<std::string> warnings;
 };
 
-/// Lays every muscle of `inputs.muscles` on this head (thesis section 7.2): its regions are carried over
-/// by the warp, their geodesic hulls on the SMAS joined by mutual tangents, and fibres drawn between the
+/// Places every muscle of `inputs.muscles` on this head (Aina 2011, section 7.2): its regions are mapped by
+/// the warp, their geodesic hulls on the SMAS joined by common tangents, and fibres constructed between the
 /// facing arcs as boundary-value geodesics, each point at its depth between skin and bone. Sphincters are
-/// rings at constant distance from the orifice, compressors run across them. Muscles that lie deep or
-/// away from the SMAS (chewing, tongue base, orbit), or whose way an opening of it bars (depressor septi),
-/// run from region to region through their waypoints. Fibres of one muscle that would cross are put in order.
-/// A muscle that cannot be laid on this head is left out and named in `Result::warnings`, with the reason.
-/// Throws `Error` naming the muscle when inputs are missing, an edit names no muscle, or a region of an
-/// edited muscle makes no sense: a sketch with fewer than three points, off the head, of no extent, or whose
-/// curve crosses itself.
+/// rings at constant distance from the orifice, compressors run across them. Muscles that lie deep or away
+/// from the SMAS (chewing, tongue base, orbit), or are obstructed by an opening of it (depressor septi), run
+/// from region to region through their waypoints. Crossing fibres of one muscle are reordered. A muscle that
+/// cannot be placed on this head is omitted and named in `Result::warnings`, with the reason. Throws `Error`
+/// naming the muscle when inputs are missing, an edit names no muscle, or a region of an edited muscle is
+/// invalid: a sketch with fewer than three points, off the head, of no extent, or whose curve crosses itself.
 Result build(const Inputs& inputs, const Options& options = {});
 
 /// Sets lengths, area, volume and thickness of `muscle` from its fibres.

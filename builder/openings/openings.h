@@ -9,26 +9,26 @@
 #include "formats/extend.h"
 #include "formats/scene.h"
 
-/// Heads whose lips or lids are one closed surface, as most scans have them: parted, lined and given what
-/// lies behind, so that they open like others.
+/// Cutting open heads whose lips or lids are one closed surface, as in most scans, and adding linings, teeth
+/// and eyeballs.
 namespace fascia::openings {
 
 struct OpeningOptions {
-  std::string open = "auto";                ///< auto: closed lips and lids are parted; never
+  std::string open = "auto";                ///< auto: closed lips and lids are cut open; never
   std::vector<std::string> add = {"auto"};  ///< auto, none, or any of mouth, teeth, tongue, eyes
 };
 
-/// Throws fascia::Error naming the word when `options` has one that is not known.
+/// Throws fascia::Error naming an unknown word in `options`.
 void check(const OpeningOptions& options);
 
-/// What was done to one opening.
+/// Changes made at one opening.
 struct Parted {
   std::string name;  ///< mouth, eye_left or eye_right
   int vertices = 0;  ///< appended along the cut and for its lining
   double width_mm = 0.0, clearness = 0.0;
 };
 
-/// What was done to a head, and how to write its file anew.
+/// Changes made to a head, and the data to rewrite its file.
 struct OpenedHead {
   formats::Scene scene;                            ///< with what was appended; its document not yet
   std::vector<formats::MeshExtension> extensions;  ///< one for each mesh of the scene that came
@@ -39,8 +39,8 @@ struct OpenedHead {
   bool changed() const { return !parted.empty() || !added.empty(); }
 };
 
-/// Parts lips and lids of `head` where they are closed, lines them, and adds eyeballs behind lids that were
-/// closed or as `options` asks; `head` is brought up to date in its meshes, skin and eyes.
+/// Cuts open closed lips and lids of `head`, adds linings, and adds eyeballs behind lids that were closed or
+/// as requested by `options`; the meshes, skin and eyes of `head` are updated.
 ///
 /// `scene` is the file that `head` was prepared from, `landmarks` lie on its skin (metres, rig frame).
 /// `is_inside_out`: the file's triangles face inward and those of `head` were turned. The vertices that were

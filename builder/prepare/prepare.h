@@ -11,10 +11,10 @@
 #include "formats/scene.h"
 #include "geometry/mesh.h"
 
-/// The first stage: from a mesh file as it came to a head whose units, axes and parts are known.
+/// The first stage: from a mesh file to a head with known units, axes and parts.
 namespace fascia::prepare {
 
-/// What a piece of the input is; it decides what the piece follows when the face moves.
+/// The class of a piece of the input, which determines what it follows when the face moves.
 enum class Part {
   skin,
   eye_left,
@@ -29,9 +29,9 @@ enum class Part {
   lashes,
   brows,
   hair,
-  glasses,  ///< sit on the skull
+  glasses,  ///< fixed to the skull
   clothes,  ///< stay where they are
-  other     ///< rest of a body: stays where it is, but for what clings to the face
+  other     ///< rest of a body: fixed, except pieces close to the face
 };
 
 /// Name as it stands in files: skin, eye_left, teeth_upper, ...
@@ -84,10 +84,10 @@ formats::LandmarkFile in_file_units(const formats::Scene& scene, const formats::
 /// not empty. Throws fascia::Error, naming the meshes there are, when `only` names none.
 TriangleMesh joined_meshes(const formats::Scene& scene, const std::string& only = "");
 
-/// Ways to look at `scene` for a head, likely ones first, in the file's axes and units: all of it without the
-/// meshes whose names say hair, clothes, glasses, lashes or brows; all of it; then its largest meshes one by
-/// one, for hair and hats that no name tells. The mesh named `only` alone when that is not empty. Throws as
-/// `joined_meshes` does.
+/// Subsets of `scene` to search for a head, the most likely first, in the file's axes and units: all of it
+/// without the meshes whose names say hair, clothes, glasses, lashes or brows; all of it; then its largest
+/// meshes one by one, for hair and hats that no name tells. The mesh named `only` alone when that is not
+/// empty. Throws as `joined_meshes` does.
 std::vector<TriangleMesh> search_surfaces(const formats::Scene& scene, const std::string& only = "");
 
 /// Finds units, axes and parts of `scene`, and welds its skin.

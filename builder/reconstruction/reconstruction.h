@@ -37,12 +37,12 @@ struct Result {
   std::vector<Vec3> place(const skull::BoneMap& map, std::span<const Vec3> generic) const;
 };
 
-/// Puts skin over the skull `scan`. Throws fascia::Error when no skull is found in it, an option is out of
-/// range, or the table is not known.
+/// Reconstructs skin over the skull `scan`. Throws fascia::Error when no skull is found in it, an option is
+/// out of range, or the table is not known.
 Result reconstruct(const anatomy::GenericAnatomy& anatomy, const TriangleMesh& scan,
                    const Options& options = {});
 
-/// Who the skull belonged to, as far as it is known; empty: not known.
+/// Known attributes of the person; empty: unknown.
 struct Person {
   std::string sex, age, ancestry;  ///< female or male; a table's own words for the others, such as adult
 };

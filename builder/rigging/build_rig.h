@@ -15,7 +15,7 @@
 #include "geometry/for_each.h"
 #include "rig/model/rig.h"
 
-/// The whole way from a head mesh to its rig, stage after stage.
+/// The complete build of a rig from a head mesh, stage by stage.
 namespace fascia::rigging {
 
 struct BuildOptions {

@@ -10,7 +10,7 @@
 #include "builder/muscles/muscles.h"
 #include "formats/landmark_file.h"
 
-/// What a user changed by hand, kept in a file of its own so that it holds for every rebuild of the head.
+/// The user's edits, stored in a file of their own that applies to every rebuild of the head.
 namespace fascia::rigging {
 
 /// Changes to one muscle, to a whole with all its parts, or to both sides of it. Points in the head file's

@@ -13,14 +13,14 @@
 #include "builder/tissue/inputs.h"
 #include "rig/model/rig.h"
 
-/// Between the stages: each takes what the stages before made in their own terms and hands it on in the next
-/// one's, or in the rig's.
+/// Adapters between the stages: each converts the results of previous stages to the inputs of the next one,
+/// or to the rig.
 namespace fascia::rigging {
 
 using SkinLandmarks = std::map<std::string, landmarks::SkinLandmark>;
 using Points = std::map<std::string, Vec3>;
 
-/// Parts closed lips and lids of the head that `found` has, as `options` say, and brings it up to date.
+/// Cuts open closed lips and lids of the head in `found` according to `options`, and updates it.
 openings::OpenedHead open_head(const formats::Scene& scene, FoundLandmarks& found,
                                const anatomy::GenericAnatomy& anatomy, const BuildOptions& options);
 

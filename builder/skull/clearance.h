@@ -8,7 +8,7 @@
 
 namespace fascia::skull {
 
-/// Where bone comes nearer to the outer skin than it may.
+/// A violation of the clearance between bone and outer skin.
 struct Violation {
   int vertex = 0;
   double missing = 0;          ///< m to move to reach the clearance
@@ -30,8 +30,8 @@ std::vector<SkinOver> skin_over(const Generic& generic, std::span<const Vec3> po
 /// Clearance asked of each point: `options.clearance_share` of the scaled depth, at least the floor.
 std::vector<double> clearances(std::span<const SkinOver> over, const FitOptions& options);
 
-/// Checks moving vertices against the outer skin again and again. Distances change no faster than vertices
-/// move, so a vertex that was deep enough is not measured again until it could have come near.
+/// Repeatedly checks moving vertices against the outer skin. Distances change no faster than vertices move,
+/// so a sufficiently deep vertex is not measured again until it could have come close.
 class ClearanceCheck {
  public:
   /// `outward`: of each vertex, unit and already turned to the head, or zero. Skin that does not face that

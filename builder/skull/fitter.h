@@ -8,8 +8,8 @@
 
 namespace fascia::skull {
 
-/// A skull fit that stays ready: what depends on the generic and on which landmarks there are is factored
-/// once, so that a landmark moved by hand, or a depth scaled, is followed at interactive rates.
+/// An interactive skull fit: everything that depends on the generic skull and the set of landmarks is
+/// factored once, so that moving a landmark or scaling a depth updates the fit at interactive rates.
 ///
 /// The constraints that keep bone inside the skin are chosen once, in the constructor, and afterwards follow
 /// the skin; vertex by vertex the correction is always made anew. After a large change make a new Fitter.

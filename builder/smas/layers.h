@@ -19,8 +19,7 @@ using LayerSample = anatomy::SmasDepth;
 class LayerDepth {
  public:
   /// `table`: an adult's `anatomy::Tissue::smas_depths`. `scale`: size of this face relative to an adult's;
-  /// free depths are multiplied by it.
-  /// @throws Error when none of the table's landmarks is there.
+  /// free depths are multiplied by it. @throws Error if none of the table's landmarks is given.
   LayerDepth(const std::vector<LayerSample>& table, const anatomy::mechanics::SmasShape& shape,
              const Landmarks& landmarks, double scale);
 

@@ -8,7 +8,7 @@
 
 namespace fascia::spatial {
 
-/// The plane that a surface is more or less the same on both sides of.
+/// A plane of approximate mirror symmetry of a surface.
 struct MirrorPlane {
   Vec3 point = Vec3::Zero(), normal = Vec3::UnitX();  ///< normal: unit, to the left
   double distance(const Vec3& p) const { return normal.dot(p - point); }
@@ -17,14 +17,14 @@ struct MirrorPlane {
   Vec3 turned(const Vec3& way) const { return way - 2.0 * normal.dot(way) * normal; }  ///< of a direction
 };
 
-/// A plane, and how well the surface lies on its own image across it.
+/// A plane, and how well the surface matches its mirror image.
 struct MirrorFit {
   MirrorPlane plane;
   std::vector<double> apart;  ///< of the places whose image has the surface within reach: how far from it
 
-  /// The distance that one in ten of `apart` exceeds; infinite of none.
+  /// 90th percentile of `apart`; infinite if empty.
   double most_apart() const;
-  /// Whether four in five of the places that were tried, and a dozen at least, have an image to speak of.
+  /// Whether at least four in five of the tested points, and at least a dozen, have an image.
   bool covers(size_t tried) const { return apart.size() >= 12 && 5 * apart.size() >= 4 * tried; }
 };
 

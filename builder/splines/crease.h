@@ -1,6 +1,6 @@
 #pragma once
 
-// Creases: where a deformation presses or stretches its grid most.
+// Creases: extremes of compression and stretch of a deformation.
 //
 // This work is based on:
 // F. Bookstein. Creases as local features of deformation grids. 2000

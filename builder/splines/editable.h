@@ -1,6 +1,6 @@
 #pragma once
 
-// A factored spline whose data come and go.
+// A factored spline with editable data.
 //
 // This work is based on:
 // P. Gill, W. Murray, M. Saunders, M. Wright. Sparse matrix methods in optimization (Schur-complement

@@ -1,6 +1,6 @@
 #pragma once
 
-// Does a deformation fold over, and what to do when it does.
+// Detection and correction of fold-over of a deformation.
 //
 // This work is based on:
 // S. Joshi, M. Miller. Landmark matching via large deformation diffeomorphisms. 2000 (small steps composed)
@@ -53,7 +53,7 @@ FoldReport check_folds(const WarpSequence& map, const Bounds& region, const Fold
 FoldReport check_folds(const Warp& map, const Bounds& region, const FoldOptions& options = {});
 
 enum class FoldRemedy {
-  compose,  ///< landmarks still arrive exactly: the way is walked in 2, 4, 8, ... steps, each without a fold
+  compose,  ///< landmarks are interpolated exactly: composition of 2, 4, 8, ... steps, each without a fold
   smooth,   ///< one spline that misses the landmarks by as little as the least sufficient lambda allows
 };
 

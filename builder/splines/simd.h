@@ -1,7 +1,7 @@
 #pragma once
 
-// The inner loops of splines, once for each width of vector unit; plain numbers only, so that no inline
-// function of a library is compiled for a machine that may not be there.
+// The inner loops of splines, once per instruction set; plain numbers only, so that no inline library
+// function is compiled for an unavailable instruction set.
 
 #include <cstddef>
 
@@ -66,7 +66,7 @@ struct Cholesky {
 };
 
 /// The widest of avx512, avx2 and the baseline that this processor runs; the environment variable
-/// FASCIA_SIMD=baseline|avx2 takes a narrower one.
+/// FASCIA_SIMD=baseline|avx2 selects a narrower one.
 struct Functions {
   const char* name;
   void (*sum)(const Sum&);

@@ -1,7 +1,7 @@
 #pragma once
 
 // Data that may move: semilandmarks that slide along curves and over surfaces, vectors of which only a part
-// is known. What is free is chosen so that the spline bends least.
+// is known. Free components are chosen to minimise the bending energy.
 //
 // This work is based on:
 // F. Bookstein. Landmark methods for forms without landmarks. 1997

@@ -7,12 +7,11 @@ namespace fascia::tissue {
 /// Index of the channel `name`, or -1.
 int channel_index(const std::vector<rig::Channel>& channels, const std::string& name);
 
-/// Lays each muscle's fibres onto the level's SMAS nodes. A muscle without a channel is left out.
+/// Binds each muscle's fibres to the level's SMAS nodes. A muscle without a channel is omitted.
 void add_fibres(const TissueInputs& inputs, const Columns& columns, rig::TissueLevel& level);
 
-/// Lids carried about the globe: `lid_upper_<side>` closes from 0 to 1 (below 0 it opens wider),
-/// `lid_lower_<side>` raises the lower lid, `eye_pitch_<side>` takes both lids along; and the globes they
-/// rest on.
+/// Rotation of the lids about the globe: `lid_upper_<side>` closes from 0 to 1 (below 0 it opens wider),
+/// `lid_lower_<side>` raises the lower lid, `eye_pitch_<side>` moves both lids; and the globes for contact.
 void add_lids(const TissueInputs& inputs, const FaceRegion& region, const Columns& columns,
               rig::TissueLevel& level);
 
@@ -25,8 +24,8 @@ void add_pressures(const TissueInputs& inputs, const Columns& columns, rig::Tiss
 void add_lip_turns(const TissueInputs& inputs, const FaceRegion& region, const Beneath& beneath,
                    const Columns& columns, rig::TissueLevel& level);
 
-/// Lips drawn onto each other (`lip_seal_<side>`): strands from the edge of the one to that of the other,
-/// laid as fibres of the marginal orbicularis oris.
+/// Sealing of the lips (`lip_seal_<side>`): strands from the edge of one lip to that of the other, modelled
+/// as fibres of the marginal orbicularis oris.
 void add_lip_seal(const TissueInputs& inputs, const Columns& columns, rig::TissueLevel& level);
 
 /// Retaining ligaments from bone through the fascia to the skin: springs that only resist being stretched.
@@ -35,7 +34,7 @@ void add_ligaments(const TissueInputs& inputs, const Columns& columns, rig::Tiss
 /// Distance fields of the bones with their teeth, and which nodes may touch them.
 void add_contact(const TissueInputs& inputs, const Columns& columns, rig::TissueLevel& level);
 
-/// Lips before lips, lids before lids: which skin may touch which.
+/// Contact pairs between lips and between lids.
 void add_facing(const TissueInputs& inputs, const FaceRegion& region, const Columns& columns,
                 rig::TissueLevel& level);
 

@@ -4,20 +4,20 @@
 
 namespace fascia::tissue {
 
-/// What the bones behind the skin are: meshes with their teeth and gums.
+/// The bones behind the skin: meshes with their teeth and gums.
 struct Bones {
   TriangleMesh cranium, mandible;
 };
 Bones bones_of(const TissueInputs& inputs);
 
-/// What lies beneath each vertex of the region. Found once for all levels, so that they sample the same face.
+/// Layers beneath each vertex of the region, computed once so that all levels sample the same data.
 struct Beneath {
-  std::vector<Vec3> normals;                    ///< unit, evened out: the way down is against them
+  std::vector<Vec3> normals;                    ///< unit, smoothed; layers lie in the opposite direction
   std::vector<double> smas_depth, inner_depth;  ///< metres
-  std::vector<double> bone;  ///< 1 where bone lies behind, so that the inner node rests on it
+  std::vector<double> bone;  ///< 1 where bone lies behind the skin, so that the inner node is on it
   std::vector<double>
       lower_lip;  ///< 0 of the upper lip .. 0.5 at the corner .. 1 of the lower, by the way along the surface
-  std::vector<double> jaw_weight;  ///< 0 carried by the cranium .. 1 by the mandible
+  std::vector<double> jaw_weight;  ///< 0 moves with the cranium .. 1 with the mandible
 };
 Beneath find_beneath(const TissueInputs& inputs, const FaceRegion& region, const TissueOptions& options);
 

@@ -9,7 +9,7 @@
 
 namespace fascia::tissue {
 
-/// Up to eight lattice nodes and how much of each one's displacement a vertex takes, and of the jaw's.
+/// Skinning weights of a vertex: up to eight lattice nodes, and the jaw.
 struct Follow {
   static constexpr size_t influences = 8;
   std::array<uint32_t, influences> nodes{};
@@ -17,7 +17,7 @@ struct Follow {
   float jaw = 0.0F;
 };
 
-/// What a place follows: column -> weight, in the columns' order, and `jaw_entry` for the jaw's own motion.
+/// Sparse skinning weights: column -> weight, sorted by column, and `jaw_entry` for the jaw.
 using Row = std::map<uint32_t, double>;
 constexpr uint32_t jaw_entry = std::numeric_limits<uint32_t>::max();
 

@@ -4,7 +4,7 @@
 
 namespace fascia::tissue {
 
-/// What a build made, level by level, with figures to look at.
+/// The result of a build by level, with statistics.
 struct TissueResult {
   rig::Tissue tissue;
   struct Figures {
@@ -14,10 +14,10 @@ struct TissueResult {
     int turned_prisms = 0;                           ///< prisms of no or negative volume at rest
   };
   std::vector<Figures> figures;
-  std::vector<std::string> warnings;  ///< what this head keeps the face from doing, and the remedy
+  std::vector<std::string> warnings;  ///< limitations due to this head, with remedies
 };
 
-/// Makes the lattice at each level of `options` and binds every part to it.
+/// Builds the lattice at each level of `options` and binds every part to it.
 ///
 /// Throws Error when a landmark or bone is missing, or the mesh has no face between them.
 TissueResult build(const TissueInputs& inputs, const TissueOptions& options = {});

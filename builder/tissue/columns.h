@@ -6,7 +6,7 @@
 
 namespace fascia::tissue {
 
-/// The columns of one level: a remesh of the face region, with a place on the SMAS and one on bone or mucosa
+/// The columns of one level: a remesh of the face region, with a point on the SMAS and one on bone or mucosa
 /// under every vertex.
 struct Columns {
   TriangleMesh mesh;                            ///< the skin nodes
@@ -25,8 +25,9 @@ struct Columns {
   int count() const { return mesh.vertex_count(); }
 };
 
-/// Makes the columns of `level` from the region and what lies beneath it. With a symmetry the right ones are
-/// the left one's mirror images as far as the skin has them, for two cuts of the same skin do not move alike.
+/// Builds the columns of `level` from the region and the layers beneath it. On a symmetric face the right
+/// ones are mirror images of the left ones where the skin permits, because different triangulations of the
+/// same skin move differently.
 Columns make_columns(const TissueInputs& inputs, const FaceRegion& region, const Beneath& beneath,
                      const std::optional<Symmetry>& symmetry, const LevelOptions& level,
                      const TissueOptions& options);

@@ -8,7 +8,7 @@
 
 namespace fascia::tissue {
 
-/// Shortest ways along a mesh's edges from a set of seeds.
+/// Shortest paths along a mesh's edges from a set of seeds.
 struct EdgeDistances {
   std::vector<double> distance;  ///< #vertices, metres; infinity where out of reach
   std::vector<int> seed;         ///< #vertices, index into the seeds; -1 where out of reach
@@ -25,9 +25,9 @@ EdgeDistances edge_distances(const TriangleMesh& mesh, const std::vector<Distanc
                              double range = std::numeric_limits<double>::infinity(),
                              const std::vector<bool>& allowed = {});
 
-/// The same over the surface itself, so that it hardly matters how it is cut into triangles: fronts are
-/// straight across each triangle (Kimmel & Sethian 1998, "Computing geodesic paths on manifolds"); where one
-/// comes in past an obtuse corner, along the edge.
+/// The same over the surface, nearly independent of the triangulation: fast marching with planar fronts in
+/// each triangle (Kimmel & Sethian 1998, "Computing geodesic paths on manifolds"); at an obtuse corner, along
+/// the edge.
 EdgeDistances surface_distances(const TriangleMesh& mesh, const std::vector<DistanceSeed>& seeds,
                                 double range = std::numeric_limits<double>::infinity(),
                                 const std::vector<bool>& allowed = {});

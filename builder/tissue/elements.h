@@ -8,8 +8,7 @@ namespace fascia::tissue {
 /// channels.
 rig::TissueLevel make_level(const TissueInputs& inputs, const LevelOptions& level, const Columns& columns);
 
-/// How firmly each column's SMAS is held by what lies behind it, along the plane it glides on (`bone`) and
-/// across it
+/// Attachment of each column's SMAS to what lies behind it, along the gliding plane (`bone`) and across it
 /// (`normal`), and by the skin: 1 the mean of a face, 0 free.
 struct Attachments {
   std::vector<double> bone, normal, skin;

@@ -6,12 +6,12 @@
 
 namespace fascia::tissue {
 
-/// The opening between an eye's lids in axes of its own: how high a place lies as an angle about the globe,
-/// and where it lies between the canthi.
+/// The palpebral fissure in its own coordinates: elevation as an angle about the globe, and position between
+/// the canthi.
 class Fissure {
  public:
   static constexpr double edge = 0.004;  ///< metres of skin beside the opening that hold a lid's edge
-  /// Radians about the globe: wider than the largest eyes of drawn figures; farther round is its socket.
+  /// Radians about the globe: larger than the largest eyes of cartoon figures; beyond it is the socket.
   static constexpr double widest = 2.2;
 
   /// From the lids' landmarks and the skin's own edge in `region`.
@@ -25,12 +25,12 @@ class Fissure {
   double elevation(const Vec3& p) const;
   /// 0 at the canthus to the subject's right .. 1 at the other, beyond them outside of that.
   double place(const Vec3& p) const;
-  /// Above the line from canthus to canthus through the middle of the opening, which divides upper lid from
-  /// lower: the canthi may lie below both, or above.
+  /// Whether it is above the curve from canthus to canthus through the middle of the opening, which separates
+  /// upper and lower lid: the canthi may lie below or above both.
   bool is_upper(const Vec3& p) const { return elevation(p) > middle(place(p)); }
-  /// The same of a place on the region's mesh, at `p`, of closed lids by the way along the surface.
+  /// The same for a point on the region's mesh, at `p`; for closed lids by distances along the surface.
   bool is_upper(const FaceRegion& region, const SurfacePoint& place, const Vec3& p) const;
-  /// How far the lids' edges stand apart at a place between the canthi, radians; 0 where they meet.
+  /// Opening between the lids' edges at a position between the canthi, radians; 0 where they meet.
   double gap(double place) const;
   /// The lids meet at rest, as in a head with closed eyes.
   bool is_closed() const { return !upper_share.empty(); }
@@ -42,7 +42,7 @@ class Fissure {
 
  private:
   double middle(double place) const;
-  /// Canthi as far out as the skin's edge goes, where the landmarks lie inside it.
+  /// Moves the canthi outward to the end of the skin's edge if the landmarks lie inside it.
   void reach_canthi(const FaceRegion& region, bool left);
   void find_middle(const FaceRegion& region, bool left);
   void find_gaps(const FaceRegion& region, bool left);

@@ -11,7 +11,7 @@
 
 namespace fascia::tissue {
 
-/// One primitive of the user's file: what must follow the face in the end.
+/// One primitive of the user's file, to be bound to the lattice.
 struct PartMesh {
   std::string part;  ///< skin, eye_left, eye_right, eye_surround, teeth_upper, teeth_lower, gums_upper,
                      ///< gums_lower, mouth_interior, tongue, lashes, brows, hair, other
@@ -21,9 +21,9 @@ struct PartMesh {
       {};  ///< of a skin part: the vertex of `TissueInputs::skin` each one is, -1 unknown; or none known
 };
 
-/// All that the lattice is made from. Metres; see rig/model/rig.h for axes.
+/// The inputs of the lattice. Metres; see rig/model/rig.h for axes.
 struct TissueInputs {
-  anatomy::Mechanics mechanics;             ///< what the tissue is made of, as the anatomy's reader gave it
+  anatomy::Mechanics mechanics;             ///< constants of the tissue
   TriangleMesh skin;                        ///< welded; lips and lids open as the mesh has them
   std::map<std::string, Vec3> landmarks;    ///< on the skin, by full name
   TriangleMesh cranium, mandible;           ///< fitted, teeth apart or not
@@ -36,10 +36,11 @@ struct TissueInputs {
   std::vector<rig::Channel> channels;
   std::vector<PartMesh> parts;
   std::vector<float> blink;          ///< #channels: what closes both eyes; empty: not known
-  bool has_muscles_by_hand = false;  ///< of one side perhaps: they are no images of the other's
+  bool has_muscles_by_hand = false;  ///< edited muscles may be asymmetric
 };
 
-/// How fine a level is: roughly how many columns, and how edge length grows from lips and lids outward.
+/// Resolution of a level: approximate number of columns, and growth of the edge length away from lips and
+/// lids.
 struct LevelOptions {
   std::string name = "medium";
   int columns = 2000;
@@ -48,7 +49,7 @@ struct LevelOptions {
   double corner_ratio = 0.5;
 };
 
-/// How the lattice is cut; nothing here says what tissue is like.
+/// Options of the discretisation; they do not affect tissue properties.
 struct TissueOptions {
   /// Contact with bones, teeth and the other lip, and one-sided ligaments. The bones must be closed surfaces.
   bool contact = true;
@@ -57,7 +58,7 @@ struct TissueOptions {
   double edge_ratio = 2.7;       ///< edge length far from lips and lids over that at them
   double edge_growth = 0.045;    ///< distance over which it grows
   double corner_growth = 0.012;  ///< distance over which it grows
-  ForEach for_each;              ///< how levels are made: the same on any number of threads
+  ForEach for_each;              ///< parallel execution over levels; results do not depend on it
 };
 
 }  // namespace fascia::tissue

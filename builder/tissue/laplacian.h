@@ -15,14 +15,14 @@ std::vector<double> vertex_areas(const TriangleMesh& mesh);
 /// ends' `lengths` (metres). Cotangents are kept between -1 and 10: slivers weigh no more than that.
 Eigen::SparseMatrix<double> laplacian(const TriangleMesh& mesh, const std::vector<double>& lengths);
 
-/// Evens out functions on a surface over about `lengths` (#vertices, metres) by one implicit step of
-/// diffusion: what comes out depends on the surface and hardly on its triangles.
+/// Smooths functions on a surface over about `lengths` (#vertices, metres) by one implicit step of diffusion,
+/// nearly independent of the triangulation.
 class SurfaceSmoother {
  public:
   SurfaceSmoother(const TriangleMesh& mesh, const std::vector<double>& lengths);
   void smooth(std::vector<double>& values) const;
   void smooth(std::vector<Vec3>& values) const;
-  void smooth(Eigen::MatrixXd& values) const;  ///< a function a column
+  void smooth(Eigen::MatrixXd& values) const;  ///< one function per column
 
  private:
   std::vector<double> areas_;

@@ -6,7 +6,7 @@
 
 namespace fascia::tissue {
 
-/// Which opening of the face a place on the skin belongs to.
+/// The opening of the face that a point of the skin belongs to.
 enum class Opening : uint8_t { none = 0, mouth = 1, eye_left = 2, eye_right = 3, nostril = 4 };
 
 /// The part of the skin that is simulated: from the hairline to the upper neck, ear to ear, and a
@@ -15,7 +15,7 @@ struct FaceRegion {
   TriangleMesh mesh;               ///< the region alone
   std::vector<int> skin_vertex;    ///< #region vertices, index in the skin
   std::vector<int> region_vertex;  ///< #skin vertices, index in the region or -1
-  std::vector<bool> outer;         ///< #region vertices: seen from outside (lining is not)
+  std::vector<bool> outer;         ///< #region vertices: visible from outside (not lining)
   std::vector<bool> rim;           ///< #region vertices: outer ones beyond which the skin goes on; they stay
   std::vector<double>
       feature_distance;  ///< #region vertices, metres along the skin to the nearest lip, lid or nostril edge;

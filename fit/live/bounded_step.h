@@ -6,15 +6,14 @@
 
 namespace fascia::fit {
 
-/// What one unknown of a bounded step may do and what its size costs.
+/// Bounds and penalty of one unknown of a bounded step.
 struct StepBound {
   double least = 0.0, most = 1.0;  ///< of the value after the step
-  double price = 0.0;              ///< of the value's size, in units of the objective
-  bool is_held = false;            ///< stays where it is
+  double price = 0.0;              ///< of the absolute value, in units of the objective
+  bool is_held = false;            ///< is kept fixed
 };
 
-/// The point that half a quadratic, slope y + curvature y^2 / 2 + price |value + y| / 2, is least at, within
-/// limits.
+/// The minimiser of slope y + curvature y^2 / 2 + price |value + y| / 2 within limits.
 inline double best_move(double slope, double curvature, double value, const StepBound& bound) {
   if (!(curvature > 0.0)) return 0.0;
   const double free = value - slope / curvature, threshold = 0.5 * bound.price / curvature;
@@ -25,8 +24,8 @@ inline double best_move(double slope, double curvature, double value, const Step
 /// Minimises slope . y + y . curvature y / 2 + sum price |value + y| / 2 with least <= value + y <= most, by
 /// coordinate descent (Friedman, Hastie & Tibshirani 2010, "Regularization paths for generalized linear
 /// models via coordinate descent", section 2). `curvature` is symmetric and positive definite, `bound(i)`
-/// gives the StepBound of unknown i, `value(i)` where it stands. It ends where a whole sweep changes none by
-/// more than `enough`. Writes the step to `move` and uses `pull`; both #unknowns. Allocates nothing.
+/// gives the StepBound of unknown i, `value(i)` its current value. It ends when a complete sweep changes none
+/// by more than `enough`. Writes the step to `move` and uses `pull`; both #unknowns. Allocates nothing.
 template <class Bound, class Value>
 void bounded_step(const Eigen::MatrixXd& curvature, const Eigen::VectorXd& slope, const Bound& bound,
                   const Value& value, Eigen::VectorXd& move, Eigen::VectorXd& pull, double enough = 1e-6) {

@@ -6,7 +6,7 @@
 
 namespace fascia::fit {
 
-/// How much more each channel costs in a fit than one that the expression tables use to the full: 1 to 4.
+/// Penalty factor of each channel in a fit, 1 to 4: 1 for channels that the expression tables use fully.
 std::vector<double> dearness_of(const rig::Actuation& actuation);
 
 }  // namespace fascia::fit

@@ -8,17 +8,17 @@
 
 namespace fascia::fit {
 
-/// How landmarks go with channels: 3 #landmarks rows, a column a channel, metres. Made at rest, then again
-/// in parts as the face moves, so that each frame of a live program bears a share of the work.
+/// Jacobian of the landmarks with respect to channels: 3 #landmarks rows, one column per channel, metres.
+/// Computed at rest, then recomputed incrementally as the face moves, to distribute the cost over frames.
 class LandmarkJacobian {
  public:
   /// `channels` are those of tissue, then the jaw's open, forward and lateral. The model outlives this.
-  /// Throws fascia::Error when the rig's stiffness has no factor.
+  /// Throws fascia::Error if the rig's stiffness cannot be factored.
   LandmarkJacobian(const sim::FaceModel& model, std::span<const Landmark> landmarks,
                    std::span<const uint32_t> channels);
 
   const Eigen::MatrixXd& at_rest() const { return at_rest_; }
-  /// The one in the making is dropped; what follows begins at rest.
+  /// Discards the computation in progress and restarts from rest.
   void forget();
   /// One part of the next: its matrix, some of its factor or some of its columns; `controls` have made the
   /// pose `nodes`. A new one is begun where the face has gone some way from where the last was. True when

@@ -15,36 +15,36 @@
 namespace fascia::fit {
 
 struct TrackerOptions {
-  /// What activations cost, in square millimetres of mean squared distance: their squares and their sizes,
-  /// the square of a change from one frame to the next. Channels that the rig's expression tables seldom use
-  /// cost more.
+  /// Penalties in square millimetres of mean squared distance, on squared and absolute activations and on
+  /// squared changes from frame to frame. They are larger for channels that the rig's expression tables
+  /// rarely use.
   double ridge = 1e-3;
   double sparsity = 2e-4;
   double smoothness = 5e-2;
-  int iterations = 2;       ///< Gauss-Newton steps a frame, each with one pose of the simulation
+  int iterations = 2;       ///< Gauss-Newton steps per frame, each with one static pose
   bool finds_scale = true;  ///< of the observed face against the rig's, in the first frame; not of pictures
-  std::optional<Camera> camera;  ///< points are pixels of it, not places
+  std::optional<Camera> camera;  ///< if given, points are its pixels
 };
 
-/// What one frame has told. Lengths in metres of the head, but where said.
+/// The result of a frame. Lengths in metres of the head unless stated otherwise.
 struct Tracked {
-  std::vector<float> activations;  ///< one a channel of the rig
+  std::vector<float> activations;  ///< one per channel of the rig
   HeadPose head;                   ///< from the rig's metres to the space of the points
   std::vector<Vec3> landmarks;     ///< #landmarks: where the fitted face has them, in the space of the points
   std::vector<Vec3> at_rest;       ///< the same of the face at rest in the same pose
-  double rms_mm = 0.0;             ///< root weighted mean square distance left, on the head
-  uint32_t seen = 0;               ///< landmarks that counted
+  double rms_mm = 0.0;             ///< weighted root mean square residual, on the head
+  uint32_t seen = 0;               ///< landmarks used
 };
 
-/// Activations and head pose from a stream of landmarks, a frame at a time.
+/// Tracks activations and head pose in a stream of landmarks, frame by frame.
 ///
-/// Every frame takes few Gauss-Newton steps in the channels' ranges on the full nonlinear simulation, as the
-/// fit of whole meshes does; but the Jacobian of the landmarks is kept, corrected by what each step did
-/// (Broyden 1965, "A class of methods for solving nonlinear simultaneous equations"), and made anew over some
-/// ten frames, each bearing a part of it. The head's pose is solved along and eliminated. A channel none of
-/// whose landmarks is seen holds its value; the costs of the others fade with what is seen of them.
+/// Every frame performs a few Gauss-Newton steps within the channels' ranges on the full nonlinear
+/// simulation, as in the fit of whole meshes; but the Jacobian of the landmarks is updated after each step
+/// (Broyden 1965, "A class of methods for solving nonlinear simultaneous equations") and recomputed
+/// incrementally over about ten frames. The head's pose is solved simultaneously and eliminated. An
+/// unobservable channel keeps its value; the penalties of the others decrease with their observability.
 ///
-/// Same input, same output. Not for two threads at once.
+/// Deterministic. Not thread-safe.
 class Tracker {
  public:
   /// The models are of one level of the rig and outlive this. Throws fascia::Error when there are no
@@ -56,16 +56,16 @@ class Tracker {
   size_t size() const { return landmarks_.size(); }
   const TrackerOptions& options() const { return options_; }
 
-  /// Forgets all frames, not the neutral.
+  /// Resets the tracking, but keeps the neutral calibration.
   void reset();
 
-  /// Takes where the same detector has the landmarks of the same face at rest: what its places differ by from
-  /// ours no longer counts. Arguments as of `follow`. False, and nothing is changed, when too few are seen to
-  /// tell where the head is.
+  /// Calibrates with landmarks of the same face at rest from the same detector, so that systematic
+  /// differences cancel. Arguments as for `follow`. False, with no change, if too few are visible to
+  /// determine the head's pose.
   bool take_neutral(std::span<const Vec3> points, std::span<const double> weights);
 
-  /// The next frame: #landmarks points (the camera's x and y where there is one) and their weights, 0 for one
-  /// that is not seen, 1 for one seen well. A frame that shows too little holds the last one's result.
+  /// The next frame: #landmarks points (the camera's x and y where there is one) and their weights, 0 for an
+  /// invisible point, 1 for a fully visible one. With too few points the last result is kept.
   const Tracked& follow(std::span<const Vec3> points, std::span<const double> weights);
   const Tracked& result() const { return result_; }
 

@@ -7,9 +7,9 @@
 namespace fascia::fit {
 
 struct ScanOptions {
-  int rounds = 8;             ///< closest points anew, so often
-  bool moves_head = true;     ///< the scan is brought onto the head along with the fit
-  double reach = 0.02;        ///< metres: farther points of the scan are nobody's in the first round...
+  int rounds = 8;          ///< iterations of closest points
+  bool moves_head = true;  ///< the scan's rigid motion is solved simultaneously
+  double reach = 0.02;     ///< metres: farther points of the scan are not matched in the first iteration...
   double last_reach = 0.005;  ///< ...and in the last
   int samples = 4000;         ///< vertices matched, at most
 };
@@ -23,9 +23,10 @@ struct ScanFit {
   double matched_share = 0.0;  ///< of the outer skin's vertices, those that met the scan
 };
 
-/// Fits a face to a scan of any topology: rounds of closest points that face the same way, a head pose by
-/// point to plane (Chen & Medioni 1992), and Gauss-Newton steps in which matched vertices slide over the
-/// scan. Matches are weighted by Tukey's biweight of their distance; the edge of the scan attracts nothing.
+/// Fits a face to a scan of any topology: iterative closest points with compatible normals, the head's pose
+/// by point-to-plane distances (Chen & Medioni 1992), and Gauss-Newton steps in which matched vertices slide
+/// over the scan. Matches are weighted by Tukey's biweight of their distance; points on the edge of the scan
+/// are not matched.
 ///
 /// `scan`: metres, rig frame, about where the head is (a few centimetres and some 20 degrees off at most),
 /// normals outward. Throws fascia::Error when hardly anything of it lies near the head.

@@ -14,7 +14,7 @@ namespace fascia::gltf {
 
 using Json = nlohmann::ordered_json;
 
-/// What became of a file that a glTF names: its bytes, or why they are not to be had and what to do about it.
+/// A file referenced by a glTF: its bytes, or why it is not available, with a remedy.
 struct OutsideFile {
   std::optional<std::vector<uint8_t>> bytes;
   std::string why;
@@ -34,15 +34,15 @@ Json parsed(const std::string& json, const std::string& name, bool* repaired = n
 /// The JSON as text; what is not UTF-8 in it becomes U+FFFD.
 std::string text_of(const Json& json);
 
-/// The document made self-contained and plain: every buffer joined into one binary chunk (the bytes of buffer
-/// 0 first), pictures taken in with their own media types, EXT_meshopt_compression and
-/// KHR_draco_mesh_compression undone. Everything else stays as it came; a document that needs none of this is
-/// returned byte by byte.
+/// The document made self-contained and uncompressed: every buffer joined into one binary chunk (the bytes of
+/// buffer 0 first), pictures taken in with their own media types, EXT_meshopt_compression and
+/// KHR_draco_mesh_compression undone. Everything else is preserved; a document that needs none of this is
+/// returned unchanged.
 ///
-/// A picture that is missing, on the web or refused keeps its URI, and a line in `warnings` says so. Throws
-/// fascia::Error, beginning with `name`, when the JSON is malformed, a buffer is missing or cut short, or
-/// compressed data are damaged, or an index, offset or count is no whole number or too large. Whole ones that
-/// are written as decimals become integers.
+/// An image that is missing, on the web or refused keeps its URI, with a warning. Throws fascia::Error,
+/// beginning with `name`, when the JSON is malformed, a buffer is missing or cut short, or compressed data
+/// are damaged, or an index, offset or count is no whole number or too large. Whole ones that are written as
+/// decimals become integers.
 Document self_contained(Document document, const Resolver& resolve, const std::string& name,
                         std::vector<std::string>* warnings = nullptr);
 

@@ -7,7 +7,7 @@
 
 namespace fascia::gltf {
 
-/// Changes to a glTF file that leave everything else in it as it came: data are appended, never moved.
+/// Edits of a glTF file that preserve everything else: data are appended, never moved.
 class Edit {
  public:
   /// `document` must be self-contained. Throws fascia::Error when its JSON is malformed.

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-/// What a face rig is, free of any file format. Everything is in metres, right-handed, +Y up, the
-/// face looking along +Z, in the head's bind pose; single precision, as it is stored and simulated.
+/// The data model of a face rig, independent of any file format. Everything is in metres, right-handed, +Y
+/// up, the face looking along +Z, in the head's bind pose; single precision, as it is stored and simulated.
 namespace fascia::rig {
 
 using Vec2f = Eigen::Vector2f;
@@ -31,7 +31,7 @@ struct Landmark {
   float confidence = 1.0F;  ///< 0..1; 1 when given by hand
 };
 
-/// The temporomandibular joint in closed form: where the mandible goes for given jaw channels.
+/// The temporomandibular joint in closed form: motion of the mandible for given jaw channels.
 struct JawJoint {
   Vec3f origin = Vec3f::Zero();    ///< middle between the condyle centres
   Vec3f lateral = Vec3f::UnitX();  ///< unit hinge axis, to the subject's left
@@ -46,10 +46,10 @@ struct JawJoint {
   float lateral_glide = 0.003F;   ///< metres to the subject's left at jaw_lateral = 1
 };
 
-/// An eyeball and how it turns.
+/// An eyeball.
 struct Eye {
   Vec3f centre = Vec3f::Zero();
-  float radius = 0.0F;          ///< metres; 0 when the head has no eye on this side
+  float radius = 0.0F;          ///< metres; 0 if the head has no eye on this side
   Vec3f gaze = Vec3f::UnitZ();  ///< unit, at rest
 };
 
@@ -60,7 +60,7 @@ struct Skull {
   Eye eye_left, eye_right;
 };
 
-/// A ligament that holds the fascia to bone or skin: it resists only being stretched.
+/// A ligament between bone and skin through the fascia; it resists only stretch.
 struct Ligament {
   std::string name;
   Vec3f bone = Vec3f::Zero();
@@ -71,13 +71,13 @@ struct Ligament {
 struct Smas {
   Surface surface;
   std::vector<float> depth_to_skin;    ///< #vertices, metres
-  std::vector<float> depth_to_bone;    ///< #vertices, metres; negative where no bone lies behind
+  std::vector<float> depth_to_bone;    ///< #vertices, metres; negative where there is no bone
   std::vector<float> skin_attachment;  ///< #vertices, 0 gliding .. 1 firmly attached
   std::vector<float> bone_attachment;  ///< #vertices, 0 gliding .. 1 firmly attached
   std::vector<Ligament> ligaments;
 };
 
-/// What an end of a fibre is fastened to.
+/// What an end of a fibre is attached to.
 enum class FibreEnd : uint8_t { smas = 0, skin = 1, cranium = 2, mandible = 3 };
 
 /// One muscle or named part of one: fibres as polylines bound to the SMAS.
@@ -86,7 +86,7 @@ enum class FibreEnd : uint8_t { smas = 0, skin = 1, cranium = 2, mandible = 3 };
 /// triangle's point at `barycentrics` plus `offsets` metres along the triangle's unit normal.
 struct Muscle {
   std::string name;                     ///< with side, such as zygomaticus_major_left
-  std::string group;                    ///< the whole it is a part of, such as orbicularis_oculi_left
+  std::string group;                    ///< the group it is a part of, such as orbicularis_oculi_left
   std::string kind;                     ///< strap, sheet, fan, sphincter_ring or compressor
   std::vector<uint32_t> fibre_offsets;  ///< #fibres + 1
   std::vector<Vec3f> points;            ///< #points, rest place
@@ -109,16 +109,16 @@ enum class NodeKind : uint8_t {
   free = 0,              ///< moves under the energies only
   fixed = 1,             ///< follows the head rigidly: the rim of the simulated region
   fixed_cranium = 2,     ///< on the cranium
-  fixed_mandible = 3,    ///< goes with the mandible by its jaw weight (1 on the bone itself)
+  fixed_mandible = 3,    ///< moves with the mandible by its jaw weight (1 on the bone itself)
   gliding_cranium = 4,   ///< slides over the cranium
   gliding_mandible = 5,  ///< slides over the mandible
   mucosa = 6             ///< free inner surface: no bone behind, contact only
 };
 
-/// The lattice to simulate at one level of detail.
+/// The lattice of one level of detail.
 ///
-/// Nodes stand in columns of three (skin, SMAS, inner): node `layer * columns + column`. Stiffness
-/// is in newton per metre unless a line says otherwise. Constraint lists are in solver order.
+/// Nodes form columns of three (skin, SMAS, inner): node `layer * columns + column`. Stiffness is in newton
+/// per metre unless a line says otherwise. Constraint lists are in solver order.
 struct TissueLevel {
   std::string name;  ///< low, medium or high
   uint32_t columns = 0;
@@ -140,7 +140,7 @@ struct TissueLevel {
   std::vector<float> skin_bending, smas_bending;    ///< #columns each, newton metre (flexural rigidity)
   float poisson_ratio = 0.35F;                      ///< of both membranes
 
-  /// Tethers of nodes to the bone or body behind them: weak along `normal`, weaker across it.
+  /// Anisotropic tethers of nodes to the bone or body behind them.
   std::vector<uint32_t> tether_nodes;
   std::vector<Vec3f> tether_normals;
   std::vector<float> tether_normal_stiffness, tether_tangential_stiffness;
@@ -157,18 +157,19 @@ struct TissueLevel {
   std::vector<Vec3f> fibre_weights;                  ///< #points
   std::vector<Vec3f> fibre_rest;                     ///< #points, rest place
   std::vector<FibreEnd> fibre_anchor;                ///< #points; cranium / mandible: fixed to that bone
-  std::vector<float> fibre_taper;  ///< #points, share of the tension that the segment to the next point bears
+  std::vector<float> fibre_taper;     ///< #points, fraction of the tension in the segment to the next point
   std::vector<float> fibre_strength;  ///< #fibres, newton at full activation and rest length
-  std::vector<float>
-      fibre_shortest;  ///< #fibres, share of the rest length at which the pull has fallen to nothing
+  std::vector<float> fibre_shortest;  ///< #fibres, fraction of the rest length at which the force vanishes
 
-  /// Carriers: nodes that an actuator turns about an axis (lids about the globe, lips about their roll).
+  /// Carriers: nodes that an actuator rotates about an axis (lids about the globe, lips about their roll
+  /// axis).
   std::vector<uint32_t> carrier_channel, carrier_node;
   std::vector<Vec3f> carrier_origin, carrier_axis;
-  std::vector<float> carrier_angle;      ///< radians at channel value 1
-  std::vector<float> carrier_reverse;    ///< radians at channel value -1
-  std::vector<float> carrier_stiffness;  ///< pulls the node back to where its bones carry it
-  std::vector<float> carrier_drive;      ///< force per metre of the carrier's own motion
+  std::vector<float> carrier_angle;    ///< radians at channel value 1
+  std::vector<float> carrier_reverse;  ///< radians at channel value -1
+  std::vector<float>
+      carrier_stiffness;  ///< pulls the node back to its position under the rigid motion of its bones
+  std::vector<float> carrier_drive;  ///< force per metre of the carrier's own motion
 
   /// Pressures: prisms whose inner side a channel presses outward.
   std::vector<uint32_t> pressure_channel, pressure_prism;
@@ -179,9 +180,8 @@ struct TissueLevel {
   std::vector<float> globe_radius;
   std::vector<uint32_t> globe_contact_node, globe_contact_globe;  ///< pairs
 
-  /// Distance fields of the bones with their teeth, each a grid that stands still in its bone's frame; the
-  /// values of a field follow those of the one before, x fastest. Distance in metres = (value - 128) * step,
-  /// negative inside.
+  /// Signed distance fields of the bones with their teeth, each on a grid in its bone's frame; the values of
+  /// all fields are concatenated, x fastest. Distance in metres = (value - 128) * step, negative inside.
   std::vector<uint8_t> contact_field_bone;                       ///< #fields, 0 cranium, 1 mandible
   std::vector<Vec3f> contact_field_origin;                       ///< #fields, place of the first value
   std::vector<float> contact_field_spacing, contact_field_step;  ///< #fields, metres
@@ -189,32 +189,33 @@ struct TissueLevel {
   std::vector<uint8_t> contact_field_values;
   std::vector<uint32_t> contact_node, contact_field;  ///< pairs that may touch
 
-  /// Skin that may touch skin: lips and lids. A prism's outer side of side 2k meets only such of side 2k + 1.
+  /// Self-contact of skin: lips and lids. Outer faces of prisms of side 2k are in contact only with those of
+  /// side 2k + 1.
   std::vector<uint32_t> facing_prism;
   std::vector<uint8_t> facing_side;  ///< 0 upper, 1 lower lip; 2, 3 upper, lower lid left; 4, 5 right
 };
 
 /// How the vertices of one primitive of the user's file follow the lattice, the jaw or an eye.
 ///
-/// Vertex displacement = sum of `weights` times the displacement of `nodes`, plus `jaw_weights` times
-/// the jaw's displacement of the vertex; vertices of an eye turn with it instead.
+/// Vertex displacement = sum of `weights` times the displacement of `nodes`, plus `jaw_weights` times the
+/// jaw's displacement of the vertex; vertices of an eye rotate with it instead.
 struct Binding {
   uint32_t mesh = 0, primitive = 0;  ///< in the glTF file
   std::string part;                  ///< skin, eye_left, teeth_lower, ...
   uint32_t vertex_count = 0;
   uint64_t position_hash = 0;        ///< fingerprint of the primitive's POSITION bytes
   Mat4f to_rig = Mat4f::Identity();  ///< from the primitive's own coordinates to the rig's metres
-  uint32_t influences = 4;           ///< nodes a vertex
+  uint32_t influences = 4;           ///< nodes per vertex
   std::vector<uint32_t> nodes;       ///< #vertices * influences
   std::vector<float> weights;        ///< #vertices * influences
   std::vector<float> jaw_weights;    ///< #vertices
   std::vector<uint8_t> eye;          ///< #vertices: 0 none, 1 left, 2 right
 };
 
-/// One level of detail with the bindings made for it.
+/// All levels of detail with their bindings.
 struct Tissue {
   std::vector<TissueLevel> levels;
-  std::vector<std::vector<Binding>> bindings;  ///< one list a level
+  std::vector<std::vector<Binding>> bindings;  ///< one list per level
 };
 
 /// One writable value of the face.
@@ -226,8 +227,8 @@ struct Channel {
   std::string unit;     ///< "1", "rad"
 };
 
-/// A named vocabulary (arkit, au, viseme, vrm) as a sparse matrix onto the channels, and what share of its
-/// row a member's weight plays: without knots, the weight itself.
+/// A named vocabulary (arkit, au, viseme, vrm) as a sparse matrix onto the channels, with the response curves
+/// of its members: without knots, linear.
 struct NamedSet {
   std::string name;
   std::vector<std::string> members;

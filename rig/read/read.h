@@ -10,19 +10,19 @@
 
 namespace fascia::rig {
 
-/// A rig of a version this build does not know.
+/// Thrown for a rig of an unknown version.
 class VersionError : public Error {
  public:
   using Error::Error;
 };
 
-/// A rig whose meshes have been changed since it was built.
+/// Thrown for a rig whose meshes have been changed since it was built.
 class MismatchError : public Error {
  public:
   using Error::Error;
 };
 
-/// What the head was before it became glTF: kept in the rig so that it can be given back as it came.
+/// The source of a head that was not glTF, stored in the rig so that it can be restored.
 struct SourceRecord {
   std::string format;          ///< gltf, glb, obj, ply or stl; empty when nothing is recorded
   std::string json;            ///< the writer's own notes (vertex order, polygons, axes, units)

@@ -1,5 +1,5 @@
-/* Snapshots of how a face moves, for a game's own tests. Plain C (C99); needs libfascia_snapshot, and
- * fascia.h beside it.
+/* Snapshots: regression tests of a face's motion, for a game's own tests. Plain C (C99); requires
+ * libfascia_snapshot and fascia.h.
  *
  *     uint32_t failed = 0;
  *     if (fascia_snapshot_check(rig, rig_size, snapshot, snapshot_size, NULL, &failed) != FASCIA_OK)
@@ -17,15 +17,15 @@
 extern "C" {
 #endif
 
-/* How far a region lies from where it lay, in one pose or frame. */
+/* Difference of a region from the recording, in one pose or frame. */
 typedef struct fascia_snapshot_difference {
   uint32_t struct_size;
-  uint32_t ok;           /* 1 when the difference is allowed */
+  uint32_t ok;           /* 1 if the difference is within the tolerance */
   const char* state;     /* name of the pose or frame */
   const char* region;    /* name of the region */
   double mean_mm;        /* root mean square over the region's watched vertices */
-  double largest_mm;     /* of the vertex that is farthest off */
-  uint32_t mesh, vertex; /* that vertex: its mesh in the glTF file and its number there */
+  double largest_mm;     /* of the vertex with the largest difference */
+  uint32_t mesh, vertex; /* indices of that vertex and its mesh in the glTF file */
 } fascia_snapshot_difference;
 
 /* Bytes of a file. */
@@ -36,25 +36,25 @@ typedef struct fascia_snapshot_file {
 
 typedef struct fascia_snapshot_options {
   uint32_t struct_size;
-  uint32_t threads;                   /* 0: as many as the machine has */
+  uint32_t threads;                   /* 0: all processors */
   double tolerance_mm;                /* of every region; 0: each region's own */
-  const fascia_snapshot_file* curves; /* the takes' files of curves, in the snapshot's order */
+  const fascia_snapshot_file* curves; /* the curves files of the takes, in the snapshot's order */
   size_t curve_count;
-  /* Called for every region in every pose and frame, on the calling thread; texts hold during the call.
-   * NULL for none. */
+  /* Called for every region in every pose and frame, on the calling thread; strings are valid during the
+   * call. NULL for none. */
   void (*difference)(void* user, const fascia_snapshot_difference* difference);
   void* user;
 } fascia_snapshot_options;
 
 /* Plays the snapshot's poses and takes on the rig (the bytes of a .glb) and compares. `failed` becomes the
- * number of differences that are not allowed. `options` may be NULL. FASCIA_ERROR_FORMAT when a file is not
- * sound or does not go with the others; fascia_snapshot_message says why. */
+ * number of differences that are not allowed. `options` may be NULL. FASCIA_ERROR_FORMAT if a file is invalid
+ * or does not match the others; fascia_snapshot_message says why. */
 FASCIA_API fascia_result fascia_snapshot_check(const void* rig, size_t rig_size, const void* snapshot,
                                                size_t snapshot_size, const fascia_snapshot_options* options,
                                                uint32_t* failed);
 
-/* What went wrong last on this thread, as one sentence; "" when nothing has. Valid until the next call on
- * this thread. */
+/* Message of the last failure on this thread, one sentence; "" if there was none. Valid until the next call
+ * on this thread. */
 FASCIA_API const char* fascia_snapshot_message(void);
 
 #ifdef __cplusplus
