@@ -134,12 +134,12 @@ void add_shapes(const Common& common, const CalibrateRequest& request, const fit
   }
 }
 
-/// The subject with another physique; null, and a fault in `rebuilt`, where its depth cannot be had.
+/// The subject with another physique; null, and a fault in `rebuilt`, where its anatomy cannot be had.
 std::unique_ptr<fit::Subject> with_physique(const fit::Subject& subject, const fit::Physique& physique,
                                             RebuiltRig& rebuilt) {
   rig::RigFile file = subject.file();
-  if (physique.depth != 1.0) {
-    const rig::Rig* other = rebuilt.at(physique.depth, subject.level_name());
+  if (physique.takes_build()) {
+    const rig::Rig* other = rebuilt.at(physique, subject.level_name());
     if (other == nullptr) return nullptr;
     file.rig = *other;
   }
@@ -164,7 +164,10 @@ Json physique_json(const fit::Physique& physique) {
           {"stiffness", physique.stiffness},
           {"peak_shortening_upper_face", physique.shortening[0]},
           {"peak_shortening_middle_face", physique.shortening[1]},
-          {"peak_shortening_lower_face", physique.shortening[2]}};
+          {"peak_shortening_lower_face", physique.shortening[2]},
+          {"muscle_breadth_upper_face", physique.breadth[0]},
+          {"muscle_breadth_middle_face", physique.breadth[1]},
+          {"muscle_breadth_lower_face", physique.breadth[2]}};
 }
 
 Json cases_json(const fit::Calibration& calibration) {
@@ -188,7 +191,7 @@ Json gains_json(const fit::Subject& subject, const std::vector<double>& gains) {
 }
 
 void say_table(const Common& common, const fit::Calibration& calibration) {
-  char line[200];
+  char line[240];
   for (const fit::CaseFigures& one : calibration.cases) {
     std::snprintf(line, sizeof line, "%-28s share %6.3f -> %6.3f, left out %6.3f; rms %5.2f -> %5.2f mm",
                   one.name.c_str(), one.before_share, one.after_share, one.left_out_share, one.before_mm,
@@ -201,9 +204,10 @@ void say_table(const Common& common, const fit::Calibration& calibration) {
   const fit::Physique& own = calibration.physique;
   std::snprintf(
       line, sizeof line,
-      "times as built: tissue depth %.2f, stiffness %.2f, peak shortening of the upper, middle and lower "
-      "face %.2f, %.2f, %.2f",
-      own.depth, own.stiffness, own.shortening[0], own.shortening[1], own.shortening[2]);
+      "times as built: tissue depth %.2f, stiffness %.2f; upper, middle and lower face: peak shortening "
+      "%.2f, %.2f, %.2f, breadth of muscles %.2f, %.2f, %.2f",
+      own.depth, own.stiffness, own.shortening[0], own.shortening[1], own.shortening[2], own.breadth[0],
+      own.breadth[1], own.breadth[2]);
   common.say(line);
 }
 
@@ -236,11 +240,12 @@ void run(const Common& common, const CalibrateRequest& request) {
   if (request.adjust == "all")
     remake = [&](const fit::Physique& physique) { return with_physique(subject, physique, rebuilt); };
   const fit::Calibration calibration = fit::calibrate(subject, cases, request.options, remake);
-  if (!rebuilt.fault().empty()) common.warn("tissue depths are unchanged: " + rebuilt.fault());
+  if (!rebuilt.fault().empty())
+    common.warn("not all tissue depths and breadths of muscles could be tried: " + rebuilt.fault());
   rig::Rig own = subject.file().rig;
-  if (calibration.physique.depth != 1.0) {
-    common.progress("building with its own tissue depths");
-    const rig::Rig* other = rebuilt.at(calibration.physique.depth, own.tissue.levels.back().name);
+  if (calibration.physique.takes_build()) {
+    common.progress("building with its own tissue depths and muscles");
+    const rig::Rig* other = rebuilt.at(calibration.physique, own.tissue.levels.back().name);
     if (other == nullptr)
       throw Error("'" + request.rig.string() + "': " + rebuilt.fault() + "; use --adjust gains");
     own = *other;
@@ -250,12 +255,18 @@ void run(const Common& common, const CalibrateRequest& request) {
                  calibrated(fit::with_physique(std::move(own), calibration.physique), calibration.gains));
   formats::write_bytes(request.output, out.data(), out.size());
   say_table(common, calibration);
+  if (calibration.gains_kept < 1.0)
+    common.warn(
+        calibration.gains_kept > 0.0
+            ? "gains are kept in part: whole, they made expressions left out worse"
+            : "gains stay at 1: others made expressions left out worse; more scans may tell them better");
   common.say("wrote " + request.output.string());
   common.report({{"output", request.output.string()},
                  {"level", subject.level_name()},
                  {"before_share", calibration.before_share},
                  {"after_share", calibration.after_share},
                  {"left_out_share", calibration.left_out_share},
+                 {"gains_kept", calibration.gains_kept},
                  {"physique", physique_json(calibration.physique)},
                  {"gains", gains_json(subject, calibration.gains)},
                  {"expressions", cases_json(calibration)},
@@ -266,9 +277,9 @@ void run(const Common& common, const CalibrateRequest& request) {
 
 void add_calibrate(const Command& tool, Common& common) {
   auto request = std::make_shared<CalibrateRequest>();
-  const Command command = tool.command(
-      "calibrate",
-      "Calibrate a rig to one person's expressions: muscle gains, peak shortening, stiffness, tissue depth");
+  const Command command = tool.command("calibrate",
+                                       "Calibrate a rig to one person's expressions: muscle gains, peak "
+                                       "shortening, breadth, stiffness, tissue depth");
   add_rig_argument(command, request->rig);
   command
       .option("--scans", &request->scans,
@@ -281,9 +292,8 @@ void add_calibrate(const Command& tool, Common& common) {
       .one_of({"low", "medium", "high"});
   command
       .option("--adjust", &request->adjust,
-              "What to identify: muscle gains only, or also the depth and stiffness of tissue and peak "
-              "shortening by thirds "
-              "of the face as well")
+              "What to identify: muscle gains only, or also the depth and stiffness of tissue and, by thirds of "
+              "the face, peak shortening and the breadth of attachment regions")
       .one_of({"all", "gains"});
   command
       .option("--prior", &request->options.prior,

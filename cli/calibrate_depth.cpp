@@ -1,6 +1,7 @@
 #include "cli/calibrate_depth.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
@@ -43,19 +44,30 @@ bool is_close(float a, float b) {
   return std::abs(a - b) <= 0.25F * std::max(std::abs(a), std::abs(b));
 }
 
+bool is_mimic(const anatomy::GenericAnatomy& anatomy, const std::string& name) {
+  return std::any_of(anatomy.muscles.begin(), anatomy.muscles.end(), [&](const anatomy::Muscle& muscle) {
+    return muscle.name == name && muscle.group == "mimic";
+  });
+}
+
 }  // namespace
 
 RebuiltRig::RebuiltRig(const std::vector<uint8_t>& bytes, const rig::RigFile& file)
     : bytes_(bytes), file_(file) {}
 
-const rig::Rig* RebuiltRig::at(double depth, const std::string& detail) {
-  if (!fault_.empty()) return nullptr;
-  std::unique_ptr<rig::Rig>& kept = rigs_[{depth, detail}];
+const rig::Rig* RebuiltRig::at(const fit::Physique& physique, const std::string& detail) {
+  std::unique_ptr<rig::Rig>& kept = rigs_[{physique.depth, physique.breadth, detail}];
   if (kept) return kept.get();
+  // What does not come out as it stands comes out in no other way either.
+  const bool has_any =
+      std::any_of(rigs_.begin(), rigs_.end(), [](const auto& one) { return one.second != nullptr; });
+  if (!fault_.empty() && !has_any) return nullptr;
   try {
-    rig::Rig built = build(depth, detail);
-    fault_ = difference(built);
-    if (!fault_.empty()) return nullptr;
+    rig::Rig built = build(physique, detail);
+    if (const std::string other = difference(built); !other.empty()) {
+      fault_ = other;
+      return nullptr;
+    }
     built.actuation = file_.rig.actuation;
     built.input_to_metres = file_.rig.input_to_metres;
     kept = std::make_unique<rig::Rig>(std::move(built));
@@ -66,12 +78,12 @@ const rig::Rig* RebuiltRig::at(double depth, const std::string& detail) {
   }
 }
 
-rig::Rig RebuiltRig::build(double depth, const std::string& detail) const {
+rig::Rig RebuiltRig::build(const fit::Physique& physique, const std::string& detail) const {
   const rig::SourceRecord& record = file_.source;
   const bool is_made = !record.bytes.empty();  // of another format, which is kept
   rigging::BuildOptions options;
   options.detail = detail;
-  options.tissue_scale = depth;
+  options.tissue_scale = physique.depth;
   std::vector<uint8_t> glb;
   if (!is_made) {
     const rig::GltfSource source = rig::original(rig::glb_source(bytes_));
@@ -85,7 +97,12 @@ rig::Rig RebuiltRig::build(double depth, const std::string& detail) const {
   formats::LandmarkFile landmarks;
   for (const rig::Landmark& landmark : file_.rig.skull.landmarks)
     landmarks.points[landmark.name] = transform_point(to_file, landmark.skin.cast<double>());
-  return rigging::build_rig(scene, landmarks, anatomy_for({}), options).rig;
+  const anatomy::GenericAnatomy anatomy = anatomy_for({});
+  const std::vector<size_t> third = fit::thirds_of_face(file_.rig);
+  for (size_t m = 0; m < third.size(); ++m)
+    if (const std::string& name = file_.rig.muscles[m].name; is_mimic(anatomy, name))
+      options.edits.muscles[name].width = physique.breadth[third[m]];
+  return rigging::build_rig(scene, landmarks, anatomy, options).rig;
 }
 
 /// Why a rig cannot take the place of the file's; empty when it can.

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
+#include "fit/physique_search.h"
 #include "geometry/error.h"
 
 namespace fascia::fit {
@@ -29,8 +31,10 @@ class Calibrator {
       other_side_.push_back(mirrored(c));
   }
 
-  /// Gains from all cases, and what they make of each; of `judged` also what gains found without it do.
-  Calibration run(const std::vector<bool>& judged) {
+  /// Gains from all cases, and what they make of each; of `judged` also what gains found without it do. Of
+  /// the gains' way from 1 the first of `kept` remains with which those judged come out no worse than by the
+  /// tables.
+  Calibration run(const std::vector<bool>& judged, const std::vector<double>& kept) {
     Calibration out;
     Eigen::VectorXd gains = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(count_));
     std::vector<Evidence> all;
@@ -43,13 +47,17 @@ class Calibrator {
               {cases_[i].name, std::sqrt(all[i].mean_square), 0.0, share(all[i]), 0.0, 0.0, 0.0});
       if (round < options_.rounds) gains = solved(all, gains, cases_.size()).gains;
     }
+    for (const double one : kept) {
+      out.gains_kept = one;
+      if (judge(all, gains, judged, one, out) <= 0.0) break;
+    }
+    if (out.gains_kept < 1.0) {
+      gains = partly(gains, out.gains_kept);
+      all = evidence(gains);
+    }
     for (size_t i = 0; i < cases_.size(); ++i) {
       out.cases[i].after_mm = std::sqrt(all[i].mean_square);
       out.cases[i].after_share = share(all[i]);
-      if (!judged[i]) continue;
-      const Evidence without = evidence_of(i, solved(all, gains, i).gains);
-      out.cases[i].left_out_mm = std::sqrt(without.mean_square);
-      out.cases[i].left_out_share = share(without);
     }
     out.gains.assign(gains.data(), gains.data() + gains.size());
     return out;
@@ -66,12 +74,6 @@ class Calibrator {
   }
   const std::vector<double>& motion() const { return motion_; }  ///< by case, mm^2, after `before`
 
-  /// What the gains that would suit best leave, mm^2 with their price: of all cases, and by case, of the
-  /// others.
-  struct Prospect {
-    double whole = 0.0, motion = 0.0;
-    std::vector<double> without;
-  };
   Prospect prospect() {
     const Eigen::VectorXd ones = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(count_));
     const std::vector<Evidence> all = evidence(ones);
@@ -87,6 +89,27 @@ class Calibrator {
  private:
   static double share(const Evidence& one) {
     return one.target_square > 0.0 ? 1.0 - one.mean_square / one.target_square : 0.0;
+  }
+
+  /// Gains with `kept` of their way from 1.
+  static Eigen::VectorXd partly(const Eigen::VectorXd& gains, double kept) {
+    return (1.0 + kept * (gains.array() - 1.0)).matrix();
+  }
+
+  /// Sets the figures of `judged` by gains found without each; how much more that leaves, mm^2, than the
+  /// tables do.
+  double judge(const std::vector<Evidence>& all, const Eigen::VectorXd& gains,
+               const std::vector<bool>& judged, double kept, Calibration& out) {
+    double more = 0.0;
+    for (size_t i = 0; i < cases_.size(); ++i) {
+      if (!judged[i]) continue;
+      const Evidence without = evidence_of(i, partly(solved(all, gains, i).gains, kept));
+      CaseFigures& figures = out.cases[i];
+      figures.left_out_mm = std::sqrt(without.mean_square);
+      figures.left_out_share = share(without);
+      more += without.mean_square - figures.before_mm * figures.before_mm;
+    }
+    return more;
   }
 
   size_t mirrored(size_t channel) const {
@@ -218,109 +241,37 @@ class Calibrator {
   double caution_ = 1.0;  ///< times the price of gains
 };
 
-/// Tries physiques, one factor after the other.
-class PhysiqueSearch {
- public:
-  PhysiqueSearch(const std::vector<CalibrationCase>& cases, const CalibrationOptions& options,
-                 const Remake& remake)
-      : options_(options), remake_(remake), places_(most_moving(cases)) {
-    for (const size_t i : places_)
-      cases_.push_back(cases[i]);
+/// The expressions that move most, `most` of them.
+std::vector<size_t> most_moving(const std::vector<CalibrationCase>& cases, size_t most) {
+  std::vector<size_t> places;
+  std::vector<double> motion;
+  for (size_t i = 0; i < cases.size(); ++i) {
+    places.push_back(i);
+    motion.push_back(cases[i].target.displacements.squaredNorm());
   }
+  std::stable_sort(places.begin(), places.end(), [&](size_t a, size_t b) { return motion[a] > motion[b]; });
+  places.resize(std::min(places.size(), most));
+  return places;
+}
 
-  /// By case: the physique that the others ask for; last, the one that all ask for. All of them as built
-  /// where another cannot be made.
-  std::vector<Physique> run(size_t count) {
-    if (!tried({})) return std::vector<Physique>(count + 1);
-    Physique best;
-    const std::vector<double*> factors = {&best.depth, &best.stiffness, &best.shortening[2],
-                                          &best.shortening[1], &best.shortening[0]};
-    for (double* factor : factors)
-      search(best, *factor);
-    std::vector<Physique> result(count + 1, trials_[best_of(places_.size())].physique);
-    for (size_t k = 0; k < places_.size(); ++k)
-      result[places_[k]] = trials_[best_of(k)].physique;
-    return result;
-  }
-
- private:
-  struct Trial {
-    Physique physique;
-    Calibrator::Prospect prospect;
-    double price = 0.0;
-  };
-
-  std::vector<size_t> most_moving(const std::vector<CalibrationCase>& cases) const {
-    std::vector<size_t> places;
-    std::vector<double> motion;
-    for (size_t i = 0; i < cases.size(); ++i) {
-      places.push_back(i);
-      motion.push_back(cases[i].target.displacements.squaredNorm());
-    }
-    std::stable_sort(places.begin(), places.end(), [&](size_t a, size_t b) { return motion[a] > motion[b]; });
-    places.resize(std::min(places.size(), options_.searched_cases));
-    return places;
-  }
-
-  /// In shares of the expressions' motion, as a gain's is: 1 for a factor at its bound.
-  double price_of(const Physique& physique) const {
-    const double width = std::log(options_.most_factor);
-    double sum = 0.0;
-    for (const double factor : {physique.depth, physique.stiffness, physique.shortening[0],
-                                physique.shortening[1], physique.shortening[2]})
-      sum += std::pow(std::log(factor) / width, 2);
-    return options_.prior * sum;
-  }
-
-  bool tried(const Physique& physique) {
-    const std::unique_ptr<Subject> subject = remake_(physique);
-    if (!subject) return false;
-    Trial trial{physique, Calibrator(*subject, cases_, options_).prospect(), 0.0};
-    trial.price = price_of(physique) * trial.prospect.motion;
-    trials_.push_back(std::move(trial));
-    return true;
-  }
-
-  double value(size_t trial, size_t without) const {
-    const Trial& at = trials_[trial];
-    return at.price + (without < places_.size() ? at.prospect.without[without] : at.prospect.whole);
-  }
-
-  size_t best_of(size_t without) const {
-    size_t best = 0;
-    for (size_t t = 1; t < trials_.size(); ++t)
-      if (value(t, without) < value(best, without)) best = t;
-    return best;
-  }
-
-  /// Both sides of a factor, then the vertex of the parabola through the three; leaves the best.
-  void search(Physique& best, double& factor) {
-    const size_t middle = best_of(places_.size());
-    const double step = 0.5 * std::log(options_.most_factor);
-    double values[3] = {0.0, value(middle, places_.size()), 0.0};
-    for (const int side : {-1, 1}) {
-      factor = std::exp(side * step);
-      if (!tried(best)) {
-        factor = 1.0;
-        return;
-      }
-      values[side + 1] = value(trials_.size() - 1, places_.size());
-    }
-    const double bend = values[0] - 2.0 * values[1] + values[2];
-    const double vertex = bend > 0.0              ? 0.5 * step * (values[0] - values[2]) / bend
-                          : values[0] < values[2] ? -2.0 * step
-                                                  : 2.0 * step;
-    factor = std::clamp(std::exp(vertex), options_.least_factor, options_.most_factor);
-    if (std::abs(std::log(factor)) > 0.02) tried(best);  // nearer to 1 it is as built
-    best = trials_[best_of(places_.size())].physique;
-  }
-
-  const CalibrationOptions& options_;
-  const Remake& remake_;
-  std::vector<size_t> places_;  ///< among all cases, of those searched by
-  std::vector<CalibrationCase> cases_;
-  std::vector<Trial> trials_;
-};
+/// By case: the physique that the others ask for; last, the one that all ask for.
+std::vector<Physique> physiques_of(const std::vector<CalibrationCase>& cases,
+                                   const CalibrationOptions& options, const Remake& remake) {
+  const std::vector<size_t> places = most_moving(cases, options.searched_cases);
+  std::vector<CalibrationCase> searched;
+  for (const size_t i : places)
+    searched.push_back(cases[i]);
+  PhysiqueSearch search(options, places.size(), [&](const Physique& physique) -> std::optional<Prospect> {
+    const std::unique_ptr<Subject> subject = remake(physique);
+    if (!subject) return std::nullopt;
+    return Calibrator(*subject, searched, options).prospect();
+  });
+  const std::vector<Physique> found = search.run();
+  std::vector<Physique> result(cases.size() + 1, found.back());
+  for (size_t k = 0; k < places.size(); ++k)
+    result[places[k]] = found[k];
+  return result;
+}
 
 void sum_up(const std::vector<double>& motion, Calibration& out) {
   double whole = 0.0, before = 0.0, after = 0.0, left_out = 0.0;
@@ -342,14 +293,12 @@ Calibration calibrate(Subject& subject, const std::vector<CalibrationCase>& case
                       const CalibrationOptions& options, const Remake& remake) {
   if (cases.empty()) throw Error("there is no expression to calibrate by");
   std::vector<Physique> physiques(cases.size() + 1);
-  if (remake) physiques = PhysiqueSearch(cases, options, remake).run(cases.size());
+  if (remake) physiques = physiques_of(cases, options, remake);
   const Physique own = physiques.back();
-  // Those that the cases left out ask for, each once; the person's own last.
-  std::vector<Physique> distinct;
+  // The person's own, then those that the cases left out ask for, each once.
+  std::vector<Physique> distinct = {own};
   for (const Physique& physique : physiques)
-    if (physique != own && std::find(distinct.begin(), distinct.end(), physique) == distinct.end())
-      distinct.push_back(physique);
-  distinct.push_back(own);
+    if (std::find(distinct.begin(), distinct.end(), physique) == distinct.end()) distinct.push_back(physique);
   Calibrator as_built(subject, cases, options);
   const std::vector<CaseFigures> before = as_built.before();
   std::vector<CaseFigures> left_out(cases.size());
@@ -359,9 +308,13 @@ Calibration calibrate(Subject& subject, const std::vector<CalibrationCase>& case
     for (size_t i = 0; i < cases.size(); ++i)
       judged.push_back(physiques[i] == physique);
     const std::unique_ptr<Subject> other = physique == Physique() ? nullptr : remake(physique);
-    out = Calibrator(other ? *other : subject, cases, options).run(judged);
+    Calibrator calibrator(other ? *other : subject, cases, options);
+    const bool is_own = physique == own;
+    const std::vector<double> kept = is_own ? std::vector{1.0, 0.5, 0.25, 0.0} : std::vector{out.gains_kept};
+    const Calibration found = calibrator.run(judged, kept);
     for (size_t i = 0; i < cases.size(); ++i)
-      if (judged[i]) left_out[i] = out.cases[i];
+      if (judged[i]) left_out[i] = found.cases[i];
+    if (is_own) out = found;
   }
   out.physique = own;
   for (size_t i = 0; i < cases.size(); ++i) {

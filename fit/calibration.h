@@ -44,6 +44,8 @@ struct CaseFigures {
 
 struct Calibration {
   std::vector<double> gains;  ///< one per channel: gain of this person's muscle relative to the table
+  /// Share of the gains' change from 1 that held-out expressions support: 1, 1/2, 1/4 or 0 of what was found.
+  double gains_kept = 1.0;
   Physique physique;
   std::vector<CaseFigures> cases;
   double before_share = 0.0, after_share = 0.0, left_out_share = 0.0;  ///< of all expressions' squared motion
@@ -51,10 +53,11 @@ struct Calibration {
 
 /// Identifies the gains of a person's muscles: one per channel, the same in every expression, by Gauss-Newton
 /// on the full simulation of all `cases` at once, regularised towards 1 and towards symmetry, with the weight
-/// of the regularisation chosen by cross-validation. With `remake`, the person's physique is identified
-/// first: a search over one factor after another on the full simulation, each with re-optimised gains
-/// (profile likelihood). Finally each case is evaluated with gains and a physique found without it. Throws
-/// fascia::Error if there are no cases.
+/// of the regularisation chosen by cross-validation; if held-out expressions nevertheless become worse than
+/// with the tables, only a part of the gains is kept, or none. With `remake`, the person's physique is
+/// identified first: a search over one factor after another on the full simulation, each with re-optimised
+/// gains (profile likelihood). Finally each case is evaluated with gains and a physique found without it.
+/// Throws fascia::Error if there are no cases.
 Calibration calibrate(Subject& subject, const std::vector<CalibrationCase>& cases,
                       const CalibrationOptions& options = {}, const Remake& remake = {});
 

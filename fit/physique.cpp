@@ -18,8 +18,14 @@ float height_of(const rig::Skull& skull, const char* name, float otherwise) {
   return otherwise;
 }
 
-/// By muscle: the third of the face that it lies in.
-std::vector<size_t> thirds(const rig::Rig& rig) {
+void scale(std::vector<float>& values, double by) {
+  for (float& value : values)
+    value *= static_cast<float>(by);
+}
+
+}  // namespace
+
+std::vector<size_t> thirds_of_face(const rig::Rig& rig) {
   constexpr float none = std::numeric_limits<float>::lowest();
   const float glabella = height_of(rig.skull, "glabella", none),
               subnasale = height_of(rig.skull, "subnasale", none);
@@ -34,15 +40,8 @@ std::vector<size_t> thirds(const rig::Rig& rig) {
   return result;
 }
 
-void scale(std::vector<float>& values, double by) {
-  for (float& value : values)
-    value *= static_cast<float>(by);
-}
-
-}  // namespace
-
 rig::Rig with_physique(rig::Rig rig, const Physique& physique) {
-  const std::vector<size_t> third = thirds(rig);
+  const std::vector<size_t> third = thirds_of_face(rig);
   for (size_t m = 0; m < rig.muscles.size(); ++m)
     rig.muscles[m].peak_shortening = std::min(
         most_shortening, rig.muscles[m].peak_shortening * static_cast<float>(physique.shortening[third[m]]));

@@ -137,22 +137,34 @@ void read_primitive(const tinygltf::Model& model, const tinygltf::Primitive& pri
   }
 }
 
-/// Extensions that change no geometry this reader takes, or that it has undone.
+/// Extensions that change no geometry that is read here (how things look, sound, move or are lit, and what is
+/// noted of them), or that have been undone.
 bool is_harmless(const std::string& extension) {
-  static const std::array<std::string, 6> known = {"KHR_mesh_quantization", "KHR_texture_basisu",
-                                                   "KHR_texture_transform", "KHR_lights_punctual",
-                                                   "KHR_animation_pointer", "KHR_xmp_json_ld"};
-  for (const char* family :
-       {"KHR_materials_", "EXT_texture_", "MSFT_texture_", "VRM", "FASCIA_", "ADOBE_materials_"})
+  static const std::array<std::string, 16> known = {"KHR_mesh_quantization",    "KHR_lights_punctual",
+                                                    "KHR_animation_pointer",    "KHR_interactivity",
+                                                    "KHR_node_hoverability",    "KHR_node_selectability",
+                                                    "KHR_techniques_webgl",     "EXT_lights_ies",
+                                                    "EXT_lights_image_based",   "EXT_mesh_features",
+                                                    "EXT_structural_metadata",  "EXT_instance_features",
+                                                    "CESIUM_primitive_outline", "FB_geometry_metadata",
+                                                    "GODOT_single_root",        "MSFT_lod"};
+  for (const char* family : {"KHR_materials_", "KHR_texture_", "KHR_xmp", "KHR_audio", "KHR_physics_",
+                             "EXT_texture_", "EXT_materials_", "MSFT_texture_", "MSFT_packing_",
+                             "ADOBE_materials_", "NV_materials_", "OMI_", "VRM", "FASCIA_"})
     if (extension.rfind(family, 0) == 0) return true;
   return std::find(known.begin(), known.end(), extension) != known.end();
 }
 
-void warn_of_extensions(Scene& scene, const gltf::Json& root) {
+/// A reader must not guess at a file that requires what it does not know (glTF 2.0, section 3.12).
+void check_extensions(const Scene& scene, const gltf::Json& root) {
+  std::string unknown;
   for (const gltf::Json& extension : root.value("extensionsRequired", gltf::Json::array()))
     if (extension.is_string() && !is_harmless(extension.get<std::string>()))
-      scene.warnings.push_back("the file requires the extension " + extension.get<std::string>() +
-                               ", which is not known here: the head may look other than it is read");
+      unknown += (unknown.empty() ? "" : ", ") + extension.get<std::string>();
+  if (!unknown.empty())
+    fail(scene,
+         "extensionsRequired: the file cannot be read without " + unknown +
+             ", which is not known here and may change the head's shape: export it without that extension");
 }
 
 /// glTF's major versions are other formats, in which the same names mean other things.
@@ -177,7 +189,7 @@ void read_document(Scene& scene, const std::vector<uint8_t>& bytes, const ReadOp
   };
   scene.document = gltf::self_contained(std::move(document), resolve, name, &scene.warnings);
   gltf::Json root = gltf::parsed(scene.document.json, name);
-  warn_of_extensions(scene, root);
+  check_extensions(scene, root);
   if (const size_t added = gltf::separate_instances(root)) {
     scene.document.json = gltf::text_of(root);
     scene.warnings.push_back(

@@ -24,7 +24,7 @@ namespace {
 
 fit::Remake remake_of(const fit::Subject& subject) {
   return [&subject](const fit::Physique& physique) -> std::unique_ptr<fit::Subject> {
-    if (physique.depth != 1.0) return nullptr;  // another build: `fascia calibrate` has it
+    if (physique.takes_build()) return nullptr;  // another build: `fascia calibrate` has it
     rig::RigFile file = subject.file();
     file.rig = fit::with_physique(std::move(file.rig), physique);
     return std::make_unique<fit::Subject>(std::move(file), subject.level_name());

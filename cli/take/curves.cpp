@@ -40,12 +40,12 @@ std::vector<std::string> Curves::unmatched(const Face& face) const {
 }
 
 void Curves::apply(double seconds, const Face& face) const {
-  check(fascia_curves_apply(curves_.get(), from_ + seconds, 1.0F, face.handle()), "curves");
+  check(fascia_curves_apply(curves_.get(), std::min(from_ + seconds, to_), 1.0F, face.handle()), "curves");
 }
 
 std::array<float, 4> Curves::head(double seconds) const {
   std::array<float, 4> quaternion = {};
-  check(fascia_curves_head(curves_.get(), from_ + seconds, quaternion.data()), "curves");
+  check(fascia_curves_head(curves_.get(), std::min(from_ + seconds, to_), quaternion.data()), "curves");
   return quaternion;
 }
 

@@ -29,6 +29,7 @@ class Curves {
   std::vector<std::string> notes() const { return {info_.notes, info_.notes + info_.note_count}; }
   /// Names that the face's rig has nothing for.
   std::vector<std::string> unmatched(const Face& face) const;
+  /// Sets the face's channels to what the curves hold at `seconds`, at the piece's end beyond it.
   void apply(double seconds, const Face& face) const;
   /// How the head is turned: a quaternion, x y z w.
   std::array<float, 4> head(double seconds) const;

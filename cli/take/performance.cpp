@@ -7,7 +7,7 @@
 namespace fascia::cli {
 
 size_t Take::frames() const {
-  return static_cast<size_t>(std::floor(curves.duration() * frames_per_second + 1e-6)) + 1;
+  return static_cast<size_t>(std::ceil(curves.duration() * frames_per_second - 1e-6)) + 1;
 }
 
 PerformanceFigures perform(const Take& take, Face& face, Progress& progress,

@@ -8,7 +8,8 @@
 
 namespace fascia::cli {
 
-/// A take to simulate: frames at an even rate from the curves' first key to their last.
+/// A take to simulate: frames at an even rate from the curves' first key up to the first frame that shows
+/// their last one.
 struct Take {
   const Curves& curves;
   double frames_per_second = 60.0;

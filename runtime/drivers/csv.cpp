@@ -29,6 +29,8 @@ double time_unit(std::string_view name) {
     if (key == spelled(milliseconds)) return 1e-3;
   for (const char* microseconds : {"time_us", "timestamp_us", "microseconds"})
     if (key == spelled(microseconds)) return 1e-6;
+  for (const char* nanoseconds : {"time_ns", "timestamp_ns", "nanoseconds"})
+    if (key == spelled(nanoseconds)) return 1e-9;
   return 0.0;
 }
 
@@ -43,6 +45,16 @@ bool is_missing(std::string_view cell) {
 std::optional<double> cell_number(std::string_view cell) {
   if (const auto value = number(cell)) return value;
   return number(cell, true);  // a cell is no comma's neighbour: it can only be a decimal one
+}
+
+/// "57 %" is .57.
+std::optional<double> cell_value(std::string_view cell) {
+  if (cell.empty() || cell.back() != '%') return cell_number(cell);
+  cell.remove_suffix(1);
+  while (!cell.empty() && cell.back() == ' ')
+    cell.remove_suffix(1);
+  const auto percent = cell_number(cell);
+  return percent ? std::optional(*percent / 100.0) : std::nullopt;
 }
 
 struct Columns {
@@ -126,7 +138,8 @@ std::vector<double> plain_column(const Table& table, std::size_t column) {
   return times;
 }
 
-/// Times in seconds: a wall clock in milliseconds, or steps no recorder makes, are milliseconds.
+/// Times in seconds: a wall clock in milli-, micro- or nanoseconds is known by its size; steps no recorder
+/// makes are milliseconds.
 void to_seconds(std::vector<double>& times, double unit, double given, Curves& result) {
   if (given > 0.0) {
     unit = given;
@@ -138,9 +151,11 @@ void to_seconds(std::vector<double>& times, double unit, double given, Curves& r
     std::nth_element(steps.begin(), middle, steps.end());
     const bool is_wall_clock = std::abs(times[0]) > 1e11;
     if (is_wall_clock || (times.size() >= 10 && *middle >= 4.0 && *middle <= 250.0)) {
-      unit = std::abs(times[0]) > 1e14 ? 1e-6 : 1e-3;
-      result.notes.emplace_back(unit == 1e-3 ? "times are taken as milliseconds"
-                                             : "times are taken as microseconds");
+      const double size = std::abs(times[0]);
+      unit = size > 1e17 ? 1e-9 : size > 1e14 ? 1e-6 : 1e-3;
+      result.notes.emplace_back(unit == 1e-3   ? "times are taken as milliseconds"
+                                : unit == 1e-6 ? "times are taken as microseconds"
+                                               : "times are taken as nanoseconds");
     }
   }
   const double first = times[0];
@@ -215,7 +230,7 @@ Curve read_column(const Table& table, std::size_t c, const std::vector<std::size
       if (!cell.empty() && gaps.cells++ == 0) gaps.first_line = table.lines[row];
       continue;
     }
-    const auto value = cell_number(cell);
+    const auto value = cell_value(cell);
     if (!value) throw Error(where(table.lines[row], curve.name) + "\"" + shown(cell) + "\" is not a number");
     curve.times.push_back(times[row]);
     curve.values.push_back(static_cast<float>(*value));

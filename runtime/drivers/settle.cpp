@@ -11,6 +11,10 @@ namespace fascia::runtime {
 namespace {
 
 constexpr double longest_take = 6 * 3600.0;  // seconds
+/// A recording in which nothing comes for so long, and for so many of its usual steps, was stopped between.
+constexpr double longest_pause = 600.0;  // seconds
+constexpr double most_steps = 100.0;
+constexpr double pause_left = 1.0;  // seconds that remain of such a pause
 
 std::string rounded(double value) {
   char text[32];
@@ -37,6 +41,59 @@ std::string some(const std::vector<std::string>& names) {
   for (std::size_t i = 0; i < names.size() && i < 3; ++i)
     text += (i > 0 ? ", " : "") + names[i];
   return names.size() > 3 ? text + " and " + std::to_string(names.size() - 3) + " more" : text;
+}
+
+/// All times at which any curve has a key, rising, each once.
+std::vector<double> times_of_keys(const Curves& curves) {
+  std::vector<double> times;
+  const std::vector<double>* last = nullptr;
+  for (const Curve& curve : curves.curves) {
+    if (last == nullptr || *last != curve.times)
+      times.insert(times.end(), curve.times.begin(), curve.times.end());
+    last = &curve.times;
+  }
+  std::sort(times.begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  return times;
+}
+
+double median_step(const std::vector<double>& times) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < times.size(); ++i)
+    steps.push_back(times[i] - times[i - 1]);
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  return *middle;
+}
+
+struct Pause {
+  double end = 0.0;    ///< seconds, where the file has it
+  double taken = 0.0;  ///< seconds that are taken off, of this pause and of all before it
+};
+
+/// Pauses of the recorder: nobody waits for them to be simulated. Leaves a second of each.
+void shorten_pauses(Curves& curves) {
+  const std::vector<double> times = times_of_keys(curves);
+  if (times.size() < 3) return;
+  const double longest = std::max(longest_pause, most_steps * median_step(times));
+  std::vector<Pause> pauses;
+  double taken = 0.0;
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    const double pause = times[i] - times[i - 1];
+    if (pause <= longest) continue;
+    pauses.push_back({times[i], taken += pause - pause_left});
+    curves.notes.push_back("nothing was recorded for " + rounded(pause) + " s from " +
+                           rounded(times[i - 1] - times.front()) +
+                           " s on: of this pause 1 s is left, and what follows comes earlier");
+  }
+  for (Curve& curve : curves.curves) {
+    std::size_t passed = 0;
+    for (double& time : curve.times) {
+      while (passed < pauses.size() && time >= pauses[passed].end)
+        ++passed;
+      if (passed > 0) time -= pauses[passed - 1].taken;
+    }
+  }
 }
 
 void start_at_zero(Curves& curves) {
@@ -122,6 +179,7 @@ void settle(Curves& curves) {
   });
   if (curves.curves.empty()) throw Error("curves: the file has no column of values");
   prefer_intensity(curves);
+  shorten_pauses(curves);
   start_at_zero(curves);
   scale_to_shares(curves);
 }

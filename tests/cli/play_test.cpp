@@ -71,6 +71,15 @@ TEST_F(Play, ATakeStartsAtItsFirstKey) {
   EXPECT_EQ(before["largest_error_mm"], epoch["largest_error_mm"]);
 }
 
+TEST_F(Play, TheLastRowIsPlayedWhereItFallsBetweenFrames) {
+  const json whole = play("time,jawOpen\n0,0\n0.5,0\n0.51,1\n", "--fps 30");
+  EXPECT_EQ(whole["frames"], 17);
+  EXPECT_GT(whole["morph_targets"], 0) << "the jaw opens in the last hundredth of a second only";
+  const json piece = play("time,jawOpen\n0,0\n0.5,0\n0.51,1\n", "--fps 30 --to 0.49");
+  EXPECT_EQ(piece["frames"], 16);
+  EXPECT_EQ(piece["morph_targets"], 0) << "beyond its end the piece holds";
+}
+
 TEST_F(Play, TimecodesTellTheirRate) {
   std::string take = "Timecode,BlendShapeCount,JawOpen,HeadYaw,LeftEyeYaw\n";
   for (int f = 0; f < 45; ++f) {

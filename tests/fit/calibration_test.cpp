@@ -7,6 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "cli/calibrate_depth.h"
 #include "formats/scene.h"
 #include "geometry/error.h"
 #include "tests/fit/embedded_subject.h"
@@ -31,6 +32,14 @@ class Calibrate : public EmbeddedSubject {
     return {name,
             {subject->displacements(values), std::vector<double>(subject->vertex_count(), 1.0)},
             values_of(set)};
+  }
+
+  /// Length of a region's outline.
+  static float girth(const std::vector<rig::Vec3f>& region) {
+    float sum = 0.0F;
+    for (size_t i = 0; i < region.size(); ++i)
+      sum += (region[(i + 1) % region.size()] - region[i]).norm();
+    return sum;
   }
 
   static double gain(const Calibration& calibration, const std::string& channel) {
@@ -94,7 +103,7 @@ TEST_F(Calibrate, APhysiqueChangesWhatItSaysAndNothingElse) {
 /// physique does.
 TEST_F(Calibrate, APhysiqueIsFoundAndServesExpressionsLeftOut) {
   const Remake remake = [](const Physique& physique) -> std::unique_ptr<Subject> {
-    if (physique.depth != 1.0) return nullptr;
+    if (physique.takes_build()) return nullptr;
     rig::RigFile file = subject->file();
     file.rig = with_physique(std::move(file.rig), physique);
     return std::make_unique<Subject>(std::move(file), "low");
@@ -122,6 +131,22 @@ TEST_F(Calibrate, APhysiqueIsFoundAndServesExpressionsLeftOut) {
   EXPECT_GT(all.after_share, gains.after_share);
   EXPECT_LT(1.0 - all.left_out_share, 0.9 * (1.0 - gains.left_out_share));
   EXPECT_DOUBLE_EQ(all.before_share, gains.before_share);
+}
+
+/// The same muscles weak in one expression and strong in the next: what one says makes the other worse.
+TEST_F(Calibrate, GainsThatExpressionsLeftOutContradictAreNotKept) {
+  const Named smile = {{"zygomaticus_major_superior_left", 0.5F}, {"zygomaticus_major_superior_right", 0.5F}};
+  Named open_smile = smile;
+  open_smile["jaw_open"] = 0.3F;
+  const Named weak = {{"zygomaticus_major_superior_left", 0.4F}, {"zygomaticus_major_superior_right", 0.4F}};
+  const Named strong = {{"zygomaticus_major_superior_left", 2.0F},
+                        {"zygomaticus_major_superior_right", 2.0F}};
+  CalibrationOptions options;
+  options.prior = 1e-6;
+  const Calibration found =
+      calibrate(*subject, {seen("smile", smile, weak), seen("open smile", open_smile, strong)}, options);
+  EXPECT_GE(found.left_out_share, found.before_share - 1e-12);
+  EXPECT_LT(found.gains_kept, 1.0);
 }
 
 TEST_F(Calibrate, TheTablesOwnPersonStaysAsTheyAre) {
@@ -160,6 +185,26 @@ TEST_F(Calibrate, TheToolWritesARigWithTablesOfItsOwn) {
   EXPECT_FALSE(fs::exists(at("x.glb")));
 }
 
+TEST_F(Calibrate, MusclesOfAThirdAreBuiltBroader) {
+  const std::vector<uint8_t> bytes = formats::read_bytes(at("rig.glb"));
+  const rig::RigFile file = rig::read(bytes);
+  cli::RebuiltRig rebuilt(bytes, file);
+  Physique broad;
+  broad.breadth[2] = 1.3;
+  EXPECT_TRUE(broad.takes_build());
+  const rig::Rig* other = rebuilt.at(broad, "low");
+  ASSERT_NE(other, nullptr) << rebuilt.fault();
+  EXPECT_EQ(rebuilt.at(broad, "low"), other) << "kept";
+  std::map<std::string, float> ratio;
+  for (size_t m = 0; m < file.rig.muscles.size(); ++m)
+    if (!file.rig.muscles[m].origin_region.empty())
+      ratio[file.rig.muscles[m].name] =
+          girth(other->muscles[m].origin_region) / girth(file.rig.muscles[m].origin_region);
+  EXPECT_GT(ratio.at("depressor_anguli_oris_left"), 1.1F);
+  EXPECT_NEAR(ratio.at("frontalis_medial_left"), 1.0F, 1e-3F) << "another third";
+  EXPECT_NEAR(ratio.at("masseter_superficial_left"), 1.0F, 1e-3F) << "no mimic muscle";
+}
+
 /// The same skin over a skull that lies deeper.
 TEST_F(Calibrate, TheToolFindsTheDepthOfTheTissue) {
   fs::create_directories(*folder / "deep");
@@ -180,6 +225,7 @@ TEST_F(Calibrate, TheToolFindsTheDepthOfTheTissue) {
   };
   const json gains = calibrated("gains"), all = calibrated("all");
   EXPECT_EQ(gains["physique"]["tissue_depth"], 1.0);
+  EXPECT_EQ(gains["physique"]["muscle_breadth_lower_face"], 1.0);
   EXPECT_GT(all["physique"]["tissue_depth"], 1.05);
   EXPECT_GE(all["after_share"], gains["after_share"]);
   EXPECT_EQ(run("info " + at("own_depth.glb") + " --validate --quiet").code, 0);

@@ -344,12 +344,19 @@ TEST(ReadGltf, EachNodeOfASharedMeshGetsItsOwn) {
   EXPECT_EQ(scene.warnings.size(), 1u);
 }
 
-TEST(ReadGltf, WarnsOfARequiredExtensionNobodyKnows) {
-  std::string text = gltf_with(R"([{"mesh":0}])");
-  text.replace(1, 0, R"("extensionsUsed":["ACME_shapes"],"extensionsRequired":["ACME_shapes"],)");
-  const Scene scene = read("x.gltf", bytes_of(text));
-  ASSERT_EQ(scene.warnings.size(), 1u);
-  EXPECT_NE(scene.warnings[0].find("ACME_shapes"), std::string::npos);
+TEST(ReadGltf, RefusesARequiredExtensionThatMayChangeTheShape) {
+  const auto with = [](const std::string& extensions) {
+    std::string text = gltf_with(R"([{"mesh":0}])");
+    return text.replace(1, 0,
+                        "\"extensionsUsed\":" + extensions + ",\"extensionsRequired\":" + extensions + ",");
+  };
+  const std::string said =
+      message_of("x.gltf", with(R"(["KHR_materials_unlit","ACME_shapes","EXT_mesh_gpu_instancing"])"));
+  EXPECT_NE(said.find("without ACME_shapes, EXT_mesh_gpu_instancing"), std::string::npos) << said;
+  EXPECT_NE(said.find("export it"), std::string::npos) << said;
+  const Scene scene =
+      read("y.gltf", bytes_of(with(R"(["KHR_materials_unlit","KHR_audio_emitter","VRMC_vrm"])")));
+  EXPECT_TRUE(scene.warnings.empty());
 }
 
 TEST(ReadGltf, FarNodesComeNearAndTheirPrimitivesStay) {

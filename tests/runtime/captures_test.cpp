@@ -130,6 +130,9 @@ TEST(Tables, TimeCountsFromTheFirstKey) {
   // Milliseconds: by their name, since 1970, by steps no recorder makes in seconds, or as told.
   EXPECT_NEAR(read("time_ms,jawOpen\n0,0\n500,1\n").duration(), 0.5, 1e-12);
   EXPECT_NEAR(read("timestamp,jawOpen\n1732780800250,0\n1732780800750,1\n").duration(), 0.5, 1e-9);
+  EXPECT_NEAR(read("timestamp,jawOpen\n1732780800250000000,0\n1732780800750000000,1\n").duration(), 0.5,
+              1e-6);
+  EXPECT_NEAR(read("time_ns,jawOpen\n0,0\n500000000,1\n").duration(), 0.5, 1e-12);
   std::string steps = "time,jawOpen\n";
   for (int i = 0; i < 31; ++i)
     steps += std::to_string(33 * i) + ",0\n";
@@ -142,6 +145,31 @@ TEST(Tables, TimeCountsFromTheFirstKey) {
   // Rows without a time, at the rate that is given.
   EXPECT_NE(message_of("frame,jawOpen\n0,0\n1,1\n").find("--fps-in"), std::string::npos);
   EXPECT_NEAR(read("frame,jawOpen\n0,0\n1,1\n", {25.0, 0.0}).duration(), 0.04, 1e-12);
+}
+
+TEST(Tables, CellsMayBePercent) {
+  const Curves curves = read("time;jawOpen;browInnerUp\n0;0%;0,1\n1;57,5 %;0,1\n");
+  EXPECT_FLOAT_EQ(value(curves, "jawOpen", 1), 0.575F);
+  EXPECT_FLOAT_EQ(value(curves, "browInnerUp", 1), 0.1F);
+  EXPECT_NE(message_of("time,jawOpen\n0,%\n").find("\"%\" is not a number"), std::string::npos);
+}
+
+TEST(Tables, APauseOfTheRecorderIsShortened) {
+  std::string text = "time,jawOpen,browInnerUp\n";
+  for (int row = 0; row < 62; ++row) {
+    const double time = row / 30.0 + (row > 30 ? 3600.0 : 0.0);
+    text += std::to_string(time) + "," + (row > 30 ? "1" : "0") + "," + (row == 10 ? "" : "0.5") + "\n";
+  }
+  const Curves curves = read(text);
+  EXPECT_TRUE(has_note(curves, "nothing was recorded for 3600 s from 1 s on"));
+  EXPECT_NEAR(curves.duration(), 1.0 + 1.0 + 1.0, 1e-5);  // a second of the pause is left
+  EXPECT_FLOAT_EQ(value(curves, "jawOpen", 1.0), 0.0F);
+  EXPECT_NEAR(value(curves, "jawOpen", 1.5), 0.5, 1e-4);
+  EXPECT_FLOAT_EQ(value(curves, "jawOpen", 2.01), 1.0F);
+  // Minutes between keys that somebody set are minutes.
+  const Curves keyed = read("time,jawOpen\n0,0\n700,1\n1400,0\n");
+  EXPECT_NEAR(keyed.duration(), 1400.0, 1e-9);
+  EXPECT_FALSE(has_note(keyed, "nothing was recorded"));
 }
 
 TEST(Tables, RowsALittleOutOfOrderAreSortedAndTwoTakesAreRefused) {
