@@ -10,6 +10,7 @@
 #include "cli/posed_output.h"
 #include "cli/progress.h"
 #include "cli/take/point_cache.h"
+#include "formats/partial.h"
 #include "formats/scene.h"
 #include "geometry/error.h"
 #include "geometry/nearest_names.h"
@@ -78,8 +79,13 @@ std::vector<ShapeToBake> shapes_of(const Face& face, const BakeRequest& request)
 }
 
 std::string format_of(const BakeRequest& request) {
-  if (!request.format.empty()) return request.format;
   const std::string extension = extension_of(request.output);
+  if (!request.format.empty()) {
+    if (request.format != "obj-sequence" && extension != "." + request.format)
+      throw Error("'" + request.output.string() + "': --format " + request.format + " writes ." +
+                  request.format + ": end the output's name so, or leave --format out");
+    return request.format;
+  }
   if (extension == ".glb") return "glb";
   if (extension == ".pc2") return "pc2";
   throw Error("'" + request.output.string() +
@@ -120,9 +126,12 @@ void write_glb(const Common& common, const BakeRequest& request, const Face& fac
 
 void write_sequence(const Common& common, const BakeRequest& request, Face& face,
                     const std::vector<ShapeToBake>& shapes, BakeFigures& figures) {
+  formats::PartialGroup together;
+  together.add(request.output);
   make_output_folder(request.output);
   const auto write = [&](const std::string& name) {
     figures.files.push_back(request.output / (name + ".obj"));
+    together.add(figures.files.back());
     write_posed_mesh(request.rig, face, figures.files.back());
   };
   write("rest");
@@ -132,6 +141,7 @@ void write_sequence(const Common& common, const BakeRequest& request, Face& face
     pose_shape(face, shape);
     write(shape.name);
   }
+  together.keep();
 }
 
 void write_cache(const Common& common, const BakeRequest& request, Face& face,

@@ -291,9 +291,10 @@ void add_calibrate(const Command& tool, Common& common) {
   command.option("--level", &request->level, "Level of detail to calibrate at")
       .one_of({"low", "medium", "high"});
   command
-      .option("--adjust", &request->adjust,
-              "What to identify: muscle gains only, or also the depth and stiffness of tissue and, by thirds of "
-              "the face, peak shortening and the breadth of attachment regions")
+      .option(
+          "--adjust", &request->adjust,
+          "What to identify: muscle gains only, or also the depth and stiffness of tissue and, by thirds of "
+          "the face, peak shortening and the breadth of attachment regions")
       .one_of({"all", "gains"});
   command
       .option("--prior", &request->options.prior,

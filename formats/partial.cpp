@@ -17,7 +17,7 @@ struct Place {
   std::atomic<bool> is_used = false;
 };
 
-constinit std::array<Place, 64> table;
+constinit std::array<Place, 1024> table;
 
 std::mutex& writers() {
   static std::mutex mutex;
@@ -49,6 +49,28 @@ void forget_partial(const std::filesystem::path& path) {
 void remove_partial_files() {
   for (Place& place : table)
     if (place.is_used) unlink(place.path.data());
+  for (Place& place : table)
+    if (place.is_used) rmdir(place.path.data());
+}
+
+PartialGroup::~PartialGroup() {
+  std::error_code ignored;
+  for (auto path = paths_.rbegin(); path != paths_.rend(); ++path)
+    std::filesystem::remove(*path, ignored);
+  keep();
+}
+
+void PartialGroup::add(const std::filesystem::path& path) {
+  std::error_code ignored;
+  if (std::filesystem::exists(std::filesystem::symlink_status(path, ignored))) return;
+  paths_.push_back(path);
+  remember_partial(path);
+}
+
+void PartialGroup::keep() {
+  for (const std::filesystem::path& path : paths_)
+    forget_partial(path);
+  paths_.clear();
 }
 
 }  // namespace fascia::formats

@@ -1,15 +1,34 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 namespace fascia::formats {
 
-/// A register of temporary files, so that an interrupted program can delete them. At most 64 files at a time,
-/// with paths of at most 4,095 bytes, are registered.
+/// Files, and folders, that are being written, so that a program which is interrupted can take them away. Of
+/// more than 1,024 at a time, or paths of more than 4,095 bytes, the rest are not remembered.
 void remember_partial(const std::filesystem::path& path);
 void forget_partial(const std::filesystem::path& path);
 
-/// Deletes the registered files. May be called in a signal handler.
+/// Deletes what is remembered: files, then folders that are empty. May be called in a signal handler.
 void remove_partial_files();
+
+/// Files and folders that only make sense together. Until all are there, an interruption or an error takes
+/// away those that are new.
+class PartialGroup {
+ public:
+  PartialGroup() = default;
+  ~PartialGroup();
+  PartialGroup(const PartialGroup&) = delete;
+  PartialGroup& operator=(const PartialGroup&) = delete;
+
+  /// Before `path` is made. What is there already is not taken away.
+  void add(const std::filesystem::path& path);
+  /// All is there.
+  void keep();
+
+ private:
+  std::vector<std::filesystem::path> paths_;
+};
 
 }  // namespace fascia::formats

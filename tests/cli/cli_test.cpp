@@ -147,6 +147,12 @@ TEST_F(Tool, FoldersThatAreNotThereAreNotMade) {
   EXPECT_FALSE(fs::exists(at("no")));
 }
 
+TEST_F(Tool, BakedFilesBearTheNameOfTheirFormat) {
+  expect_input_error("bake " + at("rig.glb") + " --level low --format glb -o " + at("x.pc2"),
+                     "--format glb writes .glb");
+  EXPECT_FALSE(fs::exists(at("x.pc2")));
+}
+
 TEST_F(Tool, FaultyInputIsOneAndNamed) {
   std::ofstream(at("empty.glb"));
   std::ofstream(at("text.glb")) << "hello";

@@ -153,6 +153,46 @@ TEST_F(Files, ASignalLeavesNothingHalfWritten) {
   }
 }
 
+TEST_F(Files, WhatBelongsTogetherIsThereAsAWholeOrNotAtAll) {
+  const fs::path shapes = folder_ / "shapes";
+  const auto write = [&](PartialGroup& together, const fs::path& folder) {
+    together.add(folder);
+    fs::create_directory(folder);
+    for (int i = 0; i < 100; ++i) {
+      const fs::path file = folder / (std::to_string(i) + ".obj");
+      together.add(file);
+      write_text(file, "v 0 0 0");
+    }
+  };
+  {
+    PartialGroup together;
+    write(together, shapes);
+  }
+  EXPECT_FALSE(fs::exists(shapes)) << "an error came between";
+  const pid_t child = fork();
+  if (child == 0) {
+    PartialGroup together;
+    write(together, shapes);
+    remove_partial_files();
+    _exit(0);
+  }
+  waitpid(child, nullptr, 0);
+  EXPECT_FALSE(fs::exists(shapes)) << "a signal came between";
+  fs::create_directory(shapes);
+  write_text(shapes / "7.obj", "old");
+  {
+    PartialGroup together;
+    write(together, shapes);
+  }
+  EXPECT_EQ(std::distance(fs::directory_iterator(shapes), {}), 1) << "what was there stays";
+  {
+    PartialGroup together;
+    write(together, shapes);
+    together.keep();
+  }
+  EXPECT_EQ(std::distance(fs::directory_iterator(shapes), {}), 100);
+}
+
 TEST(ObjLines, PlacesOfCoordinatesAreTheirBytes) {
   const std::string text = "\xEF\xBB\xBFvn 9 9 9\r  v 1 2.5 -3e1 0.7 0.7 0.7\r\nv 4 \\\n5\t6\nvt 1 1";
   const std::vector<ObjVertex> vertices = obj_vertices(text);
