@@ -1,6 +1,7 @@
 #include "cli/fit_match.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
 #include "builder/rigging/gltf_source.h"
@@ -26,6 +27,17 @@ void fail_topology(const std::filesystem::path& path, const fit::Subject& subjec
 
 namespace {
 
+/// The mesh's vertices in the rig's order. A rig from an OBJ has them as its faces first name them, any other
+/// as they stand in its file, and so do the `v` lines of an OBJ that shows it.
+std::vector<uint32_t> in_order_of_rig(const formats::SceneMesh& mesh, const fit::Subject& subject) {
+  std::vector<uint32_t> points = counted(0, mesh.positions.size());
+  if (subject.file().source.format != "obj" && mesh.source_vertices.size() == points.size())
+    std::stable_sort(points.begin(), points.end(), [&](uint32_t a, uint32_t b) {
+      return mesh.source_vertices[a] < mesh.source_vertices[b];
+    });
+  return points;
+}
+
 /// As `matches`, but empty when none is there.
 std::vector<Match> matches_or_none(const formats::Scene& scene, const fit::Subject& subject) {
   const auto& primitives = subject.file().primitives;
@@ -46,7 +58,10 @@ std::vector<Match> matches_or_none(const formats::Scene& scene, const fit::Subje
         best_rank = rank;
       }
     }
-    if (best >= 0) found.push_back({p, static_cast<size_t>(best), counted(0, count)});
+    if (best >= 0) {
+      const auto at = static_cast<size_t>(best);
+      found.push_back({p, at, in_order_of_rig(scene.meshes[at], subject)});
+    }
   }
   if (found.empty() && scene.meshes.size() == 1 && scene.meshes[0].positions.size() == subject.vertex_count())
     for (size_t p = 0; p < primitives.size(); ++p)

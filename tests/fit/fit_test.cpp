@@ -196,6 +196,19 @@ TEST_F(Fit, ToolFitsShapesAndTakes) {
   EXPECT_GT(json::parse(one.out)["share"].get<double>(), 0.98);
 }
 
+/// A head that came as GLB, seen as OBJ: its vertices stand in another order than its faces name them in.
+TEST_F(Fit, APosedObjOfAGltfHeadIsTakenInItsOrder) {
+  ASSERT_EQ(run("pose " + at("rig.glb") + " -o " + at("rest.glb")).code, 0);
+  const cli::Outcome built =
+      run("build " + at("rest.glb") + " --detail low -o " + at("gltf.glb") + " --quiet");
+  ASSERT_EQ(built.code, 0) << built.err;
+  ASSERT_EQ(run("pose " + at("gltf.glb") + " --set zygomaticus_minor_left=0.7 -o " + at("seen.obj")).code, 0);
+  const cli::Outcome fitted =
+      run("fit " + at("gltf.glb") + " --target " + at("seen.obj") + " -o " + at("a.json") + " --json");
+  ASSERT_EQ(fitted.code, 0) << fitted.err;
+  EXPECT_GT(json::parse(fitted.out)["share"].get<double>(), 0.99);
+}
+
 /// A PC2 cache of the whole OBJ in its own vertex order.
 TEST_F(Fit, ToolFitsACache) {
   ASSERT_EQ(run("pose " + at("rig.glb") + " --set zygomaticus_minor_left=0.6 -o " + at("frame.obj")).code, 0);
