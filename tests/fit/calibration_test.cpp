@@ -166,8 +166,8 @@ TEST_F(Calibrate, TheToolWritesARigWithTablesOfItsOwn) {
               0);
   }
   std::ofstream(at("scans/notes.txt")) << "not a mesh";
-  const cli::Outcome done =
-      run("calibrate " + at("rig.glb") + " --scans " + at("scans") + " -o " + at("own.glb") + " --json");
+  const cli::Outcome done = run("calibrate " + at("rig.glb") + " --scans " + at("scans") +
+                                " --adjust gains -o " + at("own.glb") + " --json");
   ASSERT_EQ(done.code, 0) << done.err;
   const json report = json::parse(done.out);
   EXPECT_GT(report["after_share"].get<double>(), report["before_share"].get<double>());
