@@ -107,21 +107,24 @@ PreparedHead prepare(const formats::Scene& scene, const formats::LandmarkFile& g
   return head;
 }
 
-void turn(PreparedHead& head, const Mat3& rotation) {
+void move(PreparedHead& head, const Mat3& rotation, const Vec3& translation) {
+  Mat4 map = Mat4::Identity();
+  map.topLeftCorner<3, 3>() = rotation;
+  map.topRightCorner<3, 1>() = translation;
   for (PreparedMesh& mesh : head.meshes)
     for (Vec3& p : mesh.positions)
-      p = rotation * p;
+      p = rotation * p + translation;
   for (Vec3& p : head.skin.vertices)
-    p = rotation * p;
+    p = rotation * p + translation;
   if (head.surface) head.surface.emplace(head.skin);
   for (auto& [name, p] : head.landmarks)
-    p = rotation * p;
+    p = rotation * p + translation;
   for (std::optional<Eyeball>* eye : {&head.eye_left, &head.eye_right})
     if (*eye) {
-      (*eye)->centre = rotation * (*eye)->centre;
+      (*eye)->centre = rotation * (*eye)->centre + translation;
       (*eye)->gaze = rotation * (*eye)->gaze;
     }
-  head.input_to_metres.topRows<3>() = rotation * head.input_to_metres.topRows<3>();
+  head.input_to_metres = map * head.input_to_metres;
 }
 
 }  // namespace fascia::prepare

@@ -103,8 +103,8 @@ std::vector<TriangleMesh> search_surfaces(const formats::Scene& scene, const std
 PreparedHead prepare(const formats::Scene& scene, const formats::LandmarkFile& given,
                      const std::map<std::string, Vec3>& reference, const PrepareOptions& options);
 
-/// Turns the rig frame about its origin: every place and direction of `head` by `rotation`, and the map that
-/// leads from the file.
-void turn(PreparedHead& head, const Mat3& rotation);
+/// Changes the rig frame: every position p of `head` becomes rotation * p + translation (metres), directions
+/// are rotated, and so is the map that leads from the file.
+void move(PreparedHead& head, const Mat3& rotation, const Vec3& translation);
 
 }  // namespace fascia::prepare

@@ -151,8 +151,12 @@ rig::GltfSource gltf_source(const formats::Scene& scene, const Mat4& input_to_me
   gltf::Json json = {{"asset", {{"version", "2.0"}, {"generator", "fascia"}}}, {"scene", 0}};
   json["scenes"] = gltf::Json::array({{{"nodes", {0}}}});
   gltf::Json root = {{"name", scene.path.stem().string()}};
-  std::vector<double> matrix(input_to_metres.data(), input_to_metres.data() + 16);
-  if (input_to_metres != Mat4::Identity()) root["matrix"] = matrix;
+  // Turned and scaled to glTF's axes and metres; a character stays on its origin, wherever the rig has its
+  // own.
+  Mat4 to_metres = input_to_metres;
+  to_metres.topRightCorner<3, 1>().setZero();
+  const std::vector<double> matrix(to_metres.data(), to_metres.data() + 16);
+  if (to_metres != Mat4::Identity()) root["matrix"] = matrix;
   json["nodes"].push_back(root);
   json["materials"] = gltf::Json::array(
       {{{"name", "head"}, {"pbrMetallicRoughness", {{"metallicFactor", 0.0}, {"roughnessFactor", 0.6}}}}});

@@ -148,6 +148,15 @@ Points reference_points(const anatomy::GenericAnatomy& anatomy) {
   return points;
 }
 
+/// Changes the rig frame: x becomes rotation * x + translation (metres).
+void move_frame(FoundLandmarks& result, const Mat3& rotation, const Vec3& translation) {
+  prepare::move(result.head, rotation, translation);
+  if (result.mirror)
+    result.mirror = {rotation * result.mirror->point + translation, rotation * result.mirror->normal};
+  for (auto& [name, landmark] : result.landmarks)
+    landmark.position = rotation * landmark.position + translation;
+}
+
 /// Turns the rig frame until the face's mirror plane is its own, for what follows tells left from right by
 /// the axes: a head that leans a little would move otherwise on one side than on the other. What leans by
 /// less than landmarks are found to keeps the file's axes.
@@ -155,11 +164,21 @@ void set_upright(FoundLandmarks& result, const landmarks::FaceMirror& mirror) {
   const double least = (mirror.is_exact ? 0.25 : 0.75) * EIGEN_PI / 180.0;
   const Mat3 turn = landmarks::upright(mirror.plane);
   result.mirror = mirror.plane;
-  if (Eigen::AngleAxisd(turn).angle() < least) return;
-  result.mirror = {turn * mirror.plane.point, turn * mirror.plane.normal};
-  prepare::turn(result.head, turn);
-  for (auto& [name, landmark] : result.landmarks)
-    landmark.position = turn * landmark.position;
+  if (Eigen::AngleAxisd(turn).angle() >= least) move_frame(result, turn, Vec3::Zero());
+}
+
+/// Moves the rig frame's origin near the face where it is far from it, as in a character that stands on its
+/// origin: the runtime computes in single precision, and at 1.6 m rounding ends a static pose's line search
+/// millimetres before its minimum.
+void centre_frame(FoundLandmarks& result) {
+  constexpr double farthest = 0.25,
+                   step = 0.125;  // metres; whole steps, so that coordinates keep their digits
+  if (result.landmarks.empty()) return;
+  Vec3 centre = Vec3::Zero();
+  for (const auto& [name, landmark] : result.landmarks)
+    centre += landmark.position / static_cast<double>(result.landmarks.size());
+  if (centre.norm() < farthest) return;
+  move_frame(result, Mat3::Identity(), -step * (centre / step).array().round().matrix());
 }
 
 /// Makes the eyeballs of a head that is its own mirror image each other's images too, where they nearly are:
@@ -223,6 +242,7 @@ FoundLandmarks find_landmarks(const formats::Scene& file, const formats::Landmar
     if (mirror->is_exact) pair_eyes(result.head, mirror->plane);
     set_upright(result, *mirror);
   }
+  centre_frame(result);
   place_pupils(result, given);
   result.seconds = {located_at - started, prepared_at - located_at, now() - prepared_at};
   return result;
