@@ -39,6 +39,22 @@ DistanceField::DistanceField(const Lattice& lattice, size_t index)
   for (size_t f = 0; f < index; ++f)
     first += count(f);
   values_ = lattice.contact_field_values.subspan(first, count(index));
+  steepness_ = largest_slope();
+}
+
+double DistanceField::largest_slope() const {
+  // A B-spline's slope along an axis lies between the differences of neighbours along it.
+  const size_t strides[3] = {1, size_[0], static_cast<size_t>(size_[0]) * size_[1]};
+  double squared = 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const size_t stride = strides[axis], along = size_[static_cast<size_t>(axis)];
+    int most = 0;
+    for (size_t block = 0; block + stride * along <= values_.size(); block += stride * along)
+      for (size_t i = block; i + stride < block + stride * along; ++i)
+        most = std::max(most, std::abs(static_cast<int>(values_[i + stride]) - values_[i]));
+    squared += static_cast<double>(most) * most;
+  }
+  return std::sqrt(squared) * step_ / spacing_;
 }
 
 double DistanceField::sample(const Vec3& point, Vec3& gradient) const {

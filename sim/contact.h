@@ -32,12 +32,17 @@ class DistanceField {
   /// Distance in metres at `point`, negative inside, and its gradient: quadratic B-splines on the grid, so
   /// the gradient is continuous. Outside the grid it is extrapolated.
   double sample(const Vec3& point, Vec3& gradient) const;
+  /// Upper bound of the gradient's length: how much the distance may change over a metre. 1 for an exact
+  /// field of one solid; its grid, its rounding and surfaces thinner than a cell make it more.
+  double steepness() const { return steepness_; }
 
  private:
+  double largest_slope() const;
+
   std::span<const uint8_t> values_;
   std::array<uint32_t, 3> size_;
   Vec3 origin_;
-  double spacing_, step_;
+  double spacing_, step_, steepness_ = 1.0;
 };
 
 /// A contact pair of a node and a triangle of the facing lip or lid, both free to move; the normal is fixed

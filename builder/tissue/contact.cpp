@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "builder/spatial/surface_query.h"
 #include "builder/tissue/actuators.h"
+#include "builder/tissue/bone_field.h"
 #include "builder/tissue/fissure.h"
 
 namespace fascia::tissue {
@@ -14,26 +14,15 @@ constexpr double field_step = 1.5e-4;  // metres a unit: values reach 19 mm eith
 /// Adds the distance field of `bone` over the box of `near`.
 void add_field(const TriangleMesh& bone, uint8_t which, const Bounds& near, double spacing,
                rig::TissueLevel& level) {
-  const spatial::SurfaceQuery query(bone);
-  const Vec3 origin = near.lower - Vec3::Constant(spacing);
-  std::array<uint32_t, 3> size{};
-  for (size_t axis = 0; axis < 3; ++axis) {
-    const double length = near.upper[static_cast<int>(axis)] - origin[static_cast<int>(axis)] + spacing;
-    size[axis] = static_cast<uint32_t>(std::clamp(std::ceil(length / spacing), 2.0, 250.0)) + 1;
-  }
+  const BoneField field = sample_bone_field(bone, near, spacing, 130.0 * field_step);
   level.contact_field_bone.push_back(which);
-  level.contact_field_origin.push_back(origin.cast<float>());
+  level.contact_field_origin.push_back(field.origin.cast<float>());
   level.contact_field_spacing.push_back(static_cast<float>(spacing));
   level.contact_field_step.push_back(static_cast<float>(field_step));
-  level.contact_field_size.push_back(size);
-  for (uint32_t k = 0; k < size[2]; ++k)
-    for (uint32_t j = 0; j < size[1]; ++j)
-      for (uint32_t i = 0; i < size[0]; ++i) {
-        const spatial::ClosestPoint hit = query.closest(origin + spacing * Vec3(i, j, k), 130.0 * field_step);
-        const double distance = hit.found() ? hit.signed_distance : 1.0;
-        level.contact_field_values.push_back(
-            static_cast<uint8_t>(std::clamp(std::round(128.0 + distance / field_step), 0.0, 255.0)));
-      }
+  level.contact_field_size.push_back(field.size);
+  for (const float distance : field.distance)
+    level.contact_field_values.push_back(
+        static_cast<uint8_t>(std::clamp(std::round(128.0 + distance / field_step), 0.0, 255.0)));
 }
 
 }  // namespace

@@ -12,13 +12,6 @@ using solving::add_at;
 using solving::f;
 using solving::place_at;
 
-namespace {
-
-/// Fields of distances rise by at most this much a metre: one, but for their grid.
-constexpr double steepest = 1.25;
-
-}  // namespace
-
 /// Bones, the other lip, friction and touches: few nodes, one after the other.
 double Solver::contact_energy(Solve& solve, const float* x, float* gradient) {
   const Contacts& contacts = model_->face().contacts();
@@ -36,7 +29,9 @@ double Solver::contact_energy(Solve& solve, const float* x, float* gradient) {
     for (int axis = 0; axis < 3; ++axis)
       reach.place[axis] = f(local[axis]);
     // Outside its grid the field says nothing: one cell's width is safe to go before looking again.
-    reach.free = std::isfinite(touch.depth) ? f(std::max(0.0, -touch.depth) / steepest) : 0.0F;
+    reach.free = std::isfinite(touch.depth)
+                     ? f(std::max(0.0, -touch.depth) / contacts.bone_field(c).steepness())
+                     : 0.0F;
     if (!(touch.depth > 0.0)) continue;
     const double push = contacts.options().bone_stiffness * touch.depth;
     add_at(gradient, at, -push * (moves ? Vec3(solve.mandible.rotation * touch.normal) : touch.normal));
