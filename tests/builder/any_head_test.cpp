@@ -179,5 +179,21 @@ TEST(AnyHead, TurnedAndMovedItPosesAlike) {
   }
 }
 
+TEST(AnyHead, FarFromTheOriginItPosesAlike) {
+  const Vec3 standing(0.25, 1.5, -0.125);  // a character that stands on its origin
+  Variant plain("origin", no_change),
+      high("standing", no_change, [&](const Vec3&p) { return Vec3(p + standing); });
+  for (const rig::Landmark& landmark : high.face().rig().skull.landmarks)
+    EXPECT_LT(landmark.skin.norm(), 0.35F) << landmark.name << ": the rig's origin is near the face";
+  const Mat4 map = high.face().rig().input_to_metres.cast<double>();
+  EXPECT_LT((transform_point(map, 1e3 * standing) - map.topRightCorner<3, 1>() - standing).norm(), 1e-6);
+  for (const char* shape : {"jaw_open", "zygomaticus_major_superior_left"}) {
+    plain.face().pose({{shape, 1.0}});
+    high.face().pose({{shape, 1.0}});
+    for (const char* name : {"cheilion_left", "cheilion_right", "labiale_superius", "labiale_inferius"})
+      EXPECT_LT((high.face().moved(name) - plain.face().moved(name)).norm(), 0.1) << name << " in " << shape;
+  }
+}
+
 }  // namespace
 }  // namespace fascia::testing

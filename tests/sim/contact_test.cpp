@@ -45,6 +45,24 @@ rig::TissueLevel patch_before_a_ball(const PatchOptions& o, uint8_t bone) {
   return level;
 }
 
+TEST(Contact, AFieldIsNoSteeperThanItSays) {
+  rig::TissueLevel level = patch_before_a_ball({}, 0);
+  EXPECT_LT(DistanceField(lattice_of(level), 0).steepness(), 1.8) << "a sound one";
+  for (size_t i = 0; i < level.contact_field_values.size(); ++i)  // torn by a sheet of no thickness
+    if (i / 1681 > 14) level.contact_field_values[i] = 255;
+  const DistanceField field(lattice_of(level), 0);
+  double steepest = 0.0;
+  Vec3 ignored;
+  for (int i = 0; i < 4000; ++i) {
+    const Vec3 p(0.004 * std::sin(1.0 * i), 0.004 * std::sin(1.7 * i), -0.024 + 0.003 * std::sin(2.3 * i));
+    const Vec3 q = p + 2e-5 * Vec3(std::sin(3.1 * i), std::sin(4.3 * i), std::sin(5.9 * i));
+    steepest =
+        std::max(steepest, std::abs(field.sample(p, ignored) - field.sample(q, ignored)) / (p - q).norm());
+  }
+  EXPECT_LE(steepest, field.steepness());
+  EXPECT_GT(steepest, 5.0) << "the field tried is steep";
+}
+
 TEST(Contact, AFieldGivesDistanceAndSlope) {
   PatchOptions o;
   const rig::TissueLevel level = patch_before_a_ball(o, 0);
