@@ -27,8 +27,8 @@ struct Physique {
 /// subnasale, 2 below it.
 std::vector<size_t> thirds_of_face(const rig::Rig& rig);
 
-/// The rig with the physique's stiffness and shortening, at all levels of detail; a change of depth or breadth
-/// requires rebuilding. Peak shortening is limited to the physiological range.
+/// The rig with the physique's stiffness and shortening, at all levels of detail; a change of depth or
+/// breadth requires rebuilding. Peak shortening is limited to the physiological range.
 rig::Rig with_physique(rig::Rig rig, const Physique& physique);
 
 }  // namespace fascia::fit
