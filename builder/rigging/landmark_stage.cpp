@@ -157,28 +157,33 @@ void move_frame(FoundLandmarks& result, const Mat3& rotation, const Vec3& transl
     landmark.position = rotation * landmark.position + translation;
 }
 
-/// Turns the rig frame until the face's mirror plane is its own, for what follows tells left from right by
+/// The turn that makes the face's mirror plane the rig frame's own, for what follows tells left from right by
 /// the axes: a head that leans a little would move otherwise on one side than on the other. What leans by
 /// less than landmarks are found to keeps the file's axes.
-void set_upright(FoundLandmarks& result, const landmarks::FaceMirror& mirror) {
+Mat3 upright_turn(const landmarks::FaceMirror& mirror) {
   const double least = (mirror.is_exact ? 0.25 : 0.75) * EIGEN_PI / 180.0;
   const Mat3 turn = landmarks::upright(mirror.plane);
-  result.mirror = mirror.plane;
-  if (Eigen::AngleAxisd(turn).angle() >= least) move_frame(result, turn, Vec3::Zero());
+  return Eigen::AngleAxisd(turn).angle() < least ? Mat3::Identity() : turn;
 }
 
-/// Moves the rig frame's origin near the face where it is far from it, as in a character that stands on its
-/// origin: the runtime computes in single precision, and at 1.6 m rounding ends a static pose's line search
-/// millimetres before its minimum.
-void centre_frame(FoundLandmarks& result) {
-  constexpr double farthest = 0.25,
-                   step = 0.125;  // metres; whole steps, so that coordinates keep their digits
-  if (result.landmarks.empty()) return;
+/// The shift (metres) of the rig frame's origin that brings it near the face where it is far from it, as in a
+/// character that stands on its origin: the runtime computes in single precision, and at 1.6 m rounding ends
+/// a static pose's line search early.
+Vec3 shift_to_face(const std::map<std::string, landmarks::SkinLandmark>& found, const Mat3& turn) {
+  constexpr double farthest = 0.25, step = 0.125;  // metres; whole steps: coordinates keep their digits
+  if (found.empty()) return Vec3::Zero();
   Vec3 centre = Vec3::Zero();
-  for (const auto& [name, landmark] : result.landmarks)
-    centre += landmark.position / static_cast<double>(result.landmarks.size());
-  if (centre.norm() < farthest) return;
-  move_frame(result, Mat3::Identity(), -step * (centre / step).array().round().matrix());
+  for (const auto& [name, landmark] : found)
+    centre += turn * landmark.position / static_cast<double>(found.size());
+  if (centre.norm() < farthest) return Vec3::Zero();
+  return -step * (centre / step).array().round().matrix();
+}
+
+/// Brings the rig frame upright and its origin near the face.
+void settle_frame(FoundLandmarks& result, const Mat3& turn) {
+  const Vec3 shift = shift_to_face(result.landmarks, turn);
+  if (turn == Mat3::Identity() && shift.isZero(0.0)) return;
+  move_frame(result, turn, shift);
 }
 
 /// Makes the eyeballs of a head that is its own mirror image each other's images too, where they nearly are:
@@ -237,12 +242,14 @@ FoundLandmarks find_landmarks(const formats::Scene& file, const formats::Landmar
                                  reference, preparing);
   const double prepared_at = now();
   place_landmarks(result, located, given, anatomy, with_regions);
+  Mat3 turn = Mat3::Identity();
   if (const auto mirror = landmarks::face_mirror(result.landmarks, *result.head.surface)) {
     landmarks::make_symmetric(*mirror, *result.head.surface, result.landmarks);
     if (mirror->is_exact) pair_eyes(result.head, mirror->plane);
-    set_upright(result, *mirror);
+    result.mirror = mirror->plane;
+    turn = upright_turn(*mirror);
   }
-  centre_frame(result);
+  settle_frame(result, turn);
   place_pupils(result, given);
   result.seconds = {located_at - started, prepared_at - located_at, now() - prepared_at};
   return result;

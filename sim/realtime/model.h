@@ -15,7 +15,7 @@ namespace fascia::sim::realtime {
 
 /// Workspace of a solve, shared by faces.
 struct Workspace {
-  static constexpr size_t history = 16;
+  static constexpr size_t history = 6;
   Floats carried, start, begun_places, gradient, tether_normals, carrier_pulls,
       fibre_scratch;  // places and batches
   Floats solve_scratch;

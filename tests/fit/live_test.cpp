@@ -104,7 +104,7 @@ TEST_F(Live, SeesThroughACamera) {
     EXPECT_LT(Eigen::AngleAxisd(Mat3(turn.transpose() * head.topLeftCorner<3, 3>())).angle(), 0.02) << frame;
     EXPECT_NEAR(head(2, 3), camera_shift.z(), 0.02) << frame;
     EXPECT_LT(result.residual, 3e-4F) << frame;
-    EXPECT_LT(rms_mm(Fit::fitted(result), places), 1.1) << frame;
+    EXPECT_LT(rms_mm(Fit::fitted(result), places), 1.0) << frame;
   }
 }
 
