@@ -123,7 +123,8 @@ Mat3 Subject::eye_turn(std::span<const float> activations, const std::string& si
 
 void Subject::pose(std::span<const float> activations, bool warm) {
   sim::PoseOptions options;
-  options.solver.iterations = 2000;  // as the runtime's static pose
+  options.solver.iterations = 800;  // as the runtime's static pose
+  options.newton.iterations = 30;
   options.from_last_pose = warm;
   face_->static_pose(controls(activations), options, positions_);
   for (size_t i = 0; i < nodes_.size(); ++i)

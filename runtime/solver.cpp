@@ -15,7 +15,8 @@ std::unique_ptr<sim::Solver> make_solver(const fascia_face_options& options, con
   require(options.iterations >= 0 && options.iterations <= 32, "iterations must lie between 0 and 32");
   sim::PoseOptions pose;
   if (kind == FASCIA_SOLVER_OWN) {
-    pose.solver.iterations = 2000;
+    pose.solver.iterations = 800;
+    pose.newton.iterations = 30;
     sim::realtime::StepOptions step;
     if (options.iterations > 0) step.iterations = options.iterations;
     return std::make_unique<sim::realtime::Solver>(asset.realtime_model(level), channels, pose, step);

@@ -3,57 +3,12 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "sim/formulas/activation_force.h"
 #include "sim/formulas/elements.h"
 
 namespace fascia::sim {
 namespace {
-
-using Triplets = std::vector<Eigen::Triplet<double>>;
-
-/// Collects 3 x 3 blocks between nodes into the rows and columns of unknowns, lower half.
-struct Blocks {
-  const std::vector<int32_t>& unknown;
-  Triplets& list;
-  void add(uint32_t row, uint32_t column, const Mat3& block) {
-    const int32_t r = unknown[row], c = unknown[column];
-    if (r < 0 || c < 0 || r < c) return;
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j)
-        if (3 * r + i >= 3 * c + j) list.emplace_back(3 * r + i, 3 * c + j, block(i, j));
-  }
-};
-
-template <size_t Count>
-void add_stencils(const std::vector<Curvature::Stencil<Count>>& stencils, Blocks& blocks) {
-  for (const auto& s : stencils)
-    for (size_t i = 0; i < Count; ++i)
-      for (size_t j = 0; j < Count; ++j)
-        blocks.add(s.nodes[i], s.nodes[j], s.weights[i] * s.weights[j] * s.block);
-}
-
-void add_plates(const std::vector<Curvature::Plate>& plates, Blocks& blocks) {
-  for (const auto& p : plates) {
-    // The deformation gradient's columns are blends of the three nodes.
-    Eigen::Matrix<double, 3, 2> blend;
-    blend.row(1) = p.inverse_rest.row(0);
-    blend.row(2) = p.inverse_rest.row(1);
-    blend.row(0) = -blend.row(1) - blend.row(2);
-    for (int a = 0; a < 3; ++a)
-      for (int b = 0; b < 3; ++b) {
-        Mat3 block = Mat3::Zero();
-        for (int i = 0; i < 2; ++i)
-          for (int j = 0; j < 2; ++j)
-            block += blend(a, i) * blend(b, j) * p.block.block<3, 3>(3 * i, 3 * j);
-        blocks.add(p.nodes[static_cast<size_t>(a)], p.nodes[static_cast<size_t>(b)], block);
-      }
-  }
-}
-
-/// What a fibre's pull must add to the stiffness along itself to count: a share of what is there without it.
-constexpr float least_pull = 0.03F;
 
 bool is_held(uint8_t anchor) {
   const auto kind = static_cast<FibreAnchor>(anchor);
@@ -76,14 +31,10 @@ Sensitivity::Sensitivity(const FaceModel& model)
     : model_(&model),
       frame_(model.make_frame()),
       pose_(model.rest()),
-      unknown_of_node_(model.rest().size(), -1),
+      hessian_(model),
       work_(3 * model.rest().size()),
       direction_(model.rest().size(), Vec3::Zero()),
       product_(model.rest().size()) {
-  for (size_t i = 0; i < model.unknowns().size(); ++i)
-    unknown_of_node_[model.unknowns()[i]] = static_cast<int32_t>(i);
-  for (const uint32_t node : model.unknowns())
-    unknown_places_.push_back(model.rest()[node]);
   const Lattice& lattice = model.lattice();
   uint32_t channels = 0;
   for (const auto list : {lattice.fibre_channel, lattice.carrier_channel, lattice.pressure_channel})
@@ -97,9 +48,8 @@ bool Sensitivity::linearise(const Controls& controls, std::span<const Vec3> x, b
     find_slopes(controls, x);
     return true;
   }
-  begin(controls, x);
-  advance(std::numeric_limits<double>::infinity());
-  return is_sound();
+  find_slopes(controls, x);
+  return hessian_.compute(frame_, pose_.data());
 }
 
 void Sensitivity::find_slopes(const Controls& controls, std::span<const Vec3> x) {
@@ -112,49 +62,7 @@ void Sensitivity::find_slopes(const Controls& controls, std::span<const Vec3> x)
 
 void Sensitivity::begin(const Controls& controls, std::span<const Vec3> x) {
   find_slopes(controls, x);
-  model_->find_curvature(frame_, pose_.data(), curvature_);
-  gather_pulls();
-  factor_.forget();
-  is_held_up_ = is_assembled_ = false;
-}
-
-bool Sensitivity::advance(double work) {
-  if (!is_assembled_) {
-    assemble(1e-6);  // a touch of the rest stiffness keeps what nothing holds
-    is_assembled_ = true;
-    if (std::isfinite(work)) return false;
-  }
-  if (!factor_.is_sound()) {
-    if (!factor_.advance(work)) return false;
-    if (!factor_.is_sound()) {
-      if (is_held_up_) return true;
-      is_held_up_ = true;
-      assemble(1e-3);
-      return advance(work);
-    }
-    if (std::isfinite(work)) return false;  // pulls are for another time
-  }
-  return solve_pulls(work);
-}
-
-/// Some columns of what the factor makes of the pulls; true when there are no more.
-bool Sensitivity::solve_pulls(double work) {
-  if (pulls_.cols() == 0) return true;
-  const double a_column = static_cast<double>(factor_.entries());
-  const Eigen::Index left = pulls_.cols() - pulls_done_,
-                     count = work < a_column * static_cast<double>(left)
-                                 ? std::max<Eigen::Index>(1, static_cast<Eigen::Index>(work / a_column))
-                                 : left;
-  const FrontFactor::Dense halfway =
-      factor_.forward(Eigen::MatrixXd(pulls_.middleCols(pulls_done_, count)).cast<float>());
-  for (Eigen::Index row = 0; row < count; ++row)
-    if (halfway.row(row).squaredNorm() > least_pull) halfway_pulls_.row(pulls_kept_++) = halfway.row(row);
-  pulls_done_ += count;
-  if (pulls_done_ < pulls_.cols()) return false;
-  FrontFactor::Dense small = FrontFactor::Dense::Identity(pulls_kept_, pulls_kept_);
-  small.selfadjointView<Eigen::Lower>().rankUpdate(halfway_pulls_.topRows(pulls_kept_));
-  pull_factor_.compute(small);
-  return true;
+  hessian_.begin(frame_, pose_.data());
 }
 
 /// d gradient / d activation by channel: pressures are linear in theirs, fibres in their pull, carriers turn.
@@ -245,14 +153,14 @@ void Sensitivity::find_jaw_forces(const Controls& controls) {
       model_->place(other, frame_);
       if (end == 0) model_->find_facing(pose_.data(), frame_);
       for (size_t i = 0; i < nodes; ++i)
-        direction_[i] = unknown_of_node_[i] < 0 ? frame_.carried[i] : pose_[i];
+        direction_[i] = hessian_.unknown_of_node()[i] < 0 ? frame_.carried[i] : pose_[i];
       model_->energy(frame_, direction_.data(), product_.data());
       const double sign = end == 0 ? -1.0 : 1.0;
       for (size_t i = 0; i < nodes; ++i) {
-        if (unknown_of_node_[i] < 0)
+        if (hessian_.unknown_of_node()[i] < 0)
           jaw_carried_.col(motion).segment<3>(static_cast<Eigen::Index>(3 * i)) += sign * direction_[i];
         else
-          jaw_forces_.col(motion).segment<3>(3 * unknown_of_node_[i]) += sign * product_[i];
+          jaw_forces_.col(motion).segment<3>(3 * hessian_.unknown_of_node()[i]) += sign * product_[i];
       }
     }
     const double width = ends[1] - ends[0];
@@ -261,58 +169,8 @@ void Sensitivity::find_jaw_forces(const Controls& controls) {
   }
 }
 
-/// The curvature but for fibres' pulls, with a share `held` of the rest stiffness on its diagonal.
-void Sensitivity::assemble(double held) {
-  Triplets& list = entries_;
-  list.clear();
-  Blocks blocks{unknown_of_node_, list};
-  add_stencils(curvature_.points, blocks);
-  add_stencils(curvature_.pairs, blocks);
-  add_stencils(curvature_.quads, blocks);
-  add_stencils(curvature_.sixes, blocks);
-  add_plates(curvature_.plates, blocks);
-  for (const auto& b : curvature_.bends)
-    for (size_t i = 0; i < 4; ++i)
-      for (size_t j = 0; j < 4; ++j)
-        blocks.add(b.nodes[i], b.nodes[j], b.stiffness * b.slopes[i].transpose() * b.slopes[j]);
-  for (const auto& v : curvature_.volumes)
-    for (size_t i = 0; i < 6; ++i)
-      for (size_t j = 0; j < 6; ++j)
-        blocks.add(v.nodes[i], v.nodes[j], v.stiffness * v.slopes[i] * v.slopes[j].transpose());
-  const auto size = static_cast<Eigen::Index>(3 * model_->unknowns().size());
-  const auto& rest = model_->stiffness();
-  for (Eigen::Index i = 0; i < size; ++i)
-    list.emplace_back(i, i, held * rest.coeff(i / 3, i / 3));
-  Eigen::SparseMatrix<double> matrix(size, size);
-  matrix.setFromTriplets(list.begin(), list.end());
-  factor_.begin(matrix, unknown_places_);
-}
-
-void Sensitivity::gather_pulls() {
-  const auto size = static_cast<Eigen::Index>(3 * model_->unknowns().size());
-  Triplets list;
-  for (size_t p = 0; p < curvature_.pulls.size(); ++p) {
-    const auto& pull = curvature_.pulls[p];
-    for (size_t i = pull.first; i < pull.first + pull.count; ++i) {
-      const int32_t unknown = unknown_of_node_[curvature_.pull_nodes[i]];
-      const Vec3 slope = std::sqrt(pull.stiffness) * curvature_.pull_slopes[i];
-      for (int k = 0; unknown >= 0 && k < 3; ++k)
-        list.emplace_back(3 * unknown + k, static_cast<int>(p), slope[k]);
-    }
-  }
-  pulls_.resize(size, static_cast<Eigen::Index>(curvature_.pulls.size()));
-  pulls_.setFromTriplets(list.begin(), list.end());
-  halfway_pulls_.resize(pulls_.cols(), size);
-  pulls_done_ = pulls_kept_ = 0;
-}
-
-Eigen::MatrixXd Sensitivity::solve(const Eigen::MatrixXd& right) const {
-  FrontFactor::Dense halfway = factor_.forward(right.cast<float>());
-  if (pulls_kept_ > 0) {
-    const auto pulls = halfway_pulls_.topRows(pulls_kept_);
-    halfway.noalias() -= pull_factor_.solve(pulls * halfway.transpose()).transpose() * pulls;
-  }
-  return factor_.backward(halfway).cast<double>();
+Eigen::VectorXd Sensitivity::solve(const Eigen::VectorXd& right) const {
+  return hessian_.solve(right.cast<float>()).cast<double>();
 }
 
 Eigen::MatrixXd Sensitivity::columns(std::span<const uint32_t> channels) const {
@@ -321,9 +179,9 @@ Eigen::MatrixXd Sensitivity::columns(std::span<const uint32_t> channels) const {
   for (Eigen::Index c = 0; c < count; ++c)
     if (const uint32_t channel = channels[static_cast<size_t>(c)]; channel < forces_.size())
       for (const Force& force : forces_[channel])
-        if (unknown_of_node_[force.node] >= 0)
-          right.col(c).segment<3>(3 * unknown_of_node_[force.node]) -= force.slope;
-  const Eigen::MatrixXd solution = solve(right);
+        if (hessian_.unknown_of_node()[force.node] >= 0)
+          right.col(c).segment<3>(3 * hessian_.unknown_of_node()[force.node]) -= force.slope;
+  const Eigen::MatrixXd solution = hessian_.solve(right.cast<float>()).cast<double>();
   Eigen::MatrixXd all = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(3 * pose_.size()), count);
   for (size_t u = 0; u < model_->unknowns().size(); ++u)
     all.middleRows<3>(static_cast<Eigen::Index>(3 * model_->unknowns()[u])) =
@@ -332,7 +190,7 @@ Eigen::MatrixXd Sensitivity::columns(std::span<const uint32_t> channels) const {
 }
 
 Eigen::MatrixXd Sensitivity::jaw_columns() const {
-  const Eigen::MatrixXd solution = solve(-jaw_forces_);
+  const Eigen::MatrixXd solution = hessian_.solve(-jaw_forces_.cast<float>()).cast<double>();
   Eigen::MatrixXd all = jaw_carried_;
   for (size_t u = 0; u < model_->unknowns().size(); ++u)
     all.middleRows<3>(static_cast<Eigen::Index>(3 * model_->unknowns()[u])) =
@@ -344,7 +202,7 @@ Eigen::VectorXd Sensitivity::hessian_times(const Eigen::VectorXd& direction) con
   for (size_t u = 0; u < model_->unknowns().size(); ++u)
     direction_[model_->unknowns()[u]] = direction.segment<3>(static_cast<Eigen::Index>(3 * u));
   for (size_t i = 0; i < direction_.size(); ++i)
-    if (unknown_of_node_[i] < 0) direction_[i].setZero();
+    if (hessian_.unknown_of_node()[i] < 0) direction_[i].setZero();
   model_->hessian_times(frame_, pose_.data(), direction_.data(), product_.data(), work_);
   Eigen::VectorXd result(direction.size());
   for (size_t u = 0; u < model_->unknowns().size(); ++u)
@@ -383,8 +241,8 @@ Eigen::VectorXd Sensitivity::adjoint(const Eigen::VectorXd& slope, std::span<con
   for (Eigen::Index c = 0; c < count; ++c)
     if (const uint32_t channel = channels[static_cast<size_t>(c)]; channel < forces_.size())
       for (const Force& force : forces_[channel])
-        if (unknown_of_node_[force.node] >= 0)
-          result[c] -= lambda.segment<3>(3 * unknown_of_node_[force.node]).dot(force.slope);
+        if (hessian_.unknown_of_node()[force.node] >= 0)
+          result[c] -= lambda.segment<3>(3 * hessian_.unknown_of_node()[force.node]).dot(force.slope);
   result.tail<3>() = jaw_carried_.transpose() * slope - jaw_forces_.transpose() * lambda;
   return result;
 }

@@ -1,12 +1,10 @@
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <memory>
 #include <vector>
 
-#include "sim/curvature.h"
 #include "sim/face_model.h"
-#include "sim/front_factor.h"
+#include "sim/pose_hessian.h"
 
 namespace fascia::sim {
 
@@ -32,9 +30,9 @@ class Sensitivity {
   /// returns true when complete; `is_sound` then tells whether it succeeded. `factor_work` is the work of a
   /// complete factorisation.
   void begin(const Controls& controls, std::span<const Vec3> x);
-  bool advance(double work);
-  bool is_sound() const { return factor_.is_sound(); }
-  double factor_work() const { return factor_.work(); }
+  bool advance(double work) { return hessian_.advance(work); }
+  bool is_sound() const { return hessian_.is_sound(); }
+  double factor_work() const { return hessian_.factor_work(); }
 
   /// d position / d activation, metres: 3 x #nodes rows, one column for each of `channels`; zero for
   /// prescribed nodes.
@@ -58,31 +56,16 @@ class Sensitivity {
   void find_slopes(const Controls& controls, std::span<const Vec3> x);
   void find_forces(const Controls& controls);
   void find_jaw_forces(const Controls& controls);
-  void assemble(double held);
-  void gather_pulls();
-  bool solve_pulls(double work);
-  Eigen::MatrixXd solve(const Eigen::MatrixXd& right) const;  ///< over unknowns
+  Eigen::VectorXd solve(const Eigen::VectorXd& right) const;  ///< over unknowns
   Eigen::VectorXd hessian_times(const Eigen::VectorXd& direction) const;
 
   const FaceModel* model_;
   Frame frame_;
   Positions pose_;
-  std::vector<int32_t> unknown_of_node_;
-  Curvature curvature_;
+  PoseHessian hessian_;
   std::vector<std::vector<Force>> forces_;  ///< by channel
   Eigen::MatrixXd jaw_forces_;              ///< unknowns x 3
   Eigen::MatrixXd jaw_carried_;             ///< 3 #nodes x 3: how prescribed nodes go with the jaw
-  FrontFactor factor_;
-  std::vector<Eigen::Triplet<double>> entries_;  ///< of the matrix; kept for its memory
-  bool is_assembled_ = false;
-  bool is_held_up_ = false;   ///< the last matrix was regularised with the rest stiffness
-  Positions unknown_places_;  ///< at rest
-  // Fibre forces, which couple all nodes along them, are excluded from the factor and included by the
-  // Sherman-Morrison-Woodbury identity, for which half of each solve suffices.
-  Eigen::SparseMatrix<double> pulls_;
-  FrontFactor::Dense halfway_pulls_;  ///< FrontFactor::forward of those that count, from the first row on
-  Eigen::Index pulls_done_ = 0, pulls_kept_ = 0;
-  Eigen::LLT<FrontFactor::Dense> pull_factor_;
   mutable Positions work_, direction_, product_;
 };
 

@@ -60,9 +60,10 @@ void measure_static_poses(const sim::FaceModel& reference, const sim::realtime::
   const size_t nodes = reference.rest().size();
   std::vector<Vec3f> now(nodes), truth(nodes);
   sim::PoseOptions tight, warm;
-  tight.solver.iterations = 2000;
+  tight.solver.iterations = 800;
   warm.from_last_pose = true;
   warm.contact_rounds = 1;
+  warm.newton.iterations = 0;
   warm.solver.iterations = 0;
   std::vector<double> times, counts;
   for (int second = 1; second <= 9; ++second) {

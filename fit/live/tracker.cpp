@@ -151,7 +151,8 @@ sim::Controls Tracker::controls() const {
 
 void Tracker::pose(bool is_first) {
   sim::PoseOptions options;
-  options.solver.iterations = is_first ? 2000 : 400;
+  options.solver.iterations = is_first ? 800 : 400;
+  options.newton.iterations = is_first ? 30 : 0;
   options.from_last_pose = !is_first;
   if (!is_first) options.solver.tolerance = 1e-5;  // metres; landmarks are known to a tenth of a millimetre
   const sim::Controls now = controls();

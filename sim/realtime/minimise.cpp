@@ -86,9 +86,23 @@ struct Solver::Space {
   /// direction := P^-1 from.
   void precondition(const float* from) {
     float* const direction = w.direction.data();
+    if (solve.hessian != nullptr) return precondition_by_hessian(from, direction);
     loops.scale(w.scaling.data(), from, direction, floats);
     loops.solve(solve.factor, direction, w.solve_scratch.data());
     loops.scale(w.scaling.data(), direction, direction, floats);
+  }
+  void precondition_by_hessian(const float* from, float* direction) {
+    const std::vector<uint32_t>& unknowns = face.model_->face().unknowns();
+    PoseHessian::Dense& vector = solve.hessian->vector;
+    vector.resize(static_cast<Eigen::Index>(3 * unknowns.size()), 1);
+    const std::vector<uint32_t>& order = face.model_->order();
+    for (size_t k = 0; k < order.size(); ++k)
+      for (size_t axis = 0; axis < 3; ++axis)
+        vector(static_cast<Eigen::Index>(3 * order[k] + axis), 0) = from[4 * k + axis];
+    vector = solve.hessian->hessian.solve(vector);
+    for (size_t k = 0; k < order.size(); ++k)
+      for (size_t axis = 0; axis < 3; ++axis)
+        direction[4 * k + axis] = vector(static_cast<Eigen::Index>(3 * order[k] + axis), 0);
   }
   double step_dot(size_t slot) const { return loops.dot(w.steps[slot].data(), w.direction.data(), floats); }
   double change_dot(size_t slot) const {

@@ -112,12 +112,12 @@ bool Model::make_factors() {
   }
   if (!step_factor_.compute(dissection, step)) return false;
 
-  const auto& order = dissection.order();
-  std::vector<uint32_t> position(order.size());
-  for (uint32_t k = 0; k < order.size(); ++k)
-    position[order[k]] = k;
+  order_ = dissection.order();
+  std::vector<uint32_t> position(order_.size());
+  for (uint32_t k = 0; k < order_.size(); ++k)
+    position[order_[k]] = k;
   begin_.push_back(0);
-  for (const uint32_t unknown : order) {
+  for (const uint32_t unknown : order_) {
     slots_.push_back(slot_of(unknowns[unknown]));
     masses_.push_back(f(face_->masses()[unknowns[unknown]]));
     const auto k = static_cast<int>(unknown);

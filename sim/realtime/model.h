@@ -43,6 +43,8 @@ class Model {
   size_t unknowns() const { return slots_.size(); }
   size_t unknown_floats() const { return unknown_floats_; }     ///< of a list of unknowns
   const std::vector<int32_t>& slots() const { return slots_; }  ///< of each unknown in the factors' order
+  /// Of each unknown in the factors' order: which one of the face model's it is.
+  const std::vector<uint32_t>& order() const { return order_; }
   const std::vector<int32_t>& prescribed_slots() const {
     return prescribed_slots_;
   }  ///< of nodes that move rigidly with their bones
@@ -102,6 +104,7 @@ class Model {
   std::vector<PressureBatch> pressures_;
   Floats rest_, balance_, jaw_share_;
   size_t longest_fibre_ = 0, channels_ = 0, unknown_floats_ = 0;
+  std::vector<uint32_t> order_;
   std::vector<int32_t> slots_, prescribed_slots_;
   std::vector<float> masses_;
   std::vector<uint32_t> begin_;

@@ -2,6 +2,7 @@
 
 // What the files of realtime::Solver share: its minimisation, and places in lists of floats.
 
+#include "sim/pose_hessian.h"
 #include "sim/realtime/solver.h"
 
 namespace fascia::sim::realtime {
@@ -20,6 +21,12 @@ inline void add_at(float* list, int32_t at, const Vec3& value) {
 
 }  // namespace solving
 
+/// The Hessian at a pose, in place of the factor at rest.
+struct Solver::HessianPreconditioner {
+  PoseHessian hessian;
+  PoseHessian::Dense vector;  ///< over the face model's unknowns
+};
+
 /// One minimisation: what stands still while it runs.
 struct Solver::Solve {
   Workspace& work;
@@ -29,6 +36,7 @@ struct Solver::Solve {
   std::span<const NodeForce> touches;
   Unknowns unknowns{};
   std::span<const Grip> grips;
+  HessianPreconditioner* hessian = nullptr;  ///< used instead of `factor` if set
 };
 
 }  // namespace fascia::sim::realtime

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/jaw_stages.h"
 #include "sim/realtime/solve.h"
 
 namespace fascia::sim::realtime {
@@ -50,60 +49,6 @@ void Solver::place(const JawPose& jaw, std::span<const float> activations, Works
 void Solver::fill_nodes(const float* x, Positions& nodes) const {
   for (size_t i = 0; i < nodes.size(); ++i)
     nodes[i] = place_at(x, model_->slot_of(i));
-}
-
-MinimiseResult Solver::static_pose(const Controls& controls, const PoseOptions& options,
-                                   std::span<Vec3f> positions) {
-  return pose_in_stages(controls, options, positions,
-                        [this](const Controls& part, const PoseOptions& how, std::span<Vec3f> to) {
-                          return pose_at_once(part, how, to);
-                        });
-}
-
-MinimiseResult Solver::pose_at_once(const Controls& controls, const PoseOptions& options,
-                                    std::span<Vec3f> positions) {
-  std::unique_ptr<Workspace> work = model_->borrow();
-  const JawPose jaw = clamped(controls.jaw);
-  Solve solve{*work,
-              {},
-              model_->pose_factor(),
-              jaw_transform(model_->face().jaw(), jaw),
-              controls.touches,
-              model_->unknown_list(),
-              {}};
-  solve.unknowns.diagonal = model_->pose_diagonal();
-  for (int axis = 0; axis < 3; ++axis)
-    solve.unknowns.acceleration[axis] =
-        controls.acceleration.allFinite() ? f(controls.acceleration[axis]) : 0.0F;
-  place(jaw, controls.activations, *work, solve.boundary);
-  float* const x = work->start.data();
-  std::copy(work->carried.data(), work->carried.data() + model_->places(), x);
-  if (!options.from_last_pose) {  // nothing of the poses before, so that equal controls give equal poses
-    std::fill(reach_.begin(), reach_.end(), BoneReach{});
-    std::fill(facing_.begin(), facing_.end(), FacingPair{});
-  }
-  if (options.from_last_pose && pose_offset_.size() > 0)
-    model_->loops().add(1.0F, pose_offset_.data(), x, model_->places());
-  const Contacts& contacts = model_->face().contacts();
-  fill_nodes(x, work->nodes);
-  contacts.find_facing(work->nodes.data(), facing_, work->facing_search);
-  MinimiseResult result;
-  for (int round = 0; round < options.contact_rounds; ++round) {
-    const int before = result.iterations;
-    result = minimise(solve, options.solver, x);
-    result.iterations += before;
-    if (facing_.empty()) break;
-    fill_nodes(x, work->nodes);
-    if (contacts.find_facing(work->nodes.data(), facing_, work->facing_search) < options.contact_tolerance)
-      break;
-  }
-  if (pose_offset_.size() == 0) pose_offset_ = Floats(model_->places());
-  for (size_t i = 0; i < model_->places(); ++i)
-    pose_offset_.data()[i] = x[i] - work->carried.data()[i];
-  for (size_t i = 0; i < positions.size() && i < model_->face().rest().size(); ++i)
-    positions[i] = place_at(x, model_->slot_of(i)).cast<float>();
-  model_->give_back(std::move(work));
-  return result;
 }
 
 void Solver::reset(const Controls& controls) {

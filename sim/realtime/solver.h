@@ -23,8 +23,8 @@ struct StepOptions {
 /// One face in real time: the counterpart of sim::ReferenceSolver, with the same energies, many times faster.
 ///
 /// Positions are in single precision and scratch memory is borrowed from the model, so a face is small. Not
-/// thread-safe; different faces are independent. Only the constructor and the first use of scratch memory
-/// allocate; nothing throws.
+/// thread-safe; different faces are independent. Only the constructor, the first use of scratch memory and
+/// static poses that need Newton steps allocate; nothing throws.
 class Solver final : public sim::Solver {
  public:
   /// `model` must be valid and outlive the face; `channels` is the number of activations. The options are the
@@ -57,6 +57,7 @@ class Solver final : public sim::Solver {
   /// The same without stages.
   MinimiseResult pose_at_once(const Controls& controls, const PoseOptions& options,
                               std::span<Vec3f> positions);
+  struct HessianPreconditioner;
   struct Solve;
   struct Space;
 
@@ -66,6 +67,8 @@ class Solver final : public sim::Solver {
   double contact_energy(Solve& solve, const float* x, float* gradient);
   double evaluate(Solve& solve, const float* x, bool wants_energy = true);
   MinimiseResult minimise(Solve& solve, const MinimiseOptions& options, float* x);
+  MinimiseResult find_equilibrium(Solve& solve, const Controls& controls, const PoseOptions& options,
+                                  float* x);
   /// Few iterations without line search, for a substep.
   MinimiseResult iterate(Solve& solve, const MinimiseOptions& options, float* x);
   MinimiseResult substep(const Controls& now, const StepOptions& options, int& searches_left,

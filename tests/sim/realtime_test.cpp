@@ -174,6 +174,25 @@ TEST_F(Everything, PosesAreTheReferences) {
   EXPECT_LT(fast.static_pose(drive(), warm, pose).iterations, cold.iterations / 2);
 }
 
+TEST_F(Everything, HessiansOfThePoseConvergeWhereTheFactorAtRestDoesNot) {
+  const FaceModel reference(lattice_of(level), jaw);
+  const Model model(reference);
+  Solver face(model, 4);
+  std::vector<Vec3f> expected(level.rest.size()), pose(level.rest.size());
+  PoseOptions few;
+  few.solver.iterations = 5;
+  few.newton.iterations = 0;
+  EXPECT_FALSE(face.static_pose(drive(), few, pose).converged);
+  ASSERT_TRUE(face.static_pose(drive(), {}, expected).converged);
+  EXPECT_GT(farthest(pose, expected), 1e-4);
+  few.newton.iterations = 10;
+  few.jaw_stage = 0.0;  // nothing but five iterations beforehand
+  const MinimiseResult result = face.static_pose(drive(), few, pose);
+  EXPECT_TRUE(result.converged);
+  EXPECT_GT(result.iterations, 5);
+  EXPECT_LT(farthest(pose, expected), 2e-5);
+}
+
 TEST_F(Everything, ConvergedStepsAreTheReferencesAndFewIterationsStayNear) {
   FaceModelOptions quiet;
   quiet.contact.friction = 0.0;  // what has slipped stays: the last digits of a step would count for ever
