@@ -20,7 +20,7 @@ void for_each_edge(const std::vector<HalfEdge>& edges, Visit visit) {
   }
 }
 
-/// A forest of triangles; of each its root, and whether it faces as the root does.
+/// Union-find over triangles, with the orientation of each relative to its root.
 class Patches {
  public:
   explicit Patches(size_t count) : parent_(count), turned_(count, false) {
@@ -32,7 +32,7 @@ class Patches {
       turned ^= turned_[static_cast<size_t>(t)];
     return {t, turned};
   }
-  /// The smaller number becomes the root. Where both hang together already the first word holds.
+  /// The smaller number becomes the root. If they are connected already, nothing changes.
   void join(int a, int b, bool against) {
     const auto [p, p_turned] = compressed(a);
     const auto [q, q_turned] = compressed(b);
@@ -60,13 +60,24 @@ class Patches {
   std::vector<bool> turned_;  ///< against the parent
 };
 
-Patches patches_of(const TriangleMesh& mesh, const std::vector<HalfEdge>& edges) {
-  Patches patches(mesh.triangles.size());
+void join_neighbours(const std::vector<HalfEdge>& edges, Patches& patches) {
   for_each_edge(edges, [&](auto first, auto last) {
     if (last - first == 2)
       patches.join(first->triangle, (first + 1)->triangle, first->forward == (first + 1)->forward);
   });
+}
+
+Patches patches_of(const TriangleMesh& mesh, const std::vector<HalfEdge>& edges) {
+  Patches patches(mesh.triangles.size());
+  join_neighbours(edges, patches);
   return patches;
+}
+
+size_t vertex_count(const std::vector<Triangle>& triangles) {
+  int most = -1;
+  for (const Triangle& t : triangles)
+    most = std::max({most, t[0], t[1], t[2]});
+  return static_cast<size_t>(most + 1);
 }
 
 }  // namespace
@@ -115,8 +126,10 @@ std::vector<bool> without_flaps(const TriangleMesh& mesh, double largest) {
   return kept;
 }
 
-std::vector<bool> facing_against(const TriangleMesh& mesh) {
-  const Patches patches = patches_of(mesh, sorted_half_edges(mesh.triangles, mesh.vertices.size()));
+std::vector<bool> facing_against(const TriangleMesh& mesh, const std::vector<Triangle>& original) {
+  Patches patches(mesh.triangles.size());
+  join_neighbours(sorted_half_edges(original, vertex_count(original)), patches);
+  join_neighbours(sorted_half_edges(mesh.triangles, mesh.vertices.size()), patches);
   std::vector<std::array<double, 2>> area(mesh.triangles.size(), {0.0, 0.0});
   std::vector<bool> against(mesh.triangles.size(), false);
   std::vector<int> root(mesh.triangles.size());

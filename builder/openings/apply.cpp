@@ -84,6 +84,23 @@ class MeshCutter {
     }
   }
 
+  /// Removes triangles that the welded skin lacks (without area, or back to back) and that would hold both
+  /// sides of the cut together. `skin_triangles`: sorted corners of the old skin, in order.
+  void remove_bridges(const std::vector<Triangle>& skin_triangles, const std::set<int>& beside_cut) {
+    size_t kept = 0;
+    for (size_t t = 0; t < scene_.triangles.size(); ++t) {
+      const Triangle corners = skin_corners(scene_.triangles[t]);
+      const bool is_bridge =
+          cut_spans(corners, beside_cut) && is_flat(scene_.triangles[t]) &&
+          !std::binary_search(skin_triangles.begin(), skin_triangles.end(), sorted(corners));
+      if (is_bridge) continue;
+      scene_.triangles[kept] = scene_.triangles[t];
+      extension_.origin[kept++] = extension_.origin[t];
+    }
+    scene_.triangles.resize(kept);
+    extension_.origin.resize(kept);
+  }
+
   /// The user's vertex that stands for one of the cut or lining; appended when there is none yet.
   int lining_vertex(int vertex, const Lining& lining) {
     if (const auto at = any_.find(vertex); at != any_.end()) return at->second;
@@ -127,6 +144,28 @@ class MeshCutter {
   Triangle skin_corners(const Triangle& t) const {
     return {head_.skin_vertices[static_cast<size_t>(t[0])], head_.skin_vertices[static_cast<size_t>(t[1])],
             head_.skin_vertices[static_cast<size_t>(t[2])]};
+  }
+
+  bool is_flat(const Triangle& t) const {
+    constexpr double lowest = 2e-5;  // metres
+    const TriangleMesh own{
+        {head_.positions[static_cast<size_t>(t[0])], head_.positions[static_cast<size_t>(t[1])],
+         head_.positions[static_cast<size_t>(t[2])]},
+        {{0, 1, 2}}};
+    double longest = 0.0;
+    for (size_t k = 0; k < 3; ++k)
+      longest = std::max(longest, (own.vertices[k] - own.vertices[(k + 1) % 3]).norm());
+    return 2.0 * triangle_area(own, 0) <= lowest * longest;
+  }
+
+  /// Whether of the corners beside the cut some lie below it and others on it or above.
+  bool cut_spans(const Triangle& corners, const std::set<int>& beside_cut) const {
+    bool is_below = false, is_above = false;
+    for (const int v : corners) {
+      if (beside_cut.count(v) == 0) continue;
+      (cut_.path.above[static_cast<size_t>(v)] < 0.0 ? is_below : is_above) = true;
+    }
+    return is_below && is_above;
   }
 
   static bool runs_against(const Triangle& a, const Triangle& b) {
@@ -204,8 +243,16 @@ int apply(const Cut& cut, const Lining& lining, prepare::PreparedHead& head, Ope
           bool is_inside_out) {
   const NewSkin skin = new_skin(head.skin, cut, lining);
   std::map<Triangle, int> by_corners;
-  for (const auto& [t, pieces] : cut.triangles)
-    by_corners[sorted(head.skin.triangles[static_cast<size_t>(t)])] = t;
+  std::set<int> beside_cut;
+  for (const auto& [t, pieces] : cut.triangles) {
+    const Triangle& corners = head.skin.triangles[static_cast<size_t>(t)];
+    by_corners[sorted(corners)] = t;
+    beside_cut.insert(corners.begin(), corners.end());
+  }
+  std::vector<Triangle> skin_triangles;
+  for (const Triangle& t : head.skin.triangles)
+    skin_triangles.push_back(sorted(t));
+  std::sort(skin_triangles.begin(), skin_triangles.end());
   const Mat4 to_file = head.input_to_metres.inverse();
   std::vector<MeshCutter> cutters;
   int before = 0, after = 0;
@@ -214,6 +261,7 @@ int apply(const Cut& cut, const Lining& lining, prepare::PreparedHead& head, Ope
     before += static_cast<int>(opened.scene.meshes[m].positions.size());
     cutters.emplace_back(cut, skin, to_file, head.meshes[m], opened.scene.meshes[m], opened.extensions[m],
                          is_inside_out);
+    cutters.back().remove_bridges(skin_triangles, beside_cut);
     cutters.back().cut(by_corners, head.skin);
     if (cutters.back().share(lining) > cutters[main].share(lining)) main = m;
   }

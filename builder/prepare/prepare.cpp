@@ -49,14 +49,15 @@ std::map<std::string, Vec3> onto_skin(const formats::Scene& scene, const spatial
 TriangleMesh computing_skin(const TriangleMesh& surface, const std::vector<bool>& is_skin,
                             std::vector<int>& skin_vertex) {
   constexpr double lowest = 2e-6;  // metres: what single precision leaves of a height in a whole body
-  std::vector<int> mended, bare;
+  std::vector<int> mended, bare, last;
   const TriangleMesh whole = submesh(surface, is_skin, &skin_vertex);
   const TriangleMesh skin = submesh(whole, without_flaps(whole), &bare);
-  TriangleMesh sound = without_slivers(skin, lowest, &mended);
-  for (int& v : skin_vertex) {
-    if (v >= 0) v = bare[static_cast<size_t>(v)];
-    if (v >= 0) v = mended[static_cast<size_t>(v)];
-  }
+  const TriangleMesh mended_skin = without_slivers(skin, lowest, &mended);
+  // Where slivers were collapsed, two triangles may have come to lie back to back.
+  TriangleMesh sound = submesh(mended_skin, without_flaps(mended_skin), &last);
+  for (int& v : skin_vertex)
+    for (const std::vector<int>* step : {&bare, &mended, &last})
+      if (v >= 0) v = (*step)[static_cast<size_t>(v)];
   return sound;
 }
 

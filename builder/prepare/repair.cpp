@@ -134,13 +134,15 @@ Repaired repair(const formats::Scene& scene, const std::string& skin) {
   const std::vector<bool> is_copy = copies_in(joined, goes_first);
   TriangleMesh once;
   once.vertices = std::move(joined.by_place.vertices);
+  std::vector<Triangle> original;
   std::vector<size_t> kept;
   for (size_t t = 0; t < is_copy.size(); ++t)
     if (!is_copy[t]) {
       once.triangles.push_back(joined.by_place.triangles[t]);
+      original.push_back(joined.by_vertex[t]);
       kept.push_back(t);
     }
-  const std::vector<bool> against = facing_against(once);
+  const std::vector<bool> against = facing_against(once, original);
   std::vector<bool> is_turned(is_copy.size(), false);
   for (size_t i = 0; i < kept.size(); ++i)
     is_turned[kept[i]] = against[i];

@@ -142,8 +142,9 @@ struct Cut {
 };
 
 /// The region cut anew with the edge lengths that `level` wants.
-Cut cut_anew(const TissueInputs& inputs, const FaceRegion& region, const std::optional<Symmetry>& symmetry,
-             const LevelOptions& level, const TissueOptions& options) {
+Cut cut_anew(const TissueInputs& inputs, const FaceRegion& region, const std::vector<double>& lower_lip,
+             const std::optional<Symmetry>& symmetry, const LevelOptions& level,
+             const TissueOptions& options) {
   const std::vector<double> lengths = target_lengths(inputs, region, level, options);
   const auto finished = [&](RemeshResult remeshed) {
     settle_on_lid_edges(inputs, region, remeshed);
@@ -161,7 +162,7 @@ Cut cut_anew(const TissueInputs& inputs, const FaceRegion& region, const std::op
       if (is_exact && !symmetry->is_exact) continue;
       tried.is_exact = is_exact;
       Cut cut;
-      auto full = with_images(own, region, tried, cut.left);
+      auto full = with_images(own, region, lower_lip, tried, cut.left);
       if (!full) continue;
       cut.remeshed = is_exact ? std::move(*full) : finished(std::move(*full));
       if (!is_exact) cut.left.clear();
@@ -250,7 +251,7 @@ Columns columns_at(const FaceRegion& region, const Beneath& beneath, RemeshResul
 Columns make_columns(const TissueInputs& inputs, const FaceRegion& region, const Beneath& beneath,
                      const std::optional<Symmetry>& symmetry, const LevelOptions& level,
                      const TissueOptions& options) {
-  Cut cut = cut_anew(inputs, region, symmetry, level, options);
+  Cut cut = cut_anew(inputs, region, beneath.lower_lip, symmetry, level, options);
   Columns c = columns_at(region, beneath, std::move(cut.remeshed));
   if (!cut.left.empty()) take_from_left(*symmetry, cut.left, c);
   c.area = vertex_areas(c.mesh);

@@ -1,6 +1,7 @@
 #include "builder/tissue/mirror.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -67,11 +68,45 @@ const Part* find_named(const std::vector<Part>& parts, const std::string& name) 
 /// Finds the places on a skin that images of places stand for.
 class ImageFinder {
  public:
-  explicit ImageFinder(const TriangleMesh& mesh) : mesh_(mesh), query_(mesh) {}
+  /// `lower_lip`: see Beneath, or empty.
+  ImageFinder(const TriangleMesh& mesh, const std::vector<double>& lower_lip)
+      : mesh_(mesh), query_(mesh), lower_lip_(lower_lip) {
+    if (lower_lip_.empty()) return;
+    std::vector<fascia::Triangle> lips[2];
+    for (int t = 0; t < mesh.triangle_count(); ++t) {
+      const size_t lip = lip_of({t, Vec3::Constant(1.0 / 3.0)}) > 0.5;
+      lips[lip].push_back(mesh.triangles[static_cast<size_t>(t)]);
+      triangle_of_[lip].push_back(t);
+    }
+    for (const size_t lip : {0, 1})
+      if (!lips[lip].empty()) lip_queries_[lip].emplace(TriangleMesh{mesh.vertices, lips[lip]});
+  }
 
-  /// The place nearest to `p`, within `off`; of a thin fold, as a lid's edge is, the side that faces as
-  /// `facing` does.
-  std::optional<SurfacePoint> place(const Vec3& p, const Vec3& facing, double off) const {
+  /// How far a place belongs to the lower lip: 0 to 1.
+  double lip_of(const SurfacePoint& place) const {
+    if (lower_lip_.empty()) return 0.0;
+    const fascia::Triangle& corners = mesh_.triangles[static_cast<size_t>(place.triangle)];
+    double lip = 0.0;
+    for (size_t k = 0; k < 3; ++k)
+      lip += place.barycentric[static_cast<int>(k)] * lower_lip_[static_cast<size_t>(corners[k])];
+    return lip;
+  }
+
+  /// The place nearest to `p`, within `off`. Of a thin fold, as a lid's edge is, the side that faces as
+  /// `facing` does; of lips that touch, the one of `lip`.
+  std::optional<SurfacePoint> place(const Vec3& p, const Vec3& facing, double lip, double off) const {
+    constexpr double same_lip = 0.3;
+    const auto found = nearest(p, facing, off);
+    const size_t side = lip > 0.5;
+    if (!found || std::abs(lip_of(*found) - lip) <= same_lip || !lip_queries_[side]) return found;
+    const spatial::ClosestPoint own = lip_queries_[side]->nearest_place(p, off);
+    if (!own.found()) return found;
+    return SurfacePoint{triangle_of_[side][static_cast<size_t>(own.surface.triangle)],
+                        own.surface.barycentric};
+  }
+
+ private:
+  std::optional<SurfacePoint> nearest(const Vec3& p, const Vec3& facing, double off) const {
     constexpr double least_facing = 0.2;
     const auto faces = [&](const SurfacePoint& at) {
       return facing.dot(triangle_normal(mesh_, at.triangle)) > least_facing;
@@ -86,9 +121,11 @@ class ImageFinder {
     return best ? best->surface : nearest.surface;
   }
 
- private:
   const TriangleMesh& mesh_;
   spatial::SurfaceQuery query_;
+  const std::vector<double>& lower_lip_;
+  std::array<std::optional<spatial::SurfaceQuery>, 2> lip_queries_;  // of the upper lip, of the lower
+  std::array<std::vector<int>, 2> triangle_of_;                      // of their triangles, in the mesh
 };
 
 /// A millimetre of an adult's face on this one.
@@ -204,10 +241,11 @@ RemeshResult on_region(const RemeshResult& given, const HalfRegion& region, cons
 }
 
 std::optional<RemeshResult> with_images(const RemeshResult& half, const FaceRegion& region,
-                                        const Symmetry& plane, std::vector<size_t>& left) {
+                                        const std::vector<double>& lower_lip, const Symmetry& plane,
+                                        std::vector<size_t>& left) {
   const double off = plane.is_exact ? 1.5e-3 : 8e-3;  // metres: farther from the skin is no image
   constexpr double ends = 0.025;                      // metres
-  const ImageFinder finder(region.mesh);
+  const ImageFinder finder(region.mesh, lower_lip);
   const auto beside = border_neighbours(half.mesh);
   size_t missing = 0;
   const size_t n = half.mesh.vertices.size(), triangles = half.mesh.triangles.size();
@@ -221,12 +259,13 @@ std::optional<RemeshResult> with_images(const RemeshResult& half, const FaceRegi
     left.push_back(v);
     const Vec3 p = plane.image(half.mesh.vertices[v]);
     const Vec3 facing = plane.turned(triangle_normal(region.mesh, half.source[v].triangle));
-    auto place = finder.place(p, facing, off);
+    const double lip = finder.lip_of(half.source[v]);
+    auto place = finder.place(p, facing, lip, off);
     if (!place) {
       // Where the region ends its last triangles may reach farther on one side.
-      place = finder.place(p, facing, ends);
+      place = finder.place(p, facing, lip, ends);
       missing += !place || beside[v].first < 0;
-      if (!place) place = finder.place(p, facing, std::numeric_limits<double>::infinity());
+      if (!place) place = finder.place(p, facing, lip, std::numeric_limits<double>::infinity());
       if (!place) return {};
     }
     full.source.push_back(*place);

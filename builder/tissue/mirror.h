@@ -38,10 +38,12 @@ RemeshResult on_region(const RemeshResult& half, const HalfRegion& region, const
 
 /// Completes a remesh of the left half by the mirror images of its vertices, which follow them in the same
 /// order; those on the plane are their own. Where the symmetry is exact the images stay where they are, else
-/// they lie on the skin nearest to there. Nothing where the skin has no such place or triangles would turn.
-/// `left` receives of each image the vertex it is one of.
+/// they lie on the skin nearest to there, on the same lip by `lower_lip` (#region vertices, see Beneath; may
+/// be empty). Nothing where the skin has no such place or triangles would turn. `left` receives of each image
+/// the vertex it is one of.
 std::optional<RemeshResult> with_images(const RemeshResult& half, const FaceRegion& region,
-                                        const Symmetry& symmetry, std::vector<size_t>& left);
+                                        const std::vector<double>& lower_lip, const Symmetry& symmetry,
+                                        std::vector<size_t>& left);
 
 /// What lies on both sides with the right one's made the left one's mirror image: muscles, unless they were
 /// changed by hand, and ligaments whose names end in _left and _right. One that only one side has stays.

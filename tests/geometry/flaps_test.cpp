@@ -73,5 +73,26 @@ TEST(Flaps, OfTwoHalvesTheSmallerIsTurned) {
     EXPECT_EQ(against[t], t < first) << t;
 }
 
+TEST(Flaps, VerticesThatCoincideTurnNothingThatWasOrientedAlike) {
+  // A strip whose ends lie in one place, one of them turned: a Moebius strip, once its vertices are merged.
+  constexpr int squares = 6;
+  std::vector<Triangle> original;
+  TriangleMesh mesh;
+  for (int i = 0; i < squares; ++i) {
+    original.push_back({2 * i, 2 * i + 2, 2 * i + 1});
+    original.push_back({2 * i + 1, 2 * i + 2, 2 * i + 3});
+    for (int side = 0; side < 2; ++side)
+      mesh.vertices.emplace_back(std::cos(i), std::sin(i), side);
+  }
+  for (const Triangle& t : original) {
+    mesh.triangles.push_back(t);
+    for (int& v : mesh.triangles.back())
+      if (v >= 2 * squares) v = 2 * squares + 1 - v;
+  }
+  const std::vector<bool> merged = facing_against(mesh), by_original = facing_against(mesh, original);
+  EXPECT_GT(std::count(merged.begin(), merged.end(), true), 0);
+  EXPECT_EQ(std::count(by_original.begin(), by_original.end(), true), 0);
+}
+
 }  // namespace
 }  // namespace fascia

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <numeric>
 #include <random>
+#include <set>
 #include <sstream>
 
 #include "builder/openings/fused.h"
@@ -106,6 +107,62 @@ TEST(Openings, KeepsTheVerticesThatWereThere) {
                                "exocanthion_left", "endocanthion_right", "exocanthion_right"})
         nearest = std::min(nearest, (p - closed.landmarks.at(name)).norm());
       EXPECT_LT(nearest, 0.022);
+    }
+}
+
+/// `skin` with triangles without area on some edges that cross the line of the lips.
+TriangleMesh with_slivers_between_lips(TriangleMesh skin, const Vec3& stomion, int& count) {
+  const Connectivity links = connectivity(skin);
+  std::vector<bool> is_taken(skin.triangles.size());
+  count = 0;
+  for (int t = 0; t < static_cast<int>(is_taken.size()); ++t)
+    for (size_t e = 0; e < 3 && !is_taken[static_cast<size_t>(t)]; ++e) {
+      const Triangle k = skin.triangles[static_cast<size_t>(t)];
+      const int b = k[e], a = k[(e + 1) % 3], d = k[(e + 2) % 3],
+                other = links.neighbours[static_cast<size_t>(t)][e];
+      const Vec3 &p = skin.vertices[static_cast<size_t>(a)], &q = skin.vertices[static_cast<size_t>(b)];
+      const Vec3 middle = 0.5 * (p + q);
+      const bool crosses = (p.y() - stomion.y()) * (q.y() - stomion.y()) < 0.0 &&
+                           std::abs(middle.x() - stomion.x()) < 0.012 && (middle - stomion).norm() < 0.016;
+      if (!crosses || other < 0 || is_taken[static_cast<size_t>(other)]) continue;
+      const int m = skin.vertex_count();
+      skin.vertices.push_back(middle);
+      skin.triangles[static_cast<size_t>(t)] = {m, a, d};
+      skin.triangles.push_back({b, m, d});
+      skin.triangles.push_back({a, m, b});
+      is_taken[static_cast<size_t>(t)] = is_taken[static_cast<size_t>(other)] = true;
+      ++count;
+    }
+  return skin;
+}
+
+TEST(Openings, TrianglesWithoutAreaDoNotHoldTheLipsTogether) {
+  const ClosedHead closed = closed_head(generic());
+  int count = 0;
+  const TriangleMesh skin = with_slivers_between_lips(closed.skin, closed.landmarks.at("stomion"), count);
+  ASSERT_GT(count, 2);
+  const Case c = open(skin, closed.landmarks);
+  ASSERT_FALSE(c.opened.parted.empty());
+  EXPECT_EQ(c.opened.parted[0].name, "mouth");
+  // An edge of the file leads no farther than two edges of the skin that is computed with.
+  std::vector<std::vector<int>> neighbours(c.head.skin.vertices.size());
+  for (const Triangle& t : c.head.skin.triangles)
+    for (size_t e = 0; e < 3; ++e)
+      for (size_t k = 1; k < 3; ++k)
+        neighbours[static_cast<size_t>(t[e])].push_back(t[(e + k) % 3]);
+  const auto is_near = [&](int a, int b) {
+    for (const int n : neighbours[static_cast<size_t>(a)])
+      for (const int m : neighbours[static_cast<size_t>(n)])
+        if (n == b || m == b) return true;
+    return a == b;
+  };
+  const std::vector<int>& of = c.head.meshes[0].skin_vertices;
+  const TriangleMesh file{c.opened.scene.meshes[0].positions, c.opened.scene.meshes[0].triangles};
+  for (int i = 0; i < file.triangle_count(); ++i)
+    for (size_t e = 0; e < 3 && triangle_area(file, i) < 1e-6; ++e) {
+      const Triangle& t = file.triangles[static_cast<size_t>(i)];
+      const int a = of[static_cast<size_t>(t[e])], b = of[static_cast<size_t>(t[(e + 1) % 3])];
+      EXPECT_TRUE(a < 0 || b < 0 || is_near(a, b)) << a << " " << b;
     }
 }
 
