@@ -224,8 +224,8 @@ TEST(Prepare, UnitsThatDoNotFitTheHeadAreSaidOrRefused) {
     options.units = units;
     const PreparedHead head = prepare(scene, given, reference(), options);
     ASSERT_EQ(head.warnings.size(), warnings) << units;
-    if (warnings > 0)
-      EXPECT_NE(head.warnings[0].find("correct --units"), std::string::npos) << head.warnings[0];
+    for (const std::string& warning : head.warnings)
+      EXPECT_NE(warning.find("correct --units"), std::string::npos) << warning;
   }
   for (const char* units : {"mm", "cm", "100"}) {
     options.units = units;

@@ -92,9 +92,9 @@ int made_within(const TriangleMesh& mesh, rlim_t more) {
 }
 
 TEST(SurfaceQuery, MemoryThatIsNotThereIsSaid) {
-  const TriangleMesh mesh = grid(400);
+  const TriangleMesh mesh = grid(300);
   int refused = 0;
-  for (rlim_t megabytes = 0; megabytes < 80; megabytes += 4) {
+  for (rlim_t megabytes = 0; megabytes < 48; megabytes += 4) {
     const int code = made_within(mesh, megabytes << 20);
     EXPECT_TRUE(code == 0 || code == 1) << megabytes << " MB: " << code;
     refused += code == 1;
