@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <sstream>
+
+#include "formats/files.h"
+#include "geometry/json.h"
 
 namespace fascia::anatomy {
 namespace {
@@ -48,16 +49,15 @@ std::string DataFiles::place(const std::string& name) const {
 std::string DataFiles::read(const std::string& name) const {
   if (const auto text = texts_.find(name); text != texts_.end()) return text->second;
   if (place(name) == name) return std::string(embedded_file(name));
-  std::ifstream stream(directory_ / name, std::ios::binary);
-  if (!stream) throw Error(place(name) + ": cannot be read");
-  std::ostringstream bytes;
-  bytes << stream.rdbuf();
-  return bytes.str();
+  const std::vector<uint8_t> bytes = formats::read_bytes(directory_ / name);
+  return {bytes.begin(), bytes.end()};
 }
 
 Json DataFiles::json(const std::string& name) const {
   try {
-    Json document = Json::parse(read(name));
+    const std::string text = read(name);
+    check_depth(text, place(name));
+    Json document = Json::parse(text);
     if (!document.is_object()) throw Error(place(name) + ": must hold one JSON object");
     return document;
   } catch (const Json::exception& problem) {

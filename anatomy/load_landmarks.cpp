@@ -1,6 +1,6 @@
-#include <fstream>
-
 #include "anatomy/fields.h"
+#include "formats/files.h"
+#include "geometry/json.h"
 
 namespace fascia::anatomy {
 namespace {
@@ -100,9 +100,7 @@ void load_tissue_depths(const DataFiles& files, GenericAnatomy& anatomy) {
 
 std::vector<std::string> add_depth_tables(GenericAnatomy& anatomy, const std::filesystem::path& file) {
   const std::string where = "'" + file.string() + "'";
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw Error(where + " cannot be read");
-  const Json document = Json::parse(stream, nullptr, false);
+  const Json document = parse_json<Json>(formats::read_bytes(file), where);
   if (document.is_discarded()) throw Error(where + " is not JSON");
   const Fields root(document, where);
   std::vector<std::string> names;

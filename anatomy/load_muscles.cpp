@@ -1,9 +1,10 @@
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <numbers>
 
 #include "anatomy/fields.h"
+#include "formats/files.h"
+#include "geometry/json.h"
 
 namespace fascia::anatomy {
 namespace {
@@ -193,9 +194,7 @@ void add_muscle(GenericAnatomy& anatomy, Muscle muscle) {
 
 void add_muscles(GenericAnatomy& anatomy, const std::filesystem::path& file) {
   const std::string where = "'" + file.string() + "'";
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw Error(where + " cannot be read");
-  const Json document = Json::parse(stream, nullptr, false);
+  const Json document = parse_json<Json>(formats::read_bytes(file), where);
   if (document.is_discarded()) throw Error(where + " is not JSON");
   const Fields root(document, where);
   for (const Fields& entry : root.list("muscles")) {

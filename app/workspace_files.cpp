@@ -5,6 +5,7 @@
 #include "builder/rigging/embedded_head.h"
 #include "formats/files.h"
 #include "geometry/error.h"
+#include "geometry/json.h"
 #include "geometry/text.h"
 
 namespace fascia::app {
@@ -21,7 +22,7 @@ bool is_mesh_file(const std::filesystem::path& file) {
 bool is_edits_file(const std::filesystem::path& file) {
   if (extension_of(file) != ".json") return false;
   const std::vector<uint8_t> bytes = formats::read_bytes(file);
-  const auto json = nlohmann::ordered_json::parse(bytes.begin(), bytes.end(), nullptr, false);
+  const auto json = parse_json<nlohmann::ordered_json>(bytes, "'" + file.string() + "'");
   return json.is_object() &&
          (json.contains("landmarks") || json.contains("muscles") || json.contains("new_muscles"));
 }

@@ -5,6 +5,7 @@
 #include "formats/files.h"
 #include "formats/scene.h"
 #include "geometry/error.h"
+#include "geometry/json.h"
 
 namespace fascia::app {
 
@@ -40,7 +41,7 @@ void Workspace::run_check() {
 }
 
 void Workspace::read_check(const ToolJob& job) {
-  const Json json = Json::parse(job.output(), nullptr, false);
+  const Json json = parse_json<Json>(job.output(), "the check's report");
   if (!json.is_object() || !json.contains("rows") || !rig) return;
   size_t failed = 0;
   for (const Json& row : json["rows"]) {

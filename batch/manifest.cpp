@@ -11,6 +11,7 @@
 
 #include "formats/content_hash.h"
 #include "formats/files.h"
+#include "formats/named_files.h"
 #include "geometry/error.h"
 #include "geometry/text.h"
 
@@ -154,20 +155,6 @@ Task checked(const Task& task, const std::string& where) {
   return task;
 }
 
-/// Files beside a glTF that hold its numbers.
-std::vector<fs::path> buffers_of(const Head& head, const std::vector<uint8_t>& bytes) {
-  std::vector<fs::path> files;
-  if (extension_of(head.file) != ".gltf") return files;
-  const Json json = Json::parse(
-      bytes.begin(), bytes.end(), [](int depth, Json::parse_event_t, Json&) { return depth < 64; }, false);
-  if (!json.is_object() || !json.contains("buffers") || !json["buffers"].is_array()) return files;
-  for (const Json& buffer : json["buffers"])
-    if (buffer.is_object() && buffer.contains("uri") && buffer["uri"].is_string())
-      if (const std::string uri = buffer["uri"].get<std::string>(); uri.rfind("data:", 0) != 0)
-        files.push_back(head.file.parent_path() / uri);
-  return files;
-}
-
 }  // namespace
 
 std::vector<Head> read_heads(const fs::path& source) {
@@ -209,18 +196,16 @@ Task task_of_environment(size_t count) {
 }
 
 std::string key_of(const Head& head, const std::string& version) {
-  const std::vector<uint8_t> bytes = formats::read_bytes(head.file);
-  std::string text = version + "\n" + formats::content_hash(bytes);
-  std::vector<fs::path> beside = buffers_of(head, bytes);
+  std::string text = version + "\n" + formats::content_hash(head.file);
+  // One that is missing is for the builder to complain of.
+  for (const formats::NamedFile& file : formats::named_files(head.file))
+    text += "\n" + file.name + ": " + (file.path ? formats::content_hash(*file.path) : "missing");
+  std::error_code status;
   for (const fs::path& file : {head.landmarks, head.edits})
-    if (!file.empty()) beside.push_back(file);
-  for (const fs::path& file : beside) {
-    std::error_code status;  // a buffer that is missing is for the builder to complain of
-    text += "\n" + (fs::exists(file, status) ? formats::content_hash(formats::read_bytes(file)) : "missing");
-  }
+    if (!file.empty()) text += "\n" + (fs::exists(file, status) ? formats::content_hash(file) : "missing");
   for (const std::string& option : head.options)
     text += "\n" + option;
-  return formats::content_hash({reinterpret_cast<const uint8_t*>(text.data()), text.size()});
+  return formats::content_hash(std::span(reinterpret_cast<const uint8_t*>(text.data()), text.size()));
 }
 
 }  // namespace fascia::batch

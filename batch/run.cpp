@@ -4,8 +4,10 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <cstdio>
 #include <cstring>
 #include <mutex>
+#include <new>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -95,6 +97,16 @@ std::string cause_of(const Outcome& outcome) {
   return common_part(words);
 }
 
+/// Lets two folders that are there change places. False, and nothing done, where that cannot be.
+bool exchange(const fs::path& a, const fs::path& b) {
+#ifdef RENAME_EXCHANGE
+  return renameat2(AT_FDCWD, a.c_str(), AT_FDCWD, b.c_str(), RENAME_EXCHANGE) == 0;
+#else
+  (void)a, (void)b;
+  return false;
+#endif
+}
+
 /// One head's way from mesh to results.
 class Worker {
  public:
@@ -127,9 +139,10 @@ class Worker {
     return record;
   }
 
-  /// Puts the results in place of those that were there.
+  /// Puts the results in place of those that were there, in one step where the system can do that.
   void publish(const Record& record) {
     write_record(work_, record);
+    if (exchange(work_, result_)) return clear(work_);
     const fs::path old = work_.string() + ".old";
     clear(old);
     std::error_code status;
@@ -226,16 +239,21 @@ Fate settle(const Head& head, const Options& options, const std::atomic<bool>& s
   const Lock lock(options.output / ".locks", head.id);
   if (!lock.is_mine()) return Fate::elsewhere;
   Worker worker(head, options, stop);
+  const auto fail = [&](const std::string& message) {
+    record.attempts = 1;
+    record.message = message;
+    record.cause = common_part(message);
+    fs::create_directories(options.output / ".work" / head.id);
+    worker.publish(record);
+    return Fate::failed;
+  };
   std::string key;
   try {
     key = key_of(head, options.version);
   } catch (const Error& error) {  // a file that is not there is this head's trouble, not the batch's
-    record.attempts = 1;
-    record.message = error.what();
-    record.cause = common_part(record.message);
-    fs::create_directories(options.output / ".work" / head.id);
-    worker.publish(record);
-    return Fate::failed;
+    return fail(error.what());
+  } catch (const std::bad_alloc&) {
+    return fail("out of memory: the input is too large for this machine");
   }
   if (worker.is_settled(key, record)) return Fate::kept;
   record = worker.build(key);

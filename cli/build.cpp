@@ -180,7 +180,9 @@ void add_anatomy_option(const Command& command, std::filesystem::path& directory
 }
 
 rigging::BuildReport build_file(const Common& common, const BuildRequest& request, int* failed_checks) {
-  check_output(request.output, {request.head, request.landmarks, request.edits});
+  std::vector<std::filesystem::path> inputs = request.muscles;
+  inputs.insert(inputs.end(), {request.head, request.landmarks, request.edits});
+  check_output(request.output, inputs);
   if (!request.report.empty()) make_output_folder(request.report);
   if (extension_of(request.output) != ".glb")
     throw Error("'" + request.output.string() + "': a rig is a .glb file; give -o NAME.glb");

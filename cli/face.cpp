@@ -88,7 +88,7 @@ Json landmarks_json(const reconstruction::Result& result) {
 }
 
 void check_outputs(const FaceRequest& request) {
-  const std::vector<std::filesystem::path> inputs = {request.skull, request.landmarks};
+  const std::vector<std::filesystem::path> inputs = {request.skull, request.landmarks, request.depths};
   for (const auto& path : {request.output, request.landmarks_out, request.sheet, request.rig})
     if (!path.empty()) check_output(path, inputs);
   if (!request.sheet.empty() && extension_of(request.sheet) != ".png")

@@ -137,7 +137,7 @@ void fit_targets(const Common& common, const FitRequest& request, fit::Subject& 
 
 void run(const Common& common, const FitRequest& request) {
   const auto started = std::chrono::steady_clock::now();
-  check_output(request.output, {request.rig, request.target});
+  check_output(request.output, {request.rig, request.target, request.neutral});
   if (!request.report.empty()) make_output_folder(request.report);
   fit::Subject subject(rig::read(formats::read_bytes(request.rig), request.rig.string()), request.level);
   FitTargets targets;

@@ -7,6 +7,7 @@
 #include "formats/landmark_file.h"
 #include "formats/scene.h"
 #include "geometry/error.h"
+#include "geometry/json.h"
 
 namespace fascia::cli {
 
@@ -20,7 +21,7 @@ class Reader {
 
   LandmarkFrames read() {
     const std::vector<uint8_t> bytes = formats::read_bytes(path_);
-    const PlainJson content = PlainJson::parse(bytes.begin(), bytes.end(), nullptr, false);
+    const PlainJson content = parse_json<PlainJson>(bytes, "'" + path_.string() + "'");
     if (!content.is_object()) fail("it is not a JSON object");
     LandmarkFrames out;
     if (content.contains("frames")) {

@@ -10,6 +10,7 @@
 #include "formats/scene.h"
 #include "formats/write.h"
 #include "geometry/error.h"
+#include "geometry/json.h"
 #include "geometry/text.h"
 #include "rig/read/read.h"
 #include "rig/write/write.h"
@@ -40,7 +41,7 @@ int decimals_for(const formats::Scene& scene) {
 std::vector<std::vector<int>> source_vertices(const rig::SourceRecord& source, const formats::Scene& scene) {
   std::vector<std::vector<int>> lines;
   if (!source.json.empty()) {
-    const auto notes = nlohmann::json::parse(source.json, nullptr, false);
+    const auto notes = parse_json<nlohmann::json>(source.json, "the rig's record of its OBJ");
     if (notes.is_object() && notes.contains("sourceVertices")) try {
         return notes["sourceVertices"].get<std::vector<std::vector<int>>>();
       } catch (const nlohmann::json::exception&) {

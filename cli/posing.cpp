@@ -4,8 +4,8 @@
 #include <fascia/fascia.hpp>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
+#include "formats/activation_file.h"
 #include "formats/scene.h"
 #include "geometry/error.h"
 #include "geometry/nearest_names.h"
@@ -239,18 +239,7 @@ Mat4 Face::jaw() const {
 std::vector<std::pair<std::string, double>> activations(const std::vector<std::string>& words,
                                                         const std::filesystem::path& file) {
   std::vector<std::pair<std::string, double>> values;
-  if (!file.empty()) {
-    const std::vector<uint8_t> bytes = formats::read_bytes(file);
-    const nlohmann::json content = nlohmann::json::parse(bytes.begin(), bytes.end(), nullptr, false);
-    if (!content.is_object() || !content.contains("activations") || !content["activations"].is_object())
-      throw Error("'" + file.string() +
-                  "' is not an activations file: {\"activations\": {NAME: VALUE, ...}}");
-    for (const auto& [name, value] : content["activations"].items()) {
-      if (!value.is_number())
-        throw Error("'" + file.string() + "': the activation '" + name + "' is not a number");
-      values.emplace_back(name, value.get<double>());
-    }
-  }
+  if (!file.empty()) values = formats::read_activations(file);
   for (const std::string& word : words) {
     const size_t at = word.find('=');
     char* end = nullptr;

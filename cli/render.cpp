@@ -165,7 +165,7 @@ class Picture {
 };
 
 void run(const Common& common, const RenderRequest& request) {
-  check_output(request.output, {request.rig});
+  check_output(request.output, {request.rig, request.file, request.curves});
   const std::string extension = extension_of(request.output);
   if (extension != ".png" && !view::is_film(request.output))
     throw Error("'" + request.output.string() +

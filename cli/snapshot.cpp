@@ -82,7 +82,9 @@ void take_over(const snapshot::Snapshot& old, const SnapshotRequest& wanted, sna
 }
 
 void record(const Common& common, const SnapshotRequest& wanted) {
-  check_output(wanted.output, {wanted.file, wanted.poses});
+  std::vector<fs::path> inputs = wanted.curves;
+  inputs.insert(inputs.end(), {wanted.file, wanted.poses});
+  check_output(wanted.output, inputs);
   snapshot::Request request;
   request.level = wanted.level;
   request.threads = common.threads;
@@ -161,11 +163,18 @@ void finish(const Common& common, const snapshot::Snapshot& then, const snapshot
   if (comparison.failed > 0) throw Exit{exit_check};
 }
 
-void check_snapshot(const Common& common, const SnapshotRequest& wanted) {
+/// Neither of a check's results may take the place of `inputs`.
+void check_results(const SnapshotRequest& wanted, std::vector<fs::path> inputs) {
+  inputs.insert(inputs.end(), {wanted.file, wanted.against});
   for (const fs::path& output : {wanted.report, wanted.junit})
-    if (!output.empty()) check_output(output, {wanted.file, wanted.against});
+    if (!output.empty()) check_output(output, inputs);
+}
+
+void check_snapshot(const Common& common, const SnapshotRequest& wanted) {
+  check_results(wanted, wanted.curves);
   const snapshot::Snapshot then = read_snapshot(wanted.against);
   SnapshotReport report = {wanted.file, curves_of(then, wanted.against, wanted.curves), wanted.tolerance_mm};
+  check_results(wanted, report.curves);
   std::vector<snapshot::TakeFile> takes;
   for (const fs::path& file : report.curves)
     takes.push_back(take_file(wanted.against, file));
@@ -176,7 +185,8 @@ void check_snapshot(const Common& common, const SnapshotRequest& wanted) {
   const snapshot::Comparison comparison = snapshot::compare(then, now, wanted.tolerance_mm);
   Json json = {{"against", wanted.against.string()}};
   if (!wanted.junit.empty()) {
-    formats::write_text(wanted.junit, snapshot::junit(then, comparison, wanted.against.stem().string()));
+    formats::write_text(
+        wanted.junit, snapshot::junit(then, comparison, wanted.against.stem().string(), wanted.tolerance_mm));
     common.say("wrote " + wanted.junit.string());
     json["junit"] = wanted.junit.string();
   }

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 
 #include "formats/detail.h"
@@ -83,12 +84,14 @@ class Document {
   explicit Document(Scene& scene)
       : scene_(scene), json(Json::parse(scene.document.json)), binary_(scene.document.bin) {}
 
-  Numbers read(size_t index) const {
+  /// The numbers of accessor `index`, or nothing unless it has `count` elements: no memory is taken for a
+  /// count that only the file vouches for.
+  std::optional<Numbers> read(size_t index, size_t count) const {
     const Json& accessor = json.at("accessors").at(index);
+    if (accessor.at("count").get<size_t>() != count) return std::nullopt;
     Numbers numbers;
     numbers.width = width_of(accessor.at("type").get<std::string>());
     numbers.component = accessor.at("componentType").get<int>();
-    const auto count = accessor.at("count").get<size_t>();
     numbers.values.assign(count * numbers.width, 0.0);
     if (accessor.contains("bufferView"))
       read_view(accessor["bufferView"].get<size_t>(), accessor.value("byteOffset", size_t{0}),
@@ -96,6 +99,7 @@ class Document {
     if (accessor.contains("sparse")) {
       const Json& sparse = accessor["sparse"];
       const auto some = sparse.at("count").get<size_t>();
+      if (some > count) fail(scene_, "a sparse accessor replaces more elements than it has");
       std::vector<double> places(some), replaced(some * numbers.width);
       const Json &indices = sparse.at("indices"), &values = sparse.at("values");
       read_view(indices.at("bufferView").get<size_t>(), indices.value("byteOffset", size_t{0}),
@@ -288,8 +292,10 @@ void extend_attributes(Document& document, const SceneMesh& mesh, const MeshExte
   double one = 1.0;
   for (auto& [name, index] : attributes.items()) {
     const auto accessor = index.get<size_t>();
-    Numbers numbers = document.read(accessor);
-    if (numbers.count() != static_cast<size_t>(extension.vertices_before)) continue;
+    const size_t first = static_cast<size_t>(extension.vertices_before);
+    std::optional<Numbers> read = document.read(accessor, first);
+    if (!read) continue;
+    Numbers& numbers = *read;
     if (name.rfind("JOINTS_", 0) == 0) {
       joints.push_back(std::move(numbers));
       joint_names.push_back(name);
@@ -302,7 +308,6 @@ void extend_attributes(Document& document, const SceneMesh& mesh, const MeshExte
       continue;
     }
     extend_between(numbers, extension);
-    const size_t first = static_cast<size_t>(extension.vertices_before);
     const double unit = length_one(document.json["accessors"].at(accessor));
     for (size_t i = 0; i < extension.vertices.size(); ++i) {
       double* value = numbers.at(first + i);
@@ -347,10 +352,11 @@ void extend_primitive(Document& document, const SceneMesh& mesh, const MeshExten
   if (primitive.contains("targets"))
     for (Json& target : primitive["targets"])
       for (auto& [name, index] : target.items()) {
-        Numbers numbers = document.read(index.get<size_t>());
-        if (numbers.count() != static_cast<size_t>(extension.vertices_before)) continue;
-        extend_between(numbers, extension);
-        target[name] = document.add(numbers, index.get<size_t>(), 34962, true);
+        std::optional<Numbers> numbers =
+            document.read(index.get<size_t>(), static_cast<size_t>(extension.vertices_before));
+        if (!numbers) continue;
+        extend_between(*numbers, extension);
+        target[name] = document.add(*numbers, index.get<size_t>(), 34962, true);
       }
   Numbers order;
   order.component = mesh.positions.size() > 65535 ? uint32 : uint16;

@@ -44,13 +44,34 @@ std::vector<uint8_t> read_bytes(const fs::path& path) {
   if (!file) throw Error("'" + path.string() + "' cannot be opened: check its permissions");
   std::vector<uint8_t> bytes;
   if (fs::is_regular_file(path, status)) {
-    bytes.resize(static_cast<size_t>(fs::file_size(path, status)));
+    const auto size = static_cast<size_t>(fs::file_size(path, status));
+    if (size > most_bytes) throw Error("'" + path.string() + "' is larger than 4 GB");
+    bytes.resize(size);
     file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
     if (!file && !bytes.empty()) throw Error("'" + path.string() + "' cannot be read to its end");
     return bytes;
   }
-  bytes.assign(std::istreambuf_iterator<char>(file), {});  // a pipe has no length
+  std::vector<char> piece(1 << 16);
+  while (file.read(piece.data(), static_cast<std::streamsize>(piece.size())) || file.gcount() > 0) {
+    bytes.insert(bytes.end(), piece.begin(), piece.begin() + file.gcount());
+    if (bytes.size() > most_piped_bytes)
+      throw Error("'" + path.string() + "' goes on beyond 512 MB: save it to a file");
+  }
   return bytes;
+}
+
+void read_pieces(const fs::path& path, const std::function<void(std::span<const uint8_t>)>& use) {
+  std::error_code status;
+  if (!fs::exists(path, status)) throw Error("'" + path.string() + "' does not exist");
+  if (!fs::is_regular_file(path, status)) throw Error("'" + path.string() + "' is not a file");
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw Error("'" + path.string() + "' cannot be opened: check its permissions");
+  std::vector<uint8_t> piece(1 << 20);
+  do {
+    file.read(reinterpret_cast<char*>(piece.data()), static_cast<std::streamsize>(piece.size()));
+    use({piece.data(), static_cast<size_t>(file.gcount())});
+  } while (file);
+  if (!file.eof()) throw Error("'" + path.string() + "' cannot be read to its end");
 }
 
 void write_bytes(const fs::path& path, const void* bytes, size_t size) {
@@ -72,7 +93,7 @@ void write_text(const fs::path& path, const std::string& text) {
   write_bytes(path, text.data(), text.size());
 }
 
-FileBeside read_beside(const fs::path& owner, const std::string& relative, bool allow_outside) {
+PathBeside find_beside(const fs::path& owner, const std::string& relative, bool allow_outside) {
   const fs::path folder = owner.has_parent_path() ? owner.parent_path() : fs::path(".");
   std::error_code status;
   fs::path wanted = folder / fs::path(relative);
@@ -88,8 +109,14 @@ FileBeside read_beside(const fs::path& owner, const std::string& relative, bool 
                               "' and is not opened; move it there, or give --allow-outside"};
   if (!fs::is_regular_file(real, status))
     return {std::nullopt, "is not there; put it where the file says, beside it"};
+  return {real, ""};
+}
+
+FileBeside read_beside(const fs::path& owner, const std::string& relative, bool allow_outside) {
+  const PathBeside found = find_beside(owner, relative, allow_outside);
+  if (!found.path) return {std::nullopt, found.why};
   try {
-    return {read_bytes(real), ""};
+    return {read_bytes(*found.path), ""};
   } catch (const Error&) {
     return {std::nullopt, "cannot be read; check its permissions"};
   }

@@ -4,6 +4,7 @@
 
 #include "formats/scene.h"
 #include "geometry/error.h"
+#include "geometry/json.h"
 
 namespace fascia::formats {
 
@@ -18,10 +19,10 @@ class Reader {
         key_(surface == LandmarkSurface::skin ? "skin" : "bone"),
         other_(key_ == "skin" ? "bone" : "skin") {}
 
-  LandmarkFile read() {
+  LandmarkFile read() try {
     const std::vector<uint8_t> bytes = read_bytes(path_);
     if (bytes.empty()) throw Error("'" + path_.string() + "' is empty");
-    const json content = json::parse(bytes.begin(), bytes.end(), nullptr, false);
+    const json content = parse_json<json>(bytes, "'" + path_.string() + "'");
     if (!content.is_object()) fail("it is not a JSON object");
     if (content.contains("markups"))
       read_markups(content["markups"]);
@@ -31,6 +32,8 @@ class Reader {
       fail("it has neither 'landmarks' nor 3D Slicer's 'markups'");
     if (file_.points.empty()) fail("it names no landmark");
     return file_;
+  } catch (const json::exception& error) {
+    fail(std::string("it is not as landmark files are: ") + error.what());
   }
 
  private:
@@ -73,8 +76,7 @@ class Reader {
       const json system = markup.value("coordinateSystem", json("LPS"));
       const bool is_ras = system == "RAS" || system == 0 || system == "0";
       for (const json& control : markup["controlPoints"]) {
-        if (!control.is_object() || control.value("positionStatus", std::string("defined")) != "defined")
-          continue;
+        if (!control.is_object() || control.value("positionStatus", json("defined")) != "defined") continue;
         if (!control.contains("label") || !control["label"].is_string()) fail("a control point has no label");
         const std::string name = control["label"].get<std::string>();
         Vec3 p = point(name, control.value("position", json()));

@@ -38,22 +38,67 @@ bool write_all(int file, std::span<const uint8_t> bytes) {
   return true;
 }
 
-NewFile::NewFile(const fs::path& target) : target_(target) {
+namespace {
+
+/// Where a symbolic link leads to.
+fs::path destination_of(const fs::path& target) {
   std::error_code status;
-  if (fs::is_symlink(fs::symlink_status(target, status))) target_ = fs::weakly_canonical(target, status);
+  return fs::is_symlink(fs::symlink_status(target, status)) ? fs::weakly_canonical(target, status) : target;
+}
+
+/// Calls `make`, which returns a file or -1 with errno set, with names beside `target` until one is not
+/// taken. The name is remembered before it is made, so that no signal finds it unknown.
+template <class Make>
+std::string make_beside(const fs::path& target, Make&& make) {
   std::random_device random;
-  do {
+  for (;;) {
     char number[24];
     std::snprintf(number, sizeof number, ".%08x%08x.part", random(), random());
-    name_ = target_.string() + number;
-    // Noted before it is made, so that no signal finds it unknown.
-    remember_partial(name_);
-    file_ = open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-    if (file_ >= 0) return;
-    const int error = errno;
-    forget_partial(name_);
-    if (error != EEXIST) fail_to_write(target_, error);
-  } while (true);
+    const std::string name = target.string() + number;
+    remember_partial(name);
+    int error = 0;
+    {
+      const MakingPartial making;
+      if (make(name.c_str()) < 0) error = errno;
+    }
+    if (error == 0) return name;
+    forget_partial(name);
+    if (error != EEXIST) fail_to_write(target, error);
+  }
+}
+
+/// A path of the open file that other processes which inherit it can open too.
+std::string path_of_opened(int file) {
+  return "/proc/self/fd/" + std::to_string(file);
+}
+
+}  // namespace
+
+NewFile::NewFile(const fs::path& target) : target_(destination_of(target)) {
+  make();
+}
+
+NewFile NewFile::nameless(const fs::path& target) {
+  NewFile file;
+  file.target_ = destination_of(target);
+#ifdef O_TMPFILE
+  const fs::path folder = file.target_.has_parent_path() ? file.target_.parent_path() : ".";
+  file.file_ = open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0600);
+#endif
+  if (file.file_ < 0) file.make();
+  return file;
+}
+
+void NewFile::make() {
+  name_ = make_beside(target_, [this](const char* name) {
+    return file_ = open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+  });
+}
+
+void NewFile::give_name() {
+  name_ = make_beside(target_, [this](const char* name) {
+    return linkat(AT_FDCWD, path_of_opened(file_).c_str(), AT_FDCWD, name, AT_SYMLINK_FOLLOW);
+  });
 }
 
 NewFile::NewFile(NewFile&& other) noexcept
@@ -68,6 +113,12 @@ NewFile::~NewFile() {
   forget_partial(name_);
 }
 
+fs::path NewFile::opened() {
+  if (!name_.empty()) return name_;
+  fcntl(file_, F_SETFD, 0);  // other programs are to inherit it
+  return path_of_opened(file_);
+}
+
 void NewFile::write(std::span<const uint8_t> bytes) {
   if (!write_all(file_, bytes)) fail_to_write(target_, errno);
 }
@@ -80,6 +131,7 @@ void NewFile::put_in_place() {
   if (fchmod(file_, mode) != 0) fail_to_write(target_, errno);
   // Some file systems report a full disk only now.
   if (fsync(file_) != 0 && errno != EINVAL && errno != EROFS) fail_to_write(target_, errno);
+  if (name_.empty()) give_name();
   const int closed = close(file_);
   file_ = -1;
   if (closed != 0) fail_to_write(target_, errno);

@@ -13,6 +13,9 @@ class NewFile {
  public:
   /// `target` may be a symbolic link: its destination is replaced.
   explicit NewFile(const std::filesystem::path& target);
+  /// One that has no name until it is put in place, where the file system can do that (O_TMPFILE): a killed
+  /// program leaves nothing.
+  static NewFile nameless(const std::filesystem::path& target);
   NewFile(NewFile&& other) noexcept;
   NewFile& operator=(NewFile&&) = delete;
   NewFile(const NewFile&) = delete;
@@ -20,12 +23,18 @@ class NewFile {
   ~NewFile();
 
   void write(std::span<const uint8_t> bytes);
+  /// A path by which this process, and others started by it, can open the file while it is open here.
+  std::filesystem::path opened();
   /// Flushes, closes and renames it, with the permissions of the file that it replaces.
   void put_in_place();
 
  private:
+  NewFile() = default;
+  void make();
+  void give_name();
+
   std::filesystem::path target_;
-  std::string name_;
+  std::string name_;  ///< of the temporary file; empty: it has none
   int file_ = -1;
 };
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <atomic>
 #include <cstring>
+#include <ctime>
 #include <mutex>
 
 namespace fascia::formats {
@@ -22,6 +23,17 @@ constinit std::array<Place, 1024> table;
 std::mutex& writers() {
   static std::mutex mutex;
   return mutex;
+}
+
+constinit std::atomic<bool> is_ending = false;
+constinit std::atomic<int> files_in_making = 0;
+
+/// Until files that other threads are making are there; not for long, as a file server may not answer.
+void wait_for_files_in_making() {
+  constexpr int most = 100;
+  const timespec millisecond = {0, 1'000'000};
+  for (int k = 0; k < most && files_in_making > 0; ++k)
+    nanosleep(&millisecond, nullptr);
 }
 
 }  // namespace
@@ -47,10 +59,29 @@ void forget_partial(const std::filesystem::path& path) {
 }
 
 void remove_partial_files() {
+  is_ending = true;
+  wait_for_files_in_making();
   for (Place& place : table)
     if (place.is_used) unlink(place.path.data());
   for (Place& place : table)
     if (place.is_used) rmdir(place.path.data());
+}
+
+MakingPartial::MakingPartial() {
+  sigset_t all;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &signals_);
+  ++files_in_making;
+  if (!is_ending) return;
+  --files_in_making;
+  pthread_sigmask(SIG_SETMASK, &signals_, nullptr);
+  for (;;)
+    pause();
+}
+
+MakingPartial::~MakingPartial() {
+  --files_in_making;
+  pthread_sigmask(SIG_SETMASK, &signals_, nullptr);
 }
 
 PartialGroup::~PartialGroup() {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <csignal>
 #include <filesystem>
 #include <vector>
 
@@ -10,8 +11,22 @@ namespace fascia::formats {
 void remember_partial(const std::filesystem::path& path);
 void forget_partial(const std::filesystem::path& path);
 
-/// Deletes what is remembered: files, then folders that are empty. May be called in a signal handler.
+/// Deletes what is remembered: files, then folders that are empty. For the end of a program: from then on no
+/// remembered file is made. May be called in a signal handler.
 void remove_partial_files();
+
+/// Lives while a remembered file is made, so that `remove_partial_files` comes before it or after it, never
+/// between. At the end of the program its constructor does not return. Signals wait for its destructor.
+class MakingPartial {
+ public:
+  MakingPartial();
+  ~MakingPartial();
+  MakingPartial(const MakingPartial&) = delete;
+  MakingPartial& operator=(const MakingPartial&) = delete;
+
+ private:
+  sigset_t signals_;
+};
 
 /// Files and folders that only make sense together. Until all are there, an interruption or an error takes
 /// away those that are new.

@@ -22,6 +22,13 @@ uint64_t checksum(const uint8_t* bytes, std::size_t size) {
   return sum;
 }
 
+/// A force in newtons, no stronger than any that a face bears: solving for absurd ones takes seconds.
+fascia::sim::Vec3 bounded_force(const fascia::sim::Vec3& force) {
+  constexpr double strongest = 1000.0;
+  const double size = force.norm();
+  return size > strongest ? fascia::sim::Vec3(force * (strongest / size)) : force;
+}
+
 }  // namespace
 
 extern "C" {
@@ -121,7 +128,7 @@ fascia_result fascia_face_touch(fascia_face* handle, uint32_t mesh, uint32_t ver
     require(force != nullptr && std::isfinite(force[0]) && std::isfinite(force[1]) && std::isfinite(force[2]),
             "the force is null or not a finite number");
     require(vertex < with_mesh(handle, mesh).vertex_count(mesh), "the mesh has no such vertex");
-    require(checked(handle).touch(mesh, vertex, {force[0], force[1], force[2]}),
+    require(checked(handle).touch(mesh, vertex, bounded_force({force[0], force[1], force[2]})),
             "there are 64 touches already");
     return FASCIA_OK;
   });

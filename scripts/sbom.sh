@@ -18,7 +18,9 @@ libtinyobjloader-dev MIT
 libcli11-dev BSD-3-Clause
 libstb-dev MIT
 libnanoflann-dev BSD-2-Clause
-libxxhash-dev BSD-2-Clause'
+libxxhash-dev BSD-2-Clause
+libimgui-dev MIT
+fonts-dejavu-core Bitstream-Vera'
 # What programs and libraries load, by SPDX licence of the Debian package.
 declare -A licence=(
   [libc6]=LGPL-2.1-or-later [libstdc++6]='GPL-3.0-or-later WITH GCC-exception-3.1' [libgcc-s1]='GPL-3.0-or-later WITH GCC-exception-3.1'

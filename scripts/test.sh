@@ -33,9 +33,11 @@ if [ "$full" = 1 ]; then
   cmake --preset fuzz >/dev/null
   cmake --build build/fuzz --target fuzz
   tests/fuzz/run.sh build/fuzz/bin 300
-  python3 tests/fuzz/mutate.py build/bin/fascia build/tests/samples/tiny.glb build/tests/samples/smile.csv tests/fuzz/corpus/mesh/* \
-    tests/fuzz/corpus/curves/* --seconds 300 --keep build/findings
-  FASCIA_THOROUGH=1 ctest --test-dir build --output-on-failure -R 'test_faults'
+  # Another day, other cases; the number of one that fails repeats it.
+  python3 tests/fuzz/mutate.py build/bin/fascia build/tests/samples/tiny.glb build/tests/samples/smile.csv \
+    tests/fuzz/corpus/{mesh,curves,activations,edits,landmarks,snapshot,manifest}/* --head build/tests/snapshots/embedded_head.obj \
+    --seed "$(date +%Y%j0000)" --seconds 300 --keep build/findings
+  FASCIA_THOROUGH=1 build/bin/test_faults --gtest_brief=1  # longer than a test of ctest's may take
   cmake --preset ci -DFASCIA_FULL_TESTS=ON >/dev/null
   ctest --test-dir build --output-on-failure -R 'batch.slurm|snapshots.head'
   scripts/reproducible.sh

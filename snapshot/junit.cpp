@@ -16,10 +16,11 @@ std::string sentence(const Snapshot& then, const Difference& difference, double 
   return then.regions[difference.region].name + numbers;
 }
 
-std::string junit(const Snapshot& then, const Comparison& comparison, const std::string& suite) {
+std::string junit(const Snapshot& then, const Comparison& comparison, const std::string& suite,
+                  double tolerance_mm) {
   std::map<size_t, std::string> failures;
   for (const Difference& difference : comparison.differences)
-    if (!difference.ok) failures[difference.state] += sentence(then, difference) + "\n";
+    if (!difference.ok) failures[difference.state] += sentence(then, difference, tolerance_mm) + "\n";
   std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n <testsuite name=\"" +
                      escaped_markup(suite) + "\" tests=\"" + std::to_string(then.states.size()) +
                      "\" failures=\"" + std::to_string(failures.size()) + "\" errors=\"0\">\n";

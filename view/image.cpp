@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "formats/files.h"
 #include "geometry/error.h"
 #include "view/text.h"
 
@@ -28,6 +29,7 @@ unsigned char* deflated(unsigned char* data, int size, int* compressed_size, int
 }  // namespace
 
 #define STBIW_ZLIB_COMPRESS deflated
+#define STBI_WRITE_NO_STDIO
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STB_IMAGE_WRITE_STATIC
 #if defined(__GNUC__)
@@ -51,15 +53,8 @@ Image::Image(int image_width, int image_height, Colour background)
 }
 
 void write_png(const std::filesystem::path& path, const Image& image) {
-  std::error_code status;
-  if (!path.parent_path().empty()) std::filesystem::create_directories(path.parent_path(), status);
-  std::filesystem::path beside = path;
-  beside += ".part";
-  if (!stbi_write_png(beside.c_str(), image.width, image.height, 3, image.pixels.data(), image.width * 3))
-    throw Error("'" + path.string() +
-                "' cannot be written: check the folder, its permissions and free space");
-  std::filesystem::rename(beside, path, status);
-  if (status) throw Error("'" + path.string() + "' cannot be written: " + status.message());
+  const std::vector<uint8_t> bytes = encode_png(image);
+  formats::write_bytes(path, bytes.data(), bytes.size());
 }
 
 std::vector<uint8_t> encode_png(const Image& image) {

@@ -20,7 +20,7 @@ struct Image {
   Image(int width, int height, Colour background);
 };
 
-/// Writes a PNG beside `path` and renames it into place. Throws fascia::Error when it cannot.
+/// Writes a PNG file, whole or not at all, into a folder that is there. Throws fascia::Error when it cannot.
 void write_png(const std::filesystem::path& path, const Image& image);
 
 /// The bytes of a PNG file. Throws fascia::Error when the picture is empty.

@@ -1,25 +1,22 @@
 #include "view/video.h"
 
-#include <fcntl.h>
-#include <unistd.h>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 
+#include "formats/new_file.h"
 #include "geometry/error.h"
 #include "geometry/text.h"
 
 namespace fascia::view {
 
 struct Video::State {
-  std::filesystem::path path, beside;
+  std::filesystem::path path;
+  formats::NewFile file;  ///< what ffmpeg writes
   int width = 0, height = 0;
-  int nameless = -1;  ///< what ffmpeg writes, a file without a name: an interrupted film leaves nothing
   FILE* pipe = nullptr;
   bool is_broken = false;
-  ~State() {
-    if (nameless >= 0) close(nameless);
-  }
+  explicit State(const std::filesystem::path& film) : path(film), file(formats::NewFile::nameless(film)) {}
 };
 
 namespace {
@@ -30,22 +27,6 @@ std::string quoted(const std::string& path) {
   for (char c : path)
     word += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return word + "'";
-}
-
-/// A file in the folder of `path` that has no name until it is given one; -1 where there is no such thing.
-int nameless_file(const std::filesystem::path& path) {
-#ifdef O_TMPFILE
-  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  return open(folder.c_str(), O_TMPFILE | O_RDWR, 0666);
-#else
-  (void)path;
-  return -1;
-#endif
-}
-
-/// The file as this and any other process that has inherited it can open it.
-std::string opened(int file) {
-  return "/proc/self/fd/" + std::to_string(file);
 }
 
 /// What ffmpeg is told of the film itself; the same frames give the same bytes.
@@ -65,32 +46,24 @@ bool is_film(const std::filesystem::path& path) {
   return extension == ".mp4" || extension == ".gif" || extension == ".webp";
 }
 
-Video::Video(const std::filesystem::path& path, int width, int height, double frames_per_second)
-    : state_(std::make_unique<State>()) {
+Video::Video(const std::filesystem::path& path, int width, int height, double frames_per_second) {
   if (std::system("command -v ffmpeg >/dev/null 2>&1") != 0)
     throw Error("films are made by ffmpeg, which is not installed (Debian: apt-get install ffmpeg)");
-  state_->path = path;
-  state_->beside = path;
-  const std::string extension = is_film(path) ? extension_of(path) : ".mp4";
-  state_->beside += "." + std::to_string(getpid()) + ".part" + extension;
-  state_->nameless = nameless_file(path);
+  state_ = std::make_unique<State>(path);
   state_->width = width;
   state_->height = height;
   std::signal(SIGPIPE, SIG_IGN);
   const std::string command =
       "ffmpeg -y -loglevel error -f rawvideo -pix_fmt rgb24 -s " + std::to_string(width) + "x" +
       std::to_string(height) + " -r " + std::to_string(frames_per_second) + " -i - -an" +
-      encoding_of(extension) + " -fflags +bitexact -flags:v +bitexact -threads 1 " +
-      quoted(state_->nameless >= 0 ? opened(state_->nameless) : state_->beside.string());
+      encoding_of(is_film(path) ? extension_of(path) : ".mp4") +
+      " -fflags +bitexact -flags:v +bitexact -threads 1 " + quoted(state_->file.opened().string());
   state_->pipe = popen(command.c_str(), "w");
   if (!state_->pipe) throw Error("ffmpeg cannot be started");
 }
 
 Video::~Video() {
-  if (!state_->pipe) return;
-  pclose(state_->pipe);
-  std::error_code ignored;
-  std::filesystem::remove(state_->beside, ignored);
+  if (state_->pipe) pclose(state_->pipe);
 }
 
 void Video::add(const Image& frame) {
@@ -103,15 +76,9 @@ void Video::add(const Image& frame) {
 void Video::finish() {
   const int status = pclose(state_->pipe);
   state_->pipe = nullptr;
-  std::error_code failure;
-  if (status == 0 && !state_->is_broken && state_->nameless >= 0)
-    state_->is_broken = linkat(AT_FDCWD, opened(state_->nameless).c_str(), AT_FDCWD, state_->beside.c_str(),
-                               AT_SYMLINK_FOLLOW) != 0;
-  if (status == 0 && !state_->is_broken) std::filesystem::rename(state_->beside, state_->path, failure);
-  if (status != 0 || state_->is_broken || failure) {
-    std::filesystem::remove(state_->beside, failure);
+  if (status != 0 || state_->is_broken)
     throw Error("'" + state_->path.string() + "' cannot be written: ffmpeg failed");
-  }
+  state_->file.put_in_place();
 }
 
 }  // namespace fascia::view

@@ -2,6 +2,7 @@
 
 #include "formats/files.h"
 #include "geometry/error.h"
+#include "geometry/json.h"
 
 namespace fascia::app {
 
@@ -116,6 +117,7 @@ std::string to_text(const DocumentState& state) {
 
 DocumentState state_from_text(const std::string& text, const std::string& where) {
   try {
+    check_depth(text, "'" + where + "'");
     const Json json = Json::parse(text);
     DocumentState state;
     state.head = json.at("head").get<std::string>();
@@ -133,7 +135,7 @@ DocumentState state_from_text(const std::string& text, const std::string& where)
 
 Json read_edits_file(const std::filesystem::path& path) {
   const std::vector<uint8_t> bytes = formats::read_bytes(path);
-  Json edits = Json::parse(bytes.begin(), bytes.end(), nullptr, false);
+  Json edits = parse_json<Json>(bytes, "'" + path.string() + "'");
   if (!edits.is_object())
     throw Error("'" + path.string() + "' is not an edits file: it must be a JSON object (docs/muscles.md)");
   return edits;

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "formats/files.h"
+#include "geometry/json.h"
 
 namespace fascia::app {
 
@@ -84,7 +85,7 @@ std::filesystem::path state_folder() {
 Settings read_settings(const std::filesystem::path& file) {
   Settings settings;
   try {
-    const Json json = Json::parse(text_of(file));
+    const Json json = parse_json<Json>(formats::read_bytes(file), file.string());
     if (!json.is_object()) return settings;
     take(json, "width", settings.width);
     take(json, "height", settings.height);

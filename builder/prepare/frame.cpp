@@ -86,6 +86,19 @@ double snapped_unit(double scale, std::vector<std::string>& warnings) {
   return scale;
 }
 
+/// Warns of given units that make a head another size than people's, and throws when it is out of all reason.
+double checked_unit(const std::string& file, double metres, double scale,
+                    std::vector<std::string>& warnings) {
+  const double times = metres / scale;
+  if (times > 0.5 && times < 2.0) return metres;
+  const std::string what = "the units given make the head " + as_text(times) +
+                           " times the size of an adult's, whose unit would be " + as_text(scale) +
+                           " m; correct --units, or leave it out";
+  if (times < 0.125 || times > 8.0) throw Error("'" + file + "': " + what);
+  warnings.push_back(what);
+  return metres;
+}
+
 Mat4 compose(double scale, const Mat3& rotation) {
   Mat4 map = Mat4::Identity();
   map.topLeftCorner<3, 3>() = scale * rotation;
@@ -147,7 +160,9 @@ Frame from_landmarks(const formats::Scene& scene, const formats::LandmarkFile& g
   refuse_exchanged_sides(scene.path.string(), frame.landmarks, reference);
   const Similarity fit = procrustes(here, generic);
   const double metres =
-      options.units == "auto" ? snapped_unit(fit.scale, frame.warnings) : declared_metres(options.units);
+      options.units == "auto"
+          ? snapped_unit(fit.scale, frame.warnings)
+          : checked_unit(scene.path.string(), declared_metres(options.units), fit.scale, frame.warnings);
   // A head that stands along the axes keeps them to the last digit. One that is turned or tilted is set
   // upright, for what follows tells up and front from the axes: so it gets the same rig whichever way it
   // looks.

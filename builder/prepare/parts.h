@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include "builder/prepare/prepare.h"
 
 namespace fascia::prepare {
@@ -11,6 +13,8 @@ struct WeldedScene {
   std::vector<int> triangle_mesh;            ///< surface triangle -> mesh
   std::vector<int> component;                ///< surface triangle -> connected component
   int component_count = 0;
+  std::vector<std::array<int, 2>>
+      collapsed;  ///< mesh and first vertex of triangles left out: two corners are one
 };
 
 /// Joins and welds. Only vertices on open edges are merged, within one glTF mesh, among the objects of an

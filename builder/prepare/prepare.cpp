@@ -1,13 +1,11 @@
 #include "builder/prepare/prepare.h"
 
+#include "builder/prepare/computing_skin.h"
 #include "builder/prepare/frame.h"
 #include "builder/prepare/parts.h"
 #include "builder/spatial/surface_query.h"
-#include "geometry/connectivity.h"
 #include "geometry/error.h"
-#include "geometry/flaps.h"
 #include "geometry/nearest_names.h"
-#include "geometry/slivers.h"
 
 namespace fascia::prepare {
 
@@ -44,23 +42,6 @@ std::map<std::string, Vec3> onto_skin(const formats::Scene& scene, const spatial
   return projected;
 }
 
-/// The skin that is computed with: without fins and triangles that have no direction. `skin_vertex[v]`
-/// receives the index in it of the surface's vertex v, or -1.
-TriangleMesh computing_skin(const TriangleMesh& surface, const std::vector<bool>& is_skin,
-                            std::vector<int>& skin_vertex) {
-  constexpr double lowest = 2e-6;  // metres: what single precision leaves of a height in a whole body
-  std::vector<int> mended, bare, last;
-  const TriangleMesh whole = submesh(surface, is_skin, &skin_vertex);
-  const TriangleMesh skin = submesh(whole, without_flaps(whole), &bare);
-  const TriangleMesh mended_skin = without_slivers(skin, lowest, &mended);
-  // Where slivers were collapsed, two triangles may have come to lie back to back.
-  TriangleMesh sound = submesh(mended_skin, without_flaps(mended_skin), &last);
-  for (int& v : skin_vertex)
-    for (const std::vector<int>* step : {&bare, &mended, &last})
-      if (v >= 0) v = (*step)[static_cast<size_t>(v)];
-  return sound;
-}
-
 }  // namespace
 
 PreparedHead prepare(const formats::Scene& scene, const formats::LandmarkFile& given,
@@ -77,6 +58,8 @@ PreparedHead prepare(const formats::Scene& scene, const formats::LandmarkFile& g
   const WeldedScene welded = weld_scene(scene, head.input_to_metres);
   const Parts parts = recognise_parts(scene, welded, landmarks, options);
   warn_of_other_heads(scene, welded, parts, head.warnings);
+  warn_of_collapsed(scene, welded, head.warnings);
+  warn_of_specks(scene, welded, parts, head.warnings);
   head.eye_left = parts.eye_left;
   head.eye_right = parts.eye_right;
 
@@ -88,8 +71,8 @@ PreparedHead prepare(const formats::Scene& scene, const formats::LandmarkFile& g
     for (int v : welded.surface.triangles[t])
       vertex_part[static_cast<size_t>(v)] = part;
   }
-  std::vector<int> skin_vertex;
-  head.skin = computing_skin(welded.surface, is_skin, skin_vertex);
+  ComputingSkin skin = computing_skin(scene, welded, is_skin, head.warnings);
+  head.skin = std::move(skin.mesh);
   for (size_t m = 0; m < scene.meshes.size(); ++m) {
     PreparedMesh mesh;
     mesh.name = scene.meshes[m].name;
@@ -98,7 +81,7 @@ PreparedHead prepare(const formats::Scene& scene, const formats::LandmarkFile& g
       const size_t at = static_cast<size_t>(welded.vertex_map[m][v]);
       mesh.positions.push_back(transform_point(head.input_to_metres, scene.meshes[m].positions[v]));
       mesh.parts.push_back(vertex_part[at]);
-      mesh.skin_vertices.push_back(skin_vertex[at]);
+      mesh.skin_vertices.push_back(skin.vertex[at]);
     }
     head.meshes.push_back(std::move(mesh));
   }

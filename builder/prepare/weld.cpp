@@ -156,7 +156,11 @@ WeldedScene weld_scene(const formats::Scene& scene, const Mat4& input_to_metres)
   for (size_t t = 0; t < raw.triangles.size(); ++t) {
     const Triangle corners = {target(raw.triangles[t][0]), target(raw.triangles[t][1]),
                               target(raw.triangles[t][2])};
-    if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) continue;
+    if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) {
+      const int mesh = triangle_mesh[t];
+      welded.collapsed.push_back({mesh, raw.triangles[t][0] - raw_of[static_cast<size_t>(mesh)].front()});
+      continue;
+    }
     welded.surface.triangles.push_back(corners);
     welded.triangle_mesh.push_back(triangle_mesh[t]);
   }

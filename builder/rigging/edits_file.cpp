@@ -1,10 +1,11 @@
 #include <algorithm>
-#include <fstream>
 #include <initializer_list>
 
 #include "anatomy/fields.h"
 #include "builder/rigging/edits.h"
+#include "formats/files.h"
 #include "geometry/error.h"
+#include "geometry/json.h"
 
 namespace fascia::rigging {
 
@@ -121,9 +122,7 @@ void add_new_muscle(Edits& edits, Json entry, const std::string& where) {
 
 Edits read_edits(const std::filesystem::path& path) {
   const std::string where = "'" + path.string() + "'";
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw Error(where + " cannot be read; give --edits a JSON file");
-  const Json document = Json::parse(stream, nullptr, false);
+  const Json document = parse_json<Json>(formats::read_bytes(path), where);
   if (document.is_discarded()) throw Error(where + " is not JSON");
   const Fields root(document, where);
   only(document, root,

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "formats/material_library.h"
+#include "geometry/json.h"
 #include "gltf/edit/appendix.h"
 #include "gltf/edit/uri.h"
 
@@ -179,7 +180,8 @@ rig::GltfSource gltf_source(const formats::Scene& scene, const Mat4& input_to_me
 }
 
 Vec3 input_offset(const rig::SourceRecord& record) {
-  const gltf::Json notes = gltf::Json::parse(record.json.empty() ? "{}" : record.json, nullptr, false);
+  const gltf::Json notes =
+      parse_json<gltf::Json>(record.json.empty() ? "{}" : record.json, "the rig's notes");
   const gltf::Json offset = notes.is_object() ? notes.value("offset", gltf::Json()) : gltf::Json();
   if (!offset.is_array() || offset.size() != 3) return Vec3::Zero();
   Vec3 place = Vec3::Zero();

@@ -231,6 +231,10 @@ FoundLandmarks find_landmarks(const formats::Scene& file, const formats::Landmar
   if (located.found) {
     result.likeness = located.found->likeness.score();
     result.is_inside_out = located.found->is_inside_out;
+    if (result.is_inside_out)
+      result.warnings.push_back(
+          "the triangles of '" + scene.path.string() +
+          "' face inward: they were taken as turned over; the file's own stay as they are");
     if (located.found->is_doubtful) result.warnings.push_back(doubt(scene, given));
   }
   const double located_at = now();

@@ -5,7 +5,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <mutex>
+#include <new>
 #include <numbers>
 #include <numeric>
 #include <string>
@@ -52,6 +54,29 @@ double corner_angle(const Vec3& at, const Vec3& left, const Vec3& right) {
   return std::atan2(u.cross(v).norm(), u.dot(v));
 }
 
+// Throws when a call of Embree's has failed; `device` may be null.
+void check_embree(RTCDevice device) {
+  const RTCError error = rtcGetDeviceError(device);
+  if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+  if (error != RTC_ERROR_NONE) throw Error("surface query: Embree fails with error " + std::to_string(error));
+}
+
+// What Embree has made. Throws when it is null.
+template <class Made>
+Made made_by_embree(RTCDevice device, Made what) {
+  if (what) return what;
+  check_embree(device);
+  throw std::bad_alloc();
+}
+
+// A new buffer of `geometry` with three numbers an element.
+template <class Number>
+Number* new_buffer(RTCDevice device, RTCGeometry geometry, RTCBufferType type, RTCFormat format,
+                   size_t count) {
+  return static_cast<Number*>(
+      made_by_embree(device, rtcSetNewGeometryBuffer(geometry, type, 0, format, 3 * sizeof(Number), count)));
+}
+
 }  // namespace
 
 struct SurfaceQuery::State {
@@ -87,25 +112,25 @@ void SurfaceQuery::State::build_scene() {
   origin = box.centre();
   size = 0.5 * box.size().maxCoeff();
   // One thread: the build takes milliseconds, and a library should not start a thread pool of its own.
-  device = rtcNewDevice("threads=1,set_affinity=0");
-  if (!device) throw Error("surface query: Embree cannot start on this machine");
-  scene = rtcNewScene(device);
+  device = made_by_embree(nullptr, rtcNewDevice("threads=1,set_affinity=0"));
+  scene = made_by_embree(device, rtcNewScene(device));
   rtcSetSceneFlags(scene, RTCSceneFlags(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
-  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.vertices.size()));
+  const std::unique_ptr<RTCGeometryTy, decltype(&rtcReleaseGeometry)> geometry(
+      made_by_embree(device, rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE)), rtcReleaseGeometry);
+  auto* vertices = new_buffer<float>(device, geometry.get(), RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3,
+                                     mesh.vertices.size());
   for (size_t i = 0; i < mesh.vertices.size(); ++i)
     for (int axis = 0; axis < 3; ++axis)
       vertices[3 * i + axis] = static_cast<float>(mesh.vertices[i][axis] - origin[axis]);
-  auto* triangles = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), mesh.triangles.size()));
+  auto* triangles = new_buffer<unsigned>(device, geometry.get(), RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3,
+                                         mesh.triangles.size());
   for (size_t i = 0; i < mesh.triangles.size(); ++i)
     for (int k = 0; k < 3; ++k)
       triangles[3 * i + k] = static_cast<unsigned>(mesh.triangles[i][k]);
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometry(scene, geometry);
-  rtcReleaseGeometry(geometry);
+  rtcCommitGeometry(geometry.get());
+  rtcAttachGeometry(scene, geometry.get());
   rtcCommitScene(scene);
+  check_embree(device);
 }
 
 void SurfaceQuery::State::build_normals() const {

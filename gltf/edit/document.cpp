@@ -4,6 +4,7 @@
 #include <map>
 
 #include "geometry/error.h"
+#include "geometry/json.h"
 #include "gltf/edit/decompress.h"
 #include "gltf/edit/uri.h"
 #include "gltf/edit/whole_numbers.h"

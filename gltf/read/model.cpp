@@ -3,8 +3,8 @@
 #include <new>
 
 #include "geometry/error.h"
+#include "geometry/json.h"
 #include "gltf/read/container.h"
-#include "gltf/read/text.h"
 
 namespace fascia::gltf {
 namespace {

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "geometry/error.h"
+#include "geometry/json.h"
 #include "runtime/drivers/captured_json.h"
 #include "runtime/drivers/curves.h"
 
@@ -67,6 +68,7 @@ Curve keyed_curve(const std::string& name, const Json& object) {
 Curves read_json_curves(std::string_view text, const ReadOptions& options) {
   Json root;
   try {
+    check_depth(text, "curves");
     root = Json::parse(text);
   } catch (const Json::exception& error) {
     throw Error(std::string("curves: malformed JSON: ") + error.what());

@@ -1,6 +1,7 @@
 // Which heads a manifest or folder names, and which task has which.
 #include <gtest/gtest.h>
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cstdlib>
@@ -166,6 +167,43 @@ TEST_F(Manifest, KeysFollowEveryFileAndOption) {
   EXPECT_NE(key_of(gltf, "1"), missing);
   gltf.file = folder / "none.obj";
   EXPECT_THROW(key_of(gltf, "1"), Error);
+}
+
+TEST_F(Manifest, KeysFollowPicturesAndMaterials) {
+  Head gltf;
+  gltf.file = write("c.gltf", R"({"buffers": [{"uri": "my%20numbers.bin"}], "images": [{"uri": "skin.png"}],
+                                  "extras": {"uri": "other.png"}})");
+  Head obj;
+  obj.file = write("c.obj", "mtllib my materials.mtl \r\nv 0 0 0\n");
+  write("my materials.mtl", "newmtl skin\n  map_Kd -s 1 1 1 my skin.jpg\n");
+  std::set<std::string> keys;
+  for (const char* name : {"", "my numbers.bin", "skin.png"}) {
+    if (*name) write(name, "1");
+    EXPECT_TRUE(keys.insert(key_of(gltf, "1")).second) << name;
+  }
+  write("other.png", "1");
+  EXPECT_FALSE(keys.insert(key_of(gltf, "1")).second) << "nothing reads it";
+  for (const char* name : {"", "my skin.jpg", "my materials.mtl"}) {
+    if (*name) write(name, "newmtl skin\nmap_Kd my skin.jpg\n");
+    EXPECT_TRUE(keys.insert(key_of(obj, "1")).second) << name;
+  }
+}
+
+TEST_F(Manifest, KeysOpenNothingOutsideAHeadsFolder) {
+  fs::create_directories(folder / "heads");
+  ASSERT_EQ(mkfifo((folder / "heads" / "pipe.bin").c_str(), 0600), 0);
+  Head head;
+  for (const std::string& uri :
+       {std::string("/dev/zero"), std::string("../outside.bin"), std::string("pipe.bin"),
+        (folder / "outside.bin").string(), std::string("%2e%2e/outside.bin")}) {
+    head.file = write("heads/a.gltf", R"({"buffers": [{"uri": ")" + uri + "\"}]}");
+    fs::remove(folder / "outside.bin");
+    const std::string key = key_of(head, "1");
+    write("outside.bin", "1");
+    EXPECT_EQ(key_of(head, "1"), key) << uri;
+  }
+  head.file = folder / "heads" / "pipe.bin";
+  EXPECT_THROW(key_of(head, "1"), Error);
 }
 
 TEST(Slurm, QuotesWhatAShellWouldTakeApart) {

@@ -125,6 +125,28 @@ TEST_F(Batch, BuildsChecksAndDrawsEveryHeadOnce) {
   EXPECT_EQ(all_records(options.output).size(), 9U);
 }
 
+TEST_F(Batch, ResultsAreThereWhileTheyAreReplaced) {
+  add("a", "good");
+  run();
+  std::atomic<bool> has_ended = false;
+  size_t looks = 0, gaps = 0;
+  std::thread reader([&] {
+    const std::string rig = (options.output / "a" / "rig.glb").string();
+    for (; !has_ended; ++looks)
+      gaps += access(rig.c_str(), R_OK) != 0;
+  });
+  for (int version = 2; version < 12; ++version) {
+    options.version = std::to_string(version);
+    run();
+  }
+  has_ended = true;
+  reader.join();
+  EXPECT_GT(looks, 1000U);
+  EXPECT_EQ(gaps, 0U);
+  expect_whole("a");
+  expect_no_leftovers();
+}
+
 TEST_F(Batch, TakesUpWhereItWasAndNoticesChanges) {
   add("a", "good");
   add("b", "good");

@@ -72,7 +72,9 @@ std::vector<TriangleMesh> cut_in_two(const TriangleMesh& mesh, Random& random, c
       mesh, [&mesh, normal, off](const Triangle& t) { return middle_of(mesh, t).dot(normal) > off ? 1 : 0; });
 }
 
-const std::vector<std::string> lies_on_others = {"on others"}, faces_against = {"against their neighbours"};
+const std::vector<std::string> lies_on_others = {"on others"}, faces_against = {"against their neighbours"},
+                               faces_inward = {"face inward"},
+                               are_flat = {"two corners in one place", "taken as edges"};
 
 using Break = std::function<void(Made&, Random&)>;
 
@@ -189,11 +191,13 @@ void add_ways_to_turn(std::map<std::string, Break>& kinds) {
   kinds["inside_out"] = [](Made& made, Random&) {
     for (Triangle& t : skin_of(made).mesh.triangles)
       turn_over(t);
+    made.says = faces_inward;
   };
   kinds["all_inside_out"] = [](Made& made, Random&) {
     for (Piece& piece : made.pieces)
       for (Triangle& t : piece.mesh.triangles)
         turn_over(t);
+    made.says = faces_inward;
   };
   kinds["mirrored_by_its_node"] = [](Made& made, Random&) {
     for (Piece& piece : made.pieces)
@@ -232,6 +236,7 @@ void add_blemishes(std::map<std::string, Break>& kinds) {
       mesh.vertices.push_back(middle_of(mesh, t) + 0.004 * out);
       mesh.triangles.push_back({t[0], t[1], mesh.vertex_count() - 1});
     }
+    made.says = {"stand on edges that two others share"};
   };
   kinds["inner_walls"] = [](Made& made, Random& random) {
     TriangleMesh& mesh = skin_of(made).mesh;
@@ -271,6 +276,7 @@ void add_blemishes(std::map<std::string, Break>& kinds) {
     } else {
       skin_of(made).mesh = joined({skin_of(made).mesh, bits});
     }
+    made.says = {"too small to be a part of the head"};
   };
   kinds["stray_vertices"] = [](Made& made, Random& random) {
     TriangleMesh& mesh = skin_of(made).mesh;
@@ -295,6 +301,7 @@ void add_blemishes(std::map<std::string, Break>& kinds) {
           0.5 * (mesh.vertices[static_cast<size_t>(t[0])] + mesh.vertices[static_cast<size_t>(t[1])]));
       mesh.triangles.push_back({t[0], mesh.vertex_count() - 1, t[1]});
     }
+    made.says = are_flat;
   };
   kinds["collapsed_vertices"] = [](Made& made, Random& random) {
     TriangleMesh& mesh = skin_of(made).mesh;
@@ -302,6 +309,7 @@ void add_blemishes(std::map<std::string, Break>& kinds) {
       const Triangle t = mesh.triangles[any(random, mesh.triangles.size())];
       mesh.vertices[static_cast<size_t>(t[0])] = mesh.vertices[static_cast<size_t>(t[1])];
     }
+    made.says = are_flat;
   };
   kinds["no_eyeballs"] = [](Made& made, Random&) {
     std::erase_if(made.pieces, [](const Piece& piece) { return piece.name.rfind("eye_", 0) == 0; });

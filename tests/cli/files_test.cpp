@@ -11,6 +11,8 @@
 #include "builder/rigging/embedded_head.h"
 #include "formats/scene.h"
 #include "gltf/read/container.h"
+#include "rig/read/read.h"
+#include "rig/write/write.h"
 #include "tests/cli/tool.h"
 
 namespace fascia::cli {
@@ -54,6 +56,45 @@ TEST_F(FilesOfTheTool, AnOutputNeverDestroysItsInput) {
   EXPECT_EQ(text_of(at("rig.glb")), before);
 }
 
+TEST_F(FilesOfTheTool, NoCommandWritesOverAnythingItReads) {
+  const std::string rig = " " + at("rig.glb") + " ", skull = " " + at("head.obj") + " ", in = at("input");
+  formats::write_text(in, "what was there before");
+  for (const std::string& words :
+       {"build " + in + " -o ",
+        "build" + skull + "--landmarks " + in + " -o ",
+        "build" + skull + "--edits " + in + " -o ",
+        "build" + skull + "--muscles " + in + " -o ",
+        "pose " + in + " -o ",
+        "pose" + rig + "--activations " + in + " -o ",
+        "play " + in + " --curves " + at("x.csv") + " -o ",
+        "play" + rig + "--curves " + in + " -o ",
+        "bake " + in + " -o ",
+        "export " + in + " -o ",
+        "render " + in + " -o ",
+        "render" + rig + "--activations " + in + " -o ",
+        "render" + rig + "--curves " + in + " -o ",
+        "check " + in + " --sheet ",
+        "fit " + in + " --target " + at("x.obj") + " -o ",
+        "fit" + rig + "--target " + in + " -o ",
+        "fit" + rig + "--target " + at("x.json") + " --neutral " + in + " -o ",
+        "calibrate " + in + " --scans " + at(".") + " -o ",
+        "calibrate" + rig + "--scans " + in + " -o ",
+        "face " + in + " -o ",
+        "face" + skull + "--landmarks " + in + " -o ",
+        "face" + skull + "--depths " + in + " -o ",
+        "snapshot record " + in + " -o ",
+        "snapshot record" + rig + "--poses " + in + " -o ",
+        "snapshot record" + rig + "--curves " + in + " -o ",
+        "snapshot check" + rig + "--against " + in + " --junit ",
+        "snapshot check" + rig + "--against " + in + " --report ",
+        "snapshot check" + rig + "--against " + at("x.json") + " --curves " + in + " --junit "}) {
+    const Outcome outcome = run(words + in);
+    EXPECT_EQ(outcome.code, 1) << words << outcome.err;
+    EXPECT_NE(outcome.err.find("another name"), std::string::npos) << words << outcome.err;
+    EXPECT_EQ(text_of(in), "what was there before") << words;
+  }
+}
+
 TEST_F(FilesOfTheTool, AFolderThatIsNotThereIsRefusedNotMade) {
   const Outcome outcome = run("pose " + at("rig.glb") + " -o " + at("nowhere/x.glb"));
   EXPECT_EQ(outcome.code, 1);
@@ -74,14 +115,33 @@ TEST_F(FilesOfTheTool, JsonThatCannotBeWrittenIsAFailure) {
   EXPECT_EQ(WEXITSTATUS(status), 1);
 }
 
+/// A rig with other notes of its source's.
+void write_rig_with_notes(const std::string& from, const std::string& to, const std::string& notes) {
+  const rig::RigFile file = rig::read(formats::read_bytes(from));
+  rig::GltfSource source = rig::original({file.json, file.bin, {}, file.source});
+  source.record = file.source;
+  source.record.json = notes;
+  const std::vector<uint8_t> bytes = rig::write(source, file.rig);
+  formats::write_bytes(to, bytes.data(), bytes.size());
+}
+
 TEST_F(FilesOfTheTool, DeepJsonIsRefusedByEveryCommandThatReadsIt) {
   const std::string deep =
       R"({"asset":{"version":"2.0"},"extras":)" + std::string(50000, '[') + std::string(50000, ']') + "}";
   const std::vector<uint8_t> glb = gltf::glb_bytes(deep, {});
   formats::write_bytes(at("deep.glb"), glb.data(), glb.size());
+  formats::write_text(at("deep.json"), deep);
+  write_rig_with_notes(at("rig.glb"), at("noted.glb"), deep);
   for (const std::string& command :
        {"build " + at("deep.glb") + " -o " + at("x.glb"), "info " + at("deep.glb"),
-        "play " + at("rig.glb") + " --curves " + at("deep.glb") + " -o " + at("x.glb")}) {
+        "play " + at("rig.glb") + " --curves " + at("deep.glb") + " -o " + at("x.glb"),
+        "play " + at("rig.glb") + " --curves " + at("deep.json") + " -o " + at("x.glb"),
+        "pose " + at("rig.glb") + " --activations " + at("deep.json") + " -o " + at("x.glb"),
+        "pose " + at("noted.glb") + " --set jaw_open=0.5 -o " + at("x.obj"),
+        "fit " + at("rig.glb") + " --target " + at("deep.json") + " -o " + at("x.json"),
+        "build " + at("head.obj") + " --edits " + at("deep.json") + " -o " + at("x.glb"),
+        "build " + at("head.obj") + " --muscles " + at("deep.json") + " -o " + at("x.glb"),
+        "build " + at("head.obj") + " --landmarks " + at("deep.json") + " -o " + at("x.glb")}) {
     const Outcome outcome = run(command);
     EXPECT_EQ(outcome.code, 1) << command;
     EXPECT_NE(outcome.err.find("nested deeper"), std::string::npos) << outcome.err;

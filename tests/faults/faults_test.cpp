@@ -49,10 +49,24 @@ class Faults : public Workplace {
     }
     std::filesystem::remove(at(job.output));
   }
+  /// The command with `runs` of its allocations refused in turn.
+  void expect_allocations_may_fail(const Job& job, long runs) {
+    long calls = 0;
+    ASSERT_EQ(run_with_fault(job.words + at(job.output), "malloc", 0, &calls).code, 0);
+    std::filesystem::remove(at(job.output));
+    EXPECT_GT(calls, 1000);
+    // Before main the loader and the standard library allocate; there is nobody to say anything yet.
+    for (long k = 0; k < runs; ++k)
+      expect_nothing_lost(job, "malloc", 1 + calls / 50 + k * (calls - calls / 50) / runs);
+  }
 };
 
 TEST_F(Faults, EveryCallThatWritesMayFail) {
-  for (const Job& job : jobs())
+  std::vector<Job> all = jobs();
+  for (const Job& job : picture_jobs())
+    all.push_back(job);
+  all.push_back(build_job());
+  for (const Job& job : all)
     for (const char* kind : {"open", "write", "fsync", "rename", "close"}) {
       long calls = 0;
       const Outcome outcome = run_with_fault(job.words + at(job.output), kind, 0, &calls);
@@ -67,17 +81,35 @@ TEST_F(Faults, EveryCallThatWritesMayFail) {
     }
 }
 
-TEST_F(Faults, AllocationsMayFail) {
-  const char* thorough = std::getenv("FASCIA_THOROUGH");
-  for (const Job& job : jobs()) {
+TEST_F(Faults, ASequenceIsThereAsAWholeOrNotAtAll) {
+  const std::string words =
+      "bake " + at("rig.glb") + " --shapes arkit --format obj-sequence -o " + at("shapes");
+  const std::set<std::string> before = names();
+  for (const char* kind : {"open", "write", "fsync", "rename", "close"}) {
     long calls = 0;
-    ASSERT_EQ(run_with_fault(job.words + at(job.output), "malloc", 0, &calls).code, 0);
-    EXPECT_GT(calls, 1000);
-    const long runs = thorough ? 400 : 10;
-    // Before main the loader and the standard library allocate; there is nobody to say anything yet.
-    for (long k = 0; k < runs; ++k)
-      expect_nothing_lost(job, "malloc", 1 + calls / 50 + k * (calls - calls / 50) / runs);
+    ASSERT_EQ(run_with_fault(words, kind, 0, &calls).code, 0) << kind;
+    EXPECT_GT(calls, 1) << kind;
+    const auto whole = std::distance(std::filesystem::directory_iterator(at("shapes")), {});
+    for (long number = 1; number <= calls; ++number) {
+      std::filesystem::remove_all(at("shapes"));
+      const Outcome outcome = run_with_fault(words, kind, number);
+      if (outcome.code == 0) {
+        EXPECT_EQ(std::distance(std::filesystem::directory_iterator(at("shapes")), {}), whole)
+            << kind << number;
+      } else {
+        EXPECT_EQ(outcome.code, 1) << kind << number << outcome.err;
+        EXPECT_EQ(names(), before) << kind << number;
+      }
+    }
+    std::filesystem::remove_all(at("shapes"));
   }
+}
+
+TEST_F(Faults, AllocationsMayFail) {
+  const bool is_thorough = std::getenv("FASCIA_THOROUGH") != nullptr;
+  for (const Job& job : jobs())
+    expect_allocations_may_fail(job, is_thorough ? 400 : 10);
+  expect_allocations_may_fail(build_job(), is_thorough ? 60 : 5);
 }
 
 TEST_F(Faults, AFullStandardOutputIsSaid) {

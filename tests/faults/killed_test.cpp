@@ -9,7 +9,7 @@
 #include <sstream>
 #include <thread>
 
-#include "builder/rigging/embedded_head.h"
+#include "tests/faults/started.h"
 #include "tests/faults/workplace.h"
 
 namespace fascia::testing {
@@ -19,21 +19,6 @@ using cli::text_of;
 
 class Killed : public Workplace {
  protected:
-  /// Starts the tool; its output is nobody's.
-  static pid_t start(const std::vector<std::string>& words) {
-    const pid_t child = fork();
-    if (child != 0) return child;
-    const int nowhere = open("/dev/null", O_RDWR);
-    for (const int file : {0, 1, 2})
-      dup2(nowhere, file);
-    const std::string tool = test::tool().string();
-    std::vector<char*> arguments = {const_cast<char*>(tool.c_str())};
-    for (const std::string& word : words)
-      arguments.push_back(const_cast<char*>(word.c_str()));
-    arguments.push_back(nullptr);
-    execv(tool.c_str(), arguments.data());
-    _exit(127);
-  }
   std::vector<std::string> words_of(const Job& job) const {
     std::istringstream text(job.words);
     std::vector<std::string> words{std::istream_iterator<std::string>(text), {}};
@@ -42,11 +27,6 @@ class Killed : public Workplace {
     words.push_back("1");
     return words;
   }
-  static int wait(pid_t child) {
-    int status = 0;
-    waitpid(child, &status, 0);
-    return status;
-  }
 };
 
 TEST_F(Killed, AtAnyMomentNothingIsHalfWritten) {
@@ -54,7 +34,7 @@ TEST_F(Killed, AtAnyMomentNothingIsHalfWritten) {
   const std::vector<std::string> build = {"build",    at("head.obj"), "--landmarks", at("landmarks.json"),
                                           "--detail", "low",          "-o",          at("built.glb")};
   const auto begun = std::chrono::steady_clock::now();
-  ASSERT_EQ(wait(start(build)), 0);
+  ASSERT_EQ(wait_for(start(build)), 0);
   const double whole = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
   const std::string good = text_of(at("built.glb"));
   const std::set<std::string> usual = names();
@@ -64,7 +44,7 @@ TEST_F(Killed, AtAnyMomentNothingIsHalfWritten) {
     const pid_t child = start(build);
     std::this_thread::sleep_for(std::chrono::duration<double>(whole * (random() % 1000) / 1000.0));
     kill(child, signal);
-    const int status = wait(child);
+    const int status = wait_for(child);
     if (WIFEXITED(status) && WEXITSTATUS(status) == 0) continue;  // it was faster
     if (signal == SIGKILL) {
       EXPECT_TRUE(WIFSIGNALED(status));
@@ -91,7 +71,7 @@ TEST_F(Killed, WhatIsMadeOfARigIsWholeOrNotThere) {
   for (const Job& job : jobs()) {
     const std::vector<std::string> words = words_of(job);
     const auto begun = std::chrono::steady_clock::now();
-    ASSERT_EQ(wait(start(words)), 0) << job.words;
+    ASSERT_EQ(wait_for(start(words)), 0) << job.words;
     const double whole = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
     const std::string good = text_of(at(job.output));
     const std::set<std::string> usual = names();
@@ -101,7 +81,7 @@ TEST_F(Killed, WhatIsMadeOfARigIsWholeOrNotThere) {
       std::this_thread::sleep_for(
           std::chrono::duration<double>(whole * (0.5 + 0.6 * (random() % 1000) / 1000.0)));
       kill(child, signal);
-      wait(child);
+      wait_for(child);
       EXPECT_EQ(text_of(at(job.output)), good) << job.words;
       for (const std::string& name : names())
         if (!usual.count(name)) {
@@ -124,7 +104,7 @@ TEST_F(Killed, AFilmIsWholeOrNotThere) {
       const pid_t child = start(film);
       std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
       kill(child, signal);
-      wait(child);
+      wait_for(child);
       std::this_thread::sleep_for(std::chrono::milliseconds(300));
       std::set<std::string> there = names();
       there.erase("film.mp4");  // it was faster
@@ -137,15 +117,15 @@ TEST_F(Killed, TwoOnOneOutputLeaveOneWhole) {
                                           "-o",   at("out.glb")};
   const std::vector<std::string> open_mouth = {"pose",       at("rig.glb"), "--set",
                                                "jaw_open=1", "-o",          at("out.glb")};
-  ASSERT_EQ(wait(start(smile)), 0);
+  ASSERT_EQ(wait_for(start(smile)), 0);
   const std::string first = text_of(at("out.glb"));
-  ASSERT_EQ(wait(start(open_mouth)), 0);
+  ASSERT_EQ(wait_for(start(open_mouth)), 0);
   const std::string second = text_of(at("out.glb"));
   ASSERT_NE(first, second);
   for (int k = 0; k < 8; ++k) {
     const pid_t a = start(smile), b = start(open_mouth);
-    EXPECT_EQ(wait(a), 0);
-    EXPECT_EQ(wait(b), 0);
+    EXPECT_EQ(wait_for(a), 0);
+    EXPECT_EQ(wait_for(b), 0);
     const std::string now = text_of(at("out.glb"));
     EXPECT_TRUE(now == first || now == second) << k;
   }
@@ -155,7 +135,7 @@ TEST_F(Killed, TwoOnOneOutputLeaveOneWhole) {
 TEST_F(Killed, TwoOfOneCommandOnOneOutputLeaveItWhole) {
   for (const Job& job : jobs()) {
     const std::vector<std::string> words = words_of(job);
-    ASSERT_EQ(wait(start(words)), 0) << job.words;
+    ASSERT_EQ(wait_for(start(words)), 0) << job.words;
     const std::string good = text_of(at(job.output));
     const std::set<std::string> usual = names();
     // A snapshot that is there is renewed with a reason only: the slower of two is refused.
@@ -164,7 +144,7 @@ TEST_F(Killed, TwoOfOneCommandOnOneOutputLeaveItWhole) {
     for (int k = 0; k < 2; ++k) {
       if (is_snapshot) std::filesystem::remove(at(job.output));
       const pid_t a = start(words), b = start(words);
-      const int first = wait(a), second = wait(b);
+      const int first = wait_for(a), second = wait_for(b);
       EXPECT_TRUE(first == 0 || second == 0) << job.words;
       EXPECT_TRUE(is_snapshot || (first == 0 && second == 0)) << job.words;
       EXPECT_EQ(text_of(at(job.output)), good) << job.words;

@@ -1,5 +1,6 @@
 /* Preloaded before the tool: makes one call of one kind fail, to see that nothing is lost when it does.
  *   FASCIA_FAULT=KIND:N   the N-th call of KIND fails, counted from 1; N = 0 counts only
+ *   FASCIA_CLOCK_JUMP=N   the time of day goes N seconds back and forth from call to call
  *   FASCIA_FAULT_LOG=FILE gets the number of calls of KIND when the process ends
  * Kinds: malloc (malloc, calloc, realloc, posix_memalign, aligned_alloc), open, write, rename, fsync, close.
  * Opening, writing and closing count for files that are written, under the folder FASCIA_FAULT_FOLDER only.
@@ -14,10 +15,11 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/uio.h>
+#include <time.h>
 #include <unistd.h>
 
 static char kind[16], log_file[512], folder[512];
-static long wanted;
+static long wanted, clock_jump;
 static atomic_long calls;
 static int is_ready;
 
@@ -25,6 +27,8 @@ __attribute__((constructor)) static void begin(void) {
   const char* fault = getenv("FASCIA_FAULT");
   const char* log = getenv("FASCIA_FAULT_LOG");
   const char* place = getenv("FASCIA_FAULT_FOLDER");
+  const char* jump = getenv("FASCIA_CLOCK_JUMP");
+  if (jump) clock_jump = atol(jump);
   if (fault) sscanf(fault, "%15[a-z]:%ld", kind, &wanted);
   if (log) snprintf(log_file, sizeof log_file, "%s", log);
   if (place) snprintf(folder, sizeof folder, "%s", place);
@@ -178,4 +182,22 @@ int rename(const char* from, const char* to) {
     return -1;
   }
   return real(from, to);
+}
+
+/* Seconds by which the time of day is wrong at this call. */
+static long off_by(void) {
+  static atomic_long looks;
+  return atomic_fetch_add(&looks, 1) % 2 ? clock_jump : -clock_jump;
+}
+int clock_gettime(clockid_t clock, struct timespec* now) {
+  REAL(clock_gettime);
+  const int result = real(clock, now);
+  if (result == 0 && clock == CLOCK_REALTIME) now->tv_sec += off_by();
+  return result;
+}
+time_t time(time_t* to) {
+  REAL(time);
+  const time_t now = real(NULL) + off_by();
+  if (to) *to = now;
+  return now;
 }

@@ -9,6 +9,7 @@
 #include <set>
 #include <string>
 
+#include "builder/rigging/embedded_head.h"
 #include "tests/cli/tool.h"
 #include "tests/rig/tiny_rig.h"
 
@@ -54,6 +55,18 @@ class Workplace : public ::testing::Test {
             {"bake " + at("rig.glb") + " --shapes arkit -o ", "bake.glb"},
             {"snapshot record " + at("rig.glb") + " -o ", "snapshot.json"},
             {"fit " + at("rig.glb") + " --target " + at("smile.ply") + " -o ", "found.json"}};
+  }
+
+  /// What draws: a picture's libraries do not bear it that memory is refused.
+  std::vector<Job> picture_jobs() const {
+    return {{"render " + at("rig.glb") + " --size 64 -o ", "picture.png"},
+            {"check " + at("rig.glb") + " --sheet ", "sheet.png"}};
+  }
+  /// Writes a head, for a build of it, which takes seconds.
+  Job build_job() const {
+    rigging::write_embedded_head(at("head.obj"), at("landmarks.json"));
+    return {"build " + at("head.obj") + " --landmarks " + at("landmarks.json") + " --detail low -o ",
+            "built.glb"};
   }
 
   /// Names in the folder.

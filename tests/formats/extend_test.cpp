@@ -5,6 +5,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "geometry/error.h"
 #include "gltf/edit/document.h"
 #include "gltf/read/container.h"
 
@@ -129,6 +130,32 @@ TEST(Extend, CarriesAllAttributesOfGltf) {
   ASSERT_EQ(again.meshes[0].positions.size(), 5U);
   EXPECT_LT((again.meshes[0].positions[4] - scene.meshes[0].positions[4]).norm(), 1e-6);
   EXPECT_EQ(again.meshes[0].triangles, scene.meshes[0].triangles);
+}
+
+/// The square with the attribute _ODD, an accessor without a buffer view.
+std::vector<uint8_t> square_with(const Json& odd) {
+  const std::vector<uint8_t> bytes = square();
+  const gltf::GlbChunks chunks = gltf::glb_chunks(bytes, "square");
+  Json json = Json::parse(chunks.json);
+  json["accessors"].push_back(odd);
+  json["meshes"][0]["primitives"][0]["attributes"]["_ODD"] = json["accessors"].size() - 1;
+  return gltf::glb_bytes(json.dump(), chunks.binary);
+}
+
+TEST(Extend, TakesNoMemoryForACountThatTheFileMakesUp) {
+  constexpr size_t absurd = size_t{1} << 50;
+  Scene scene =
+      read("square.glb", square_with({{"componentType", 5126}, {"count", absurd}, {"type", "SCALAR"}}));
+  const MeshExtension extension = split(scene);
+  EXPECT_NO_THROW(rewrite(scene, {extension}));
+  const Json sparse = {{"count", absurd},
+                       {"indices", {{"bufferView", 0}, {"componentType", 5125}}},
+                       {"values", {{"bufferView", 0}}}};
+  Scene other =
+      read("square.glb",
+           square_with({{"componentType", 5126}, {"count", 4}, {"type", "SCALAR"}, {"sparse", sparse}}));
+  const MeshExtension second = split(other);
+  EXPECT_THROW(rewrite(other, {second}), Error);
 }
 
 TEST(Extend, AddsAMeshWithANodeOfItsOwn) {

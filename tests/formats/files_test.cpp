@@ -8,6 +8,7 @@
 #include <csignal>
 #include <thread>
 
+#include "formats/new_file.h"
 #include "formats/obj_lines.h"
 #include "formats/partial.h"
 #include "formats/scene.h"
@@ -89,6 +90,15 @@ TEST_F(Files, WritesKeepLinksAndPermissions) {
   EXPECT_NO_THROW(write_text("/dev/null", "gone"));
 }
 
+TEST_F(Files, WhatIsTooLargeIsRefused) {
+  write_text(folder_ / "sparse.obj", "v 0 0 0");
+  fs::resize_file(folder_ / "sparse.obj", most_bytes + 1);
+  EXPECT_THROW(read_bytes(folder_ / "sparse.obj"), Error);
+  if (fs::exists("/dev/zero")) {
+    EXPECT_THROW(read_bytes("/dev/zero"), Error);
+  }
+}
+
 TEST_F(Files, AFailedWriteLeavesWhatWasThere) {
   EXPECT_THROW(write_text(folder_ / "not" / "there.txt", "x"), Error);
   EXPECT_FALSE(fs::exists(folder_ / "not"));
@@ -151,6 +161,41 @@ TEST_F(Files, ASignalLeavesNothingHalfWritten) {
     for (const auto& entry : fs::directory_iterator(folder_))
       EXPECT_NE(entry.path().extension(), ".part") << entry.path();
   }
+}
+
+TEST_F(Files, NothingIsMadeAfterTheLastSweep) {
+  for (int k = 0; k < 5; ++k) {
+    const pid_t child = fork();
+    if (child == 0) {
+      const auto write_on = [&] {
+        for (;;)
+          NewFile(folder_ / "a.txt");
+      };
+      std::thread(write_on).detach();
+      std::thread(write_on).detach();
+      usleep(10000);
+      remove_partial_files();
+      usleep(10000);  // threads go on until a process has ended
+      _exit(0);
+    }
+    waitpid(child, nullptr, 0);
+    for (const auto& entry : fs::directory_iterator(folder_))
+      EXPECT_NE(entry.path().extension(), ".part") << entry.path();
+  }
+}
+
+TEST_F(Files, ANamelessFileIsSeenWhenItIsInPlace) {
+  const size_t before = count();
+  NewFile file = NewFile::nameless(folder_ / "film.bin");
+  // Where the file system has no such thing, it has a name of its own at once.
+  const bool has_name = count() > before;
+  EXPECT_TRUE(fs::exists(file.opened()));
+  file.write(std::vector<uint8_t>(100));
+  EXPECT_FALSE(fs::exists(folder_ / "film.bin"));
+  EXPECT_EQ(count(), before + (has_name ? 1 : 0));
+  file.put_in_place();
+  EXPECT_EQ(fs::file_size(folder_ / "film.bin"), 100u);
+  EXPECT_EQ(count(), before + 1);
 }
 
 TEST_F(Files, WhatBelongsTogetherIsThereAsAWholeOrNotAtAll) {

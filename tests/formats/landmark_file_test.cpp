@@ -43,6 +43,8 @@ TEST(LandmarkFile, TurnsRasAndKeepsLps) {
 TEST(LandmarkFile, SaysWhatIsWrong) {
   for (const char* text :
        {"", "[]", "{", R"({"landmarks":{}})", R"({"units":"ell","landmarks":{"a":[1,2,3]}})",
+        R"({"markups":[{"controlPoints":[{"label":"a","position":[1,2,3],"positionStatus":1}]}]})",
+        R"({"markups":[{"controlPoints":[{"label":"a","position":7,"positionStatus":null}]}]})",
         R"({"landmarks":{"a":[1,2]}})", R"({"landmarks":{"a":["x",2,3]}})", R"({"points":1})"})
     EXPECT_THROW(read_text(text), Error) << text;
 }

@@ -6,39 +6,13 @@
 #include <cmath>
 #include <cstring>
 
+#include "tests/fuzz/asset_calls.h"
+#include "tests/fuzz/input.h"
 #include "tests/rig/tiny_rig.h"
 
 namespace {
 
-/// Takes numbers off the input; zeros when it is used up.
-class Input {
- public:
-  Input(const uint8_t* bytes, size_t size) : bytes_(bytes), left_(size) {}
-  bool is_empty() const { return left_ == 0; }
-  uint8_t byte() { return number<uint8_t>(); }
-  /// Often a usual value, at times any bits at all.
-  float value() {
-    const uint8_t kind = byte();
-    return kind < 200 ? static_cast<float>(kind) / 100.0F - 0.5F : number<float>();
-  }
-  uint32_t index() {
-    const uint8_t kind = byte();
-    return kind < 250 ? kind % 4 : number<uint32_t>();
-  }
-
- private:
-  template <class T>
-  T number() {
-    T value = {};
-    const size_t size = left_ < sizeof(T) ? left_ : sizeof(T);
-    std::memcpy(&value, bytes_, size);
-    bytes_ += size;
-    left_ -= size;
-    return value;
-  }
-  const uint8_t* bytes_;
-  size_t left_;
-};
+using fascia::fuzz::Input;
 
 fascia_asset* asset() {
   static fascia_asset* const loaded = [] {
@@ -115,7 +89,7 @@ void call_outputs(Input& input, fascia_face* face) {
   fascia_vectors vectors = {};
   vectors.struct_size = sizeof vectors;
   float scale = 0.0F;
-  switch (input.byte() % 10) {
+  switch (input.byte() % 12) {
     case 0:
       fascia_face_write_deltas(face, input.index(), static_cast<fascia_delta_format>(input.index()), room,
                                input.byte() % 32, 289, &scale);
@@ -144,6 +118,15 @@ void call_outputs(Input& input, fascia_face* face) {
       fascia_face_tangents(face, input.index(), &vectors);
       fascia_face_fibre_points(face, &vectors);
       fascia_face_nodes(face, &vectors);
+      break;
+    case 9:
+      fascia_face_write_normals(face, input.index(), room, input.byte() % 32, 289U + input.index());
+      fascia_face_write_tangents(face, input.index(), room, input.byte() % 32, 289U - input.byte() % 2);
+      break;
+    case 10:
+      if (const float* const values = fascia_face_effective_values(face); values && !std::isfinite(values[0]))
+        __builtin_trap();
+      if (fascia_face_level(face) < 0) __builtin_trap();
       break;
     case 8:
       fascia_face_set_member(face, input.index(), input.index(), input.value());
@@ -194,7 +177,7 @@ void call_fit(Input& input) {
 void call(Input& input, fascia_face* face) {
   static const char* const names[] = {"zygomaticus_major_left", "jaw_open", "arkit:jawOpen", "nothing", ""};
   float values[16];
-  switch (input.byte() % 18) {
+  switch (input.byte() % 20) {
     case 0:
       fascia_face_set(face, names[input.byte() % 5], input.value());
       break;
@@ -260,6 +243,12 @@ void call(Input& input, fascia_face* face) {
       break;
     case 17:
       if (input.byte() % 4 == 0) call_fit(input);
+      break;
+    case 18:
+      fascia::fuzz::call_asset(input, asset());
+      break;
+    case 19:
+      fascia::fuzz::call_curves(input, asset(), face);
       break;
   }
 }

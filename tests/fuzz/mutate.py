@@ -165,6 +165,8 @@ def commands(fascia, name, file, rig, head, out):
                 base + ["render", file, "--size", "64", "-o", out + ".png"],
                 base + ["export", file, "--part", "all", "-o", out + ".glb"]]
     kind = name.rsplit(".", 1)[-1].lower()
+    if "poses" in name:
+        return [base + ["snapshot", "record", rig, "--poses", file, "-o", out + ".json"]]
     if "snapshot" in name:
         return [base + ["snapshot", "check", rig, "--against", file]]
     if "activations" in name:
@@ -177,6 +179,17 @@ def commands(fascia, name, file, rig, head, out):
     if kind in ("csv", "json"):
         return [base + ["play", rig, "--curves", file, "-o", out + ".glb"]]
     return [base + ["info", file], base + ["build", file, "-o", out + ".glb", "--detail", "low"]]
+
+
+def seed_of(source):
+    """Name and bytes of a file to mutate. Those of a fuzzer's corpus are named after it, and of three a first byte tells
+    the kind."""
+    with open(source, "rb") as whole:
+        data = whole.read()
+    name, (place, folder) = os.path.basename(source), os.path.split(os.path.dirname(os.path.abspath(source)))
+    if os.path.basename(place) != "corpus":
+        return name, data
+    return f"{folder}-{name}", data[1:] if folder in ("mesh", "landmarks", "snapshot") else data
 
 
 def run(command, limit, memory):
@@ -235,10 +248,9 @@ def main():
                 break
             dice = random.Random(seed)
             source = dice.choice(files)
-            name = os.path.basename(source)
+            name, data = seed_of(source)
             file = os.path.join(place, name)
-            with open(source, "rb") as whole:
-                data = mutate(name, whole.read(), dice)
+            data = mutate(name, data, dice)
             with open(file, "wb") as broken:
                 broken.write(data)
             for command in commands(given.fascia, name, file, file if source == given.rig else given.rig, given.head,

@@ -1,5 +1,8 @@
-// Rig files. One that is taken is written and read again as the same. To get past the header, the input may
-// be a change to a sound rig: pairs of places and bytes.
+// Rig files. What is taken by the reader or by the plugin can be posed and stepped, and all positions are
+// finite. To get past the header, the input may be a change to a sound rig: pairs of places and bytes.
+#include <fascia/fascia.h>
+
+#include <cmath>
 #include <cstring>
 
 #include "geometry/error.h"
@@ -20,6 +23,38 @@ std::vector<uint8_t> changed(const uint8_t* bytes, size_t size) {
   return rig;
 }
 
+void expect_finite(fascia_face* face, uint32_t meshes) {
+  for (uint32_t mesh = 0; mesh < meshes; ++mesh) {
+    fascia_vectors positions = {};
+    positions.struct_size = sizeof positions;
+    if (fascia_face_positions(face, mesh, &positions) != FASCIA_OK) __builtin_trap();
+    for (uint32_t i = 0; i < 3 * positions.count; ++i)
+      if (!std::isfinite(positions.data[i])) __builtin_trap();
+  }
+}
+
+/// Moves every channel of the rig's face, by the middle of its range.
+void play(fascia_asset* asset) {
+  fascia_asset_info info = {};
+  info.struct_size = sizeof info;
+  fascia_channels channels = {};
+  channels.struct_size = sizeof channels;
+  fascia_face* face = nullptr;
+  if (fascia_asset_get_info(asset, &info) != FASCIA_OK ||
+      fascia_asset_get_channels(asset, &channels) != FASCIA_OK)
+    __builtin_trap();
+  if (fascia_face_create(asset, nullptr, &face) != FASCIA_OK) return;
+  expect_finite(face, info.mesh_count);
+  for (uint32_t c = 0; c < channels.count; ++c)
+    fascia_face_values(face)[c] = 0.5F * (channels.minimum[c] + channels.maximum[c]);
+  fascia_face_pose(face);
+  expect_finite(face, info.mesh_count);
+  for (int frame = 0; frame < 3; ++frame)
+    fascia_face_step(face, 1.0F / 60.0F);
+  expect_finite(face, info.mesh_count);
+  fascia_face_release(face);
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
@@ -30,5 +65,11 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
     fascia::rig::read(rig, "input");
   } catch (const fascia::Error&) {
   }
+  fascia_asset* asset = nullptr;
+  if (fascia_asset_load(rig.data(), rig.size(), &asset) == FASCIA_OK)
+    play(asset);
+  else if (fascia_last_message()[0] == 0)
+    __builtin_trap();
+  fascia_asset_release(asset);
   return 0;
 }

@@ -4,7 +4,7 @@
 set -euo pipefail
 programs=$1 seconds=$2; shift 2
 here=$(cd "$(dirname "$0")" && pwd)
-[ $# -gt 0 ] || set -- mesh landmarks snapshot manifest rig curves calls edits build
+[ $# -gt 0 ] || set -- mesh landmarks activations snapshot manifest rig curves calls edits build
 status=0
 for name in "$@"; do
   place=$(mktemp -d)

@@ -13,18 +13,6 @@ std::string nested(std::size_t depth) {
   return std::string(depth, '[') + std::string(depth, ']');
 }
 
-TEST(Text, RefusesDeepJsonAndOnlyThat) {
-  EXPECT_NO_THROW(check_depth(nested(greatest_depth), "x"));
-  EXPECT_THROW(check_depth(nested(greatest_depth + 1), "x"), Error);
-  // Brackets within strings, behind an escaped quote too, do not nest.
-  EXPECT_NO_THROW(check_depth("{\"a\":\"\\\"" + std::string(1000, '[') + "\"}", "x"));
-  // Many, side by side, are not deep.
-  std::string wide = "[";
-  for (int i = 0; i < 1000; ++i)
-    wide += "[],";
-  EXPECT_NO_THROW(check_depth(wide + "1]", "x"));
-}
-
 TEST(Text, ADeepFileIsAnErrorBeforeAnyParserSeesIt) {
   const std::string json = R"({"asset":{"version":"2.0"},"extras":)" + nested(100000) + "}";
   EXPECT_THROW(load_model(glb_bytes(json, {}), "deep.glb"), Error);

@@ -22,6 +22,23 @@ flags=$(PKG_CONFIG_PATH=$(dirname "$pc") pkg-config --cflags --libs fascia)
 cc -std=c99 -Wall -Wextra -Werror "$source/consumer/play.c" -o "$place/by_pkg_config" $flags -lm
 LD_LIBRARY_PATH=$(dirname "$pc")/.. "$place/by_pkg_config" "$rig"
 
+# What is compiled in comes with its licence, and the bill of materials names it.
+if [ -x "$place/fascia/bin/fascia" ] && [ -e /usr/share/doc/libeigen3-dev/copyright ]; then
+  bash "$source/../../scripts/sbom.sh" "$place/fascia" -o "$place/fascia.spdx.json" >/dev/null
+  python3 - "$place/fascia.spdx.json" "$place/fascia/share/doc/fascia/third_party" <<'PYTHON'
+import json, os, sys
+bill = json.load(open(sys.argv[1]))
+names = {package["name"]: package for package in bill["packages"]}
+contained = {r["relatedSpdxElement"] for r in bill["relationships"] if r["relationshipType"] == "CONTAINS"}
+for name in ("libeigen3-dev", "libtinygltf-dev", "libimgui-dev", "fonts-dejavu-core"):
+    assert names[name]["SPDXID"] in contained, name
+for name, package in names.items():
+    assert package["licenseConcluded"] != "NOASSERTION", name
+    if package["SPDXID"] in contained and name != "fascia":
+        assert os.path.getsize(os.path.join(sys.argv[2], name + ".txt")) > 500, name
+PYTHON
+fi
+
 library=$(find "$place/fascia" -name 'libfascia.so.*.*.*')
 readelf -d "$library" | grep -q 'SONAME.*libfascia\.so\.0' || { echo "no SONAME"; exit 1; }
 if nm -D --defined-only "$library" | awk '{print $3}' | grep -v '^fascia_\|^FASCIA_0'; then echo "symbols that are not the interface's"; exit 1; fi

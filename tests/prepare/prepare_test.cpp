@@ -216,6 +216,23 @@ TEST(Prepare, ANameThatIsNearlyALandmarksIsSaid) {
   }
 }
 
+TEST(Prepare, UnitsThatDoNotFitTheHeadAreSaidOrRefused) {
+  const formats::Scene scene = scene_in(Mat4::Identity());  // in metres
+  const formats::LandmarkFile given = landmarks_in(Mat4::Identity(), 1.0, "");
+  PrepareOptions options;
+  for (const auto& [units, warnings] : {std::pair{"m", 0U}, {"0.7", 0U}, {"3", 1U}, {"0.2", 1U}}) {
+    options.units = units;
+    const PreparedHead head = prepare(scene, given, reference(), options);
+    ASSERT_EQ(head.warnings.size(), warnings) << units;
+    for (const std::string& warning : head.warnings)
+      EXPECT_NE(warning.find("correct --units"), std::string::npos) << warning;
+  }
+  for (const char* units : {"mm", "cm", "100"}) {
+    options.units = units;
+    EXPECT_THROW(prepare(scene, given, reference(), options), Error) << units;
+  }
+}
+
 TEST(Prepare, SaysWhatIsWrong) {
   const Mat4 to_file = Mat4::Identity();
   const formats::Scene scene = scene_in(to_file);

@@ -133,6 +133,15 @@ TEST_F(Moved, ATeleportAndAResetMoveNothing) {
   EXPECT_EQ(fascia_face_move_head(moving, bad, 1.0F), FASCIA_ERROR_ARGUMENT);
 }
 
+TEST_F(Moved, AnAbsurdForceCountsAsTheStrongest) {
+  fascia_face *const strongest = face(), *const absurd = face();
+  const float kilonewton[3] = {0, 0, -1000.0F}, much[3] = {0, 0, -3e38F};
+  ASSERT_EQ(fascia_face_touch(strongest, 0, middle, kilonewton), FASCIA_OK);
+  ASSERT_EQ(fascia_face_touch(absurd, 0, middle, much), FASCIA_OK);
+  EXPECT_EQ(fascia_face_pose(strongest), fascia_face_pose(absurd));
+  EXPECT_LT(apart(positions(strongest), positions(absurd)), 1e-6);
+}
+
 TEST_F(Moved, AFingerPressesAlongItsForceAndInProportion) {
   fascia_face* const touched = face();
   const std::vector<float> rest = positions(touched);

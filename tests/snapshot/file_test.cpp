@@ -136,10 +136,17 @@ TEST(Junit, NamesEveryStateAndEscapes) {
   Snapshot then = small(), now = small();
   then.states[1].name = now.states[1].name = "smile <&>";
   now.states[1].quanta[0] += 100;
-  const std::string xml = junit(then, compare(then, now), "faces");
+  const std::string xml = junit(then, compare(then, now), "faces", 0.0);
   EXPECT_NE(xml.find("tests=\"6\" failures=\"1\""), std::string::npos) << xml;
   EXPECT_NE(xml.find("name=\"smile &lt;&amp;&gt;\">"), std::string::npos) << xml;
   EXPECT_NE(xml.find("chin: 0.577 mm on average, 1.000 mm at vertex 3 of mesh 0"), std::string::npos) << xml;
+}
+
+TEST(Junit, SaysWhatWasAllowedOfThisCheck) {
+  Snapshot then = small(), now = small();
+  now.states[1].quanta[0] += 100;
+  const std::string xml = junit(then, compare(then, now, 0.125), "faces", 0.125);
+  EXPECT_NE(xml.find("; 0.125 mm allowed"), std::string::npos) << xml;
 }
 
 }  // namespace

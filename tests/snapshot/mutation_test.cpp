@@ -1,10 +1,23 @@
 // The tool on the embedded head: a snapshot catches small changes of the anatomy, and nothing else.
 #include <gtest/gtest.h>
 
+#define STB_IMAGE_IMPLEMENTATION
+#define STB_IMAGE_STATIC
+#if defined(__GNUC__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#endif
+#include <stb/stb_image.h>
+#if defined(__GNUC__)
+#pragma GCC diagnostic pop
+#endif
+
 #include <functional>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "builder/rigging/embedded_head.h"
+#include "gltf/edit/uri.h"
 #include "tests/cli/tool.h"
 
 namespace fascia::cli {
@@ -102,6 +115,58 @@ TEST_F(SnapshotOfTheEmbeddedHead, CatchesARegionMovedByTwoMillimetres) {
                        point[1] = point[1].get<double>() + 2.0;
                    }),
             0U);
+}
+
+/// The pictures of a page, in order.
+std::vector<gltf::DataUri> pictures_of(const std::string& page) {
+  std::vector<gltf::DataUri> pictures;
+  const std::string source = "src=\"";
+  for (size_t at = page.find(source); at != std::string::npos; at = page.find(source, at + 1)) {
+    const size_t begin = at + source.size();
+    const auto picture = gltf::data_uri(std::string_view(page).substr(begin, page.find('"', begin) - begin));
+    EXPECT_TRUE(picture.has_value());
+    if (picture) pictures.push_back(*picture);
+  }
+  return pictures;
+}
+
+/// How many pixels of a PNG are of the map's red.
+int red_pixels(const gltf::DataUri& png) {
+  int width = 0, height = 0, channels = 0;
+  const std::unique_ptr<unsigned char, decltype(&stbi_image_free)> pixels(
+      stbi_load_from_memory(png.bytes.data(), static_cast<int>(png.bytes.size()), &width, &height, &channels,
+                            3),
+      stbi_image_free);
+  EXPECT_TRUE(pixels);
+  int red = 0;
+  for (int i = 0; pixels && i < width * height; ++i) {
+    const unsigned char* rgb = pixels.get() + 3 * i;
+    red += rgb[0] > 100 && rgb[0] > 2 * rgb[1] + 30 && rgb[0] > 2 * rgb[2] + 30;
+  }
+  return red;
+}
+
+TEST_F(SnapshotOfTheEmbeddedHead, DrawsWhereAFaceMovesOtherwise) {
+  const auto stronger = [](ordered_json& json) {
+    ordered_json& area = muscle(json, "risorius")["cross_section_mm2"];
+    area = 3.0 * area.get<double>();
+  };
+  ASSERT_GT(caught("muscles.json", stronger), 0U);
+  const Outcome outcome =
+      check("changed.glb", "--report " + at("changed.html") + " --junit " + at("changed.xml"));
+  EXPECT_EQ(outcome.code, 4) << outcome.err;
+  const std::string xml = text_of(at("changed.xml")), page = text_of(at("changed.html"));
+  EXPECT_NE(xml.find("<failure"), std::string::npos);
+  EXPECT_EQ(xml.find("failures=\"0\""), std::string::npos) << xml.substr(0, 300);
+  // Of every state drawn: as recorded, as it is now, and the difference.
+  const std::vector<gltf::DataUri> pictures = pictures_of(page);
+  ASSERT_GT(pictures.size(), 0U);
+  ASSERT_EQ(pictures.size() % 3, 0U);
+  int of_maps = 0, of_faces = 0;
+  for (size_t i = 0; i < pictures.size(); ++i)
+    (i % 3 == 2 ? of_maps : of_faces) += red_pixels(pictures[i]);
+  EXPECT_GT(of_maps, 50);
+  EXPECT_GT(of_maps, of_faces);
 }
 
 TEST_F(SnapshotOfTheEmbeddedHead, ReportsAndIsRenewedOnlyWithAReason) {

@@ -1,9 +1,14 @@
 #include "builder/spatial/surface_query.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <fstream>
+#include <new>
 #include <numbers>
 #include <random>
 
@@ -41,6 +46,62 @@ double box_distance(const Vec3& p) {
   const Vec3 q = (p - Vec3::Constant(0.5)).cwiseAbs() - Vec3::Constant(0.5);
   return q.cwiseMax(0).norm() + std::min(q.maxCoeff(), 0.0);
 }
+
+/// A square of `side` by `side` vertices.
+TriangleMesh grid(int side) {
+  TriangleMesh mesh;
+  for (int y = 0; y < side; ++y)
+    for (int x = 0; x < side; ++x)
+      mesh.vertices.push_back(Vec3(x, y, std::sin(0.1 * x) * std::cos(0.1 * y)));
+  for (int y = 0; y + 1 < side; ++y)
+    for (int x = 0; x + 1 < side; ++x) {
+      const int v = y * side + x;
+      mesh.triangles.push_back({v, v + 1, v + side});
+      mesh.triangles.push_back({v + 1, v + side + 1, v + side});
+    }
+  return mesh;
+}
+
+#if defined(__linux__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+/// Bytes of address space in use.
+rlim_t address_space() {
+  std::ifstream file("/proc/self/statm");
+  rlim_t pages = 0;
+  file >> pages;
+  return pages * static_cast<rlim_t>(getpagesize());
+}
+
+/// Exit code of a process that makes a query with `more` bytes of address space left: 0 when it did, 1 when
+/// it was told that memory is out.
+int made_within(const TriangleMesh& mesh, rlim_t more) {
+  const pid_t child = fork();
+  if (child == 0) {
+    TriangleMesh own = mesh;
+    const struct rlimit limit = {address_space() + more, RLIM_INFINITY};
+    setrlimit(RLIMIT_AS, &limit);
+    try {
+      const SurfaceQuery query(std::move(own));
+      _exit(query.closest(Vec3(1, 1, 1)).found() ? 0 : 2);
+    } catch (const std::bad_alloc&) {
+      _exit(1);
+    }
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+TEST(SurfaceQuery, MemoryThatIsNotThereIsSaid) {
+  const TriangleMesh mesh = grid(300);
+  int refused = 0;
+  for (rlim_t megabytes = 0; megabytes < 48; megabytes += 4) {
+    const int code = made_within(mesh, megabytes << 20);
+    EXPECT_TRUE(code == 0 || code == 1) << megabytes << " MB: " << code;
+    refused += code == 1;
+  }
+  EXPECT_GT(refused, 2);
+}
+#endif
 
 TEST(SurfaceQuery, SignedDistanceOfACubeIsExactAtFacesEdgesAndCorners) {
   const SurfaceQuery cube(seamed_cube());

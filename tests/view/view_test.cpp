@@ -1,10 +1,15 @@
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <csignal>
 #include <filesystem>
 
 #include "geometry/error.h"
 #include "view/image.h"
 #include "view/renderer.h"
+#include "view/video.h"
 
 namespace fascia::view {
 namespace {
@@ -80,6 +85,76 @@ TEST(Image, LabelsAndSheetsStayInside) {
   write_png(path, sheet);
   EXPECT_GT(std::filesystem::file_size(path), 100u);
   std::filesystem::remove(path);
+}
+
+class PictureFiles : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::temp_directory_path() / ("fascia_pictures_" + std::to_string(getpid()));
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  auto count() const { return std::distance(std::filesystem::directory_iterator(folder_), {}); }
+
+  std::filesystem::path folder_;
+};
+
+TEST_F(PictureFiles, FollowLinksAndMakeNoFolders) {
+  const Image image(8, 8, {1, 2, 3});
+  EXPECT_THROW(write_png(folder_ / "nowhere" / "x.png", image), Error);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "nowhere"));
+  write_png(folder_ / "real.png", image);
+  std::filesystem::create_symlink("real.png", folder_ / "link.png");
+  const auto before = std::filesystem::file_size(folder_ / "real.png");
+  write_png(folder_ / "link.png", Image(64, 64, {1, 2, 3}));
+  EXPECT_TRUE(std::filesystem::is_symlink(folder_ / "link.png"));
+  EXPECT_NE(std::filesystem::file_size(folder_ / "real.png"), before);
+  EXPECT_EQ(count(), 2);
+}
+
+TEST_F(PictureFiles, AFullDiskLeavesTheOldPicture) {
+  write_png(folder_ / "x.png", Image(8, 8, {1, 2, 3}));
+  const auto before = std::filesystem::file_size(folder_ / "x.png");
+  Image noise(200, 200, {0, 0, 0});
+  for (size_t i = 0; i < noise.pixels.size(); ++i)
+    noise.pixels[i] = static_cast<uint8_t>(i * i >> 3 ^ i * 31);
+  const pid_t child = fork();
+  if (child == 0) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    const struct rlimit limit = {1000, 1000};
+    setrlimit(RLIMIT_FSIZE, &limit);
+    try {
+      write_png(folder_ / "x.png", noise);
+      _exit(1);
+    } catch (const Error&) {
+      _exit(0);
+    }
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+  EXPECT_EQ(std::filesystem::file_size(folder_ / "x.png"), before);
+  EXPECT_EQ(count(), 1);
+}
+
+TEST_F(PictureFiles, AFilmFollowsALinkAndKeepsWhatItCannotReplace) {
+  if (std::system("command -v ffmpeg >/dev/null 2>&1") != 0) GTEST_SKIP() << "ffmpeg is not installed";
+  std::filesystem::create_symlink("real.gif", folder_ / "link.gif");
+  std::filesystem::create_directories(folder_ / "taken.gif" / "inner");
+  for (const char* name : {"link.gif", "taken.gif"}) {
+    Video film(folder_ / name, 32, 32, 10.0);
+    for (int k = 0; k < 3; ++k)
+      film.add(Image(32, 32, {static_cast<uint8_t>(90 * k), 2, 3}));
+    if (std::string(name) == "link.gif")
+      film.finish();
+    else
+      EXPECT_THROW(film.finish(), Error);
+  }
+  EXPECT_TRUE(std::filesystem::is_symlink(folder_ / "link.gif"));
+  EXPECT_GT(std::filesystem::file_size(folder_ / "real.gif"), 20u);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "taken.gif" / "inner"));
+  EXPECT_EQ(count(), 3);
 }
 
 }  // namespace

@@ -303,7 +303,7 @@ FASCIA_API fascia_result fascia_face_move_head(fascia_face* face, const float ma
                                                float inertia_scale);
 
 /* Applies a force in newtons, in the rig's axes, to a vertex of a mesh until all touches are cleared. At most
- * 64. */
+ * 64. A force of more than 1000 N counts as 1000 N in its direction. */
 FASCIA_API fascia_result fascia_face_touch(fascia_face* face, uint32_t mesh, uint32_t vertex,
                                            const float force[3]);
 FASCIA_API fascia_result fascia_face_clear_touches(fascia_face* face);
