@@ -5,7 +5,9 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <map>
 #include <sstream>
+#include <utility>
 
 #include "anatomy/anatomy.h"
 #include "builder/rigging/embedded_head.h"
@@ -192,6 +194,56 @@ TEST(AnyHead, FarFromTheOriginItPosesAlike) {
     high.face().pose({{shape, 1.0}});
     for (const char* name : {"cheilion_left", "cheilion_right", "labiale_superius", "labiale_inferius"})
       EXPECT_LT((high.face().moved(name) - plain.face().moved(name)).norm(), 0.1) << name << " in " << shape;
+  }
+}
+
+/// Each triangle in four, on the same surface; the vertices that were there come first.
+void halve_every_edge(TriangleMesh& skin) {
+  std::map<std::pair<int, int>, int> middles;
+  const auto middle = [&](int a, int b) {
+    const auto [entry, is_new] = middles.try_emplace(std::minmax(a, b), skin.vertex_count());
+    if (is_new)
+      skin.vertices.push_back(
+          0.5 * (skin.vertices[static_cast<size_t>(a)] + skin.vertices[static_cast<size_t>(b)]));
+    return entry->second;
+  };
+  std::vector<Triangle> finer;
+  for (const Triangle& t : skin.triangles) {
+    const int ab = middle(t[0], t[1]), bc = middle(t[1], t[2]), ca = middle(t[2], t[0]);
+    finer.insert(finer.end(), {{t[0], ab, ca}, {t[1], bc, ab}, {t[2], ca, bc}, {ab, bc, ca}});
+  }
+  skin.triangles = std::move(finer);
+}
+
+/// How far the vertices that both heads have move otherwise in a pose, over how far they move.
+double difference_in(const PosedFace::Values& pose, PosedFace& plain, PosedFace& finer) {
+  plain.pose(pose);
+  finer.pose(pose);
+  const auto a = plain.face().positions(0), b = finer.face().positions(0);
+  const auto rest_a = plain.face().rest(0), rest_b = finer.face().rest(0);
+  double difference = 0.0, motion = 0.0;
+  for (size_t i = 0; i < a.size(); ++i) {
+    const double one = static_cast<double>(a[i] - rest_a[i]), other = static_cast<double>(b[i] - rest_b[i]);
+    difference += (one - other) * (one - other);
+    motion += one * one;
+  }
+  return std::sqrt(difference / motion);
+}
+
+/// Stiffness is the tissue's, not the mesh's: four triangles in place of each do not change the motion.
+TEST(AnyHead, ATessellationTwiceAsFineMovesAlike) {
+  Variant plain("coarse", no_change), finer("fine", halve_every_edge);
+  ASSERT_GT(finer.face().face().rest(0).size(), 3 * plain.face().face().rest(0).size());
+  const PosedFace::Values poses[] = {
+      {{"jaw_open", 0.6}},
+      {{"zygomaticus_major_left", 1}, {"zygomaticus_major_right", 1}},
+      {{"frontalis_left", 1}, {"frontalis_right", 1}},
+      {{"lid_upper_left", 1.0}, {"lid_upper_right", 1.0}},
+  };
+  for (const PosedFace::Values& pose : poses) {
+    const double apart = difference_in(pose, plain.face(), finer.face());
+    std::printf("%s: %.3f of the motion apart\n", pose.begin()->first.c_str(), apart);
+    EXPECT_LT(apart, 0.1) << pose.begin()->first;
   }
 }
 
