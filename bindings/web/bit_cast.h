@@ -1,4 +1,5 @@
-// std::bit_cast for Debian's emscripten, whose C++ library (LLVM 13's) is without; compiled into every source of the web build.
+// std::bit_cast for Debian's emscripten, whose C++ library (LLVM 13's) is without; compiled into every source
+// of the web build.
 #pragma once
 
 #include <bit>
