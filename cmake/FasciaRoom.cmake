@@ -37,8 +37,15 @@ add_library(fascia_options INTERFACE)
 target_include_directories(fascia_options INTERFACE
   $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:include/fascia-builder>)
 # Contraction into fused multiply-add changes values between machines; snapshots would differ.
-target_compile_options(fascia_options INTERFACE
-  $<BUILD_INTERFACE:-Wall;-Wextra;-Wpedantic;-Wshadow;-ffp-contract=off>)
+if(MSVC AND NOT CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+  target_compile_options(fascia_options INTERFACE $<BUILD_INTERFACE:/W4;/fp:precise;/utf-8>)
+elseif(MSVC)  # clang-cl
+  target_compile_options(fascia_options INTERFACE
+    $<BUILD_INTERFACE:/W4;/clang:-ffp-contract=off;-Wno-microsoft-include>)
+else()
+  target_compile_options(fascia_options INTERFACE
+    $<BUILD_INTERFACE:-Wall;-Wextra;-Wpedantic;-Wshadow;-ffp-contract=off>)
+endif()
 # Eigen cuts large products to the processor's caches, and the order of sums with them: fixed sizes give the same bits
 # on every processor.
 target_compile_definitions(fascia_options INTERFACE
@@ -55,7 +62,7 @@ endif()
 target_compile_options(fascia_options INTERFACE
   $<BUILD_INTERFACE:$<$<CONFIG:Release>:$<IF:$<BOOL:$<TARGET_PROPERTY:FASCIA_COLD>>,-O1,-O2>>>)
 if(FASCIA_WARNINGS_AS_ERRORS)
-  target_compile_options(fascia_options INTERFACE $<BUILD_INTERFACE:-Werror>)
+  target_compile_options(fascia_options INTERFACE $<BUILD_INTERFACE:$<IF:$<BOOL:${MSVC}>,/WX,-Werror>>)
 endif()
 if(FASCIA_SANITIZE)
   target_compile_options(fascia_options INTERFACE -fsanitize=${FASCIA_SANITIZE} -fno-omit-frame-pointer)
@@ -65,7 +72,7 @@ if(FASCIA_SANITIZE)
   endif()
 endif()
 add_library(fascia::options ALIAS fascia_options)
-set(FASCIA_LOOP_OPTIONS $<$<CONFIG:Release>:-O3>)
+set(FASCIA_LOOP_OPTIONS $<$<CONFIG:Release>:$<IF:$<BOOL:${MSVC}>,/O2,-O3>>)
 
 # The headers that most files parse, once for all rooms of one level of optimisation: g++ takes the level from a
 # precompiled header, whatever its command line says. Clang's would be rebuilt with every time stamp.

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Makes the Debian packages in build/packages and has lintian look at them.
+# Makes the Debian packages in build/packages, has lintian look at them, and uses what they hold as a stranger would
+# (tests/install), unpacked into a folder. Needs a built tree (scripts/test.sh) for the rigs of that test.
 #   scripts/packages.sh [BUILD_FOLDER]     build/packaging when left out
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -12,4 +13,11 @@ rm -rf "$out"
 cpack --config "$build/CPackConfig.cmake" -B "$out"
 rm -rf "$out/_CPack_Packages"
 ls -l "$out"
+root=$(mktemp -d)
+trap 'rm -rf "$root"' EXIT
+for package in "$out"/*.deb; do dpkg-deb -x "$package" "$root"; done
+samples=build/tests/samples
+[ -f $samples/tiny.glb ] || build/bin/make_sample_files $samples
+[ -f $samples/embedded.glb ] || build/bin/make_capture build/bin/fascia $samples
+LD_LIBRARY_PATH='' sh tests/install/install_test.sh "$root" tests/install "$PWD/$samples/tiny.glb" "$PWD/$samples/embedded.glb"
 lintian --tag-display-limit 0 --fail-on error,warning "$out"/*.deb

@@ -25,7 +25,7 @@ packages=(
   clang clang-tidy doxygen libbenchmark-dev libvtk9-dev libcgal-dev python3-numpy python3-pil python3-scipy
   nodejs npm slurmctld slurmd slurm-client munge
   # bindings and hosts: scripts/hosts.sh
-  emscripten chromium python3-dev pybind11-dev python3-matplotlib unzip mono-mcs mono-runtime blender godot3-server
+  emscripten chromium python3-dev pybind11-dev python3-matplotlib unzip mono-mcs mono-runtime blender godot3-server godot3-runner
   g++-mingw-w64-x86-64-posix wine wine64 lintian
 )
 

@@ -46,6 +46,7 @@ if [ "$full" = 1 ]; then
     build/asan/bin/fascia view --monkey "$(date +%j)" --seconds 300
   tests/validator/validate.sh build/bin/fascia || [ $? -eq 77 ]
   scripts/packages.sh
+  scripts/runtime.sh
   scripts/windows.sh || [ $? -eq 77 ]
   scripts/hosts.sh
 fi

@@ -4,6 +4,6 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 command -v emcmake >/dev/null || { echo "web: emscripten is missing: run scripts/setup.sh --full" >&2; exit 1; }
 export NODE_PATH=/usr/share/nodejs  # Debian's emscripten looks for acorn there
-[ -f build/web/build.ninja ] || emcmake cmake --preset web >/dev/null
+emcmake cmake --preset web >/dev/null
 cmake --build build/web
 ls -l build/web/npm

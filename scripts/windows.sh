@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Builds the runtime, its samples and its tests for 64-bit Windows with Debian's mingw-w64 and runs them under wine, beside
-# the native ones: build/windows/bin/libfascia.dll. Exit 77 when the compiler or wine is not there.
+# the native ones: build/windows/bin/fascia.dll. Exit 77 when the compiler or wine is not there.
 #   scripts/windows.sh
 # Needs a built tree (scripts/test.sh). The tool is left out: what it stands on (Draco, meshoptimizer, Embree, TBB, GLFW)
 # Debian does not build for mingw-w64.
@@ -17,9 +17,9 @@ mkdir -p "$WINEPREFIX" "$out"
 
 cmake --preset windows >/dev/null
 cmake --build build/windows
-needed=$(x86_64-w64-mingw32-objdump -p build/windows/bin/libfascia.dll | sed -n 's/.*DLL Name: //p' | sort | tr '\n' ' ')
-[ "$needed" = 'KERNEL32.dll msvcrt.dll ' ] || { echo "windows: libfascia.dll needs $needed" >&2; exit 1; }
-exported=$(x86_64-w64-mingw32-objdump -p build/windows/bin/libfascia.dll | sed -n 's/^\t\[ *[0-9]*\] \([A-Za-z_].*\)/\1/p' | sort)
+needed=$(x86_64-w64-mingw32-objdump -p build/windows/bin/fascia.dll | sed -n 's/.*DLL Name: //p' | sort | tr '\n' ' ')
+[ "$needed" = 'KERNEL32.dll msvcrt.dll ' ] || { echo "windows: fascia.dll needs $needed" >&2; exit 1; }
+exported=$(x86_64-w64-mingw32-objdump -p build/windows/bin/fascia.dll | sed -n 's/^\t\[ *[0-9]*\] \([A-Za-z_].*\)/\1/p' | sort)
 declared=$(nm -D --defined-only build/lib/libfascia.so | awk '$2 == "T" {sub(/@.*/, "", $3); print $3}' | sort)
 [ "$exported" = "$declared" ] || { echo "windows: other functions than the native library's" >&2
                                    diff <(echo "$declared") <(echo "$exported") >&2; exit 1; }
@@ -31,7 +31,7 @@ for program in test_geometry test_drivers; do
   tests=$((tests + $(sed -n 's/.*PASSED.* \([0-9]*\) tests.*/\1/p' "$out/$program.log")))
 done
 wine build/windows/bin/test_c99.exe </dev/null
-wine build/windows/bin/table_host.exe build/windows/bin/libfascia.dll "$rig" </dev/null
+wine build/windows/bin/table_host.exe build/windows/bin/fascia.dll "$rig" </dev/null
 
 # The same take on both systems, frame by frame: the farthest that a coordinate is apart.
 for system in native windows; do rm -rf "$out/$system" && mkdir "$out/$system"; done

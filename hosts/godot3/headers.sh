@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Puts GDNative's headers of Debian's Godot 3 into a folder: headers.sh FOLDER. Needs the network and apt.
+# Puts GDNative's headers of Debian's Godot 3 into a folder: headers.sh FOLDER. Needs apt and the network; exit 77 without.
 set -euo pipefail
 folder=$(realpath -m "$1")
 [ -f "$folder/include/gdnative_api_struct.gen.h" ] && exit 0
@@ -9,8 +9,11 @@ mkdir -p "$work/state/lists/partial" "$work/cache/archives/partial" "$work/etc" 
 printf 'Types: deb-src\nURIs: http://deb.debian.org/debian\nSuites: bookworm\nComponents: main\nSigned-By: /usr/share/keyrings/debian-archive-keyring.gpg\n' \
   >"$work/etc/source.sources"
 apt=(apt-get -qq -o Dir::Etc::sourcelist=/dev/null -o Dir::Etc::sourceparts="$work/etc" -o Dir::State="$work/state" -o Dir::Cache="$work/cache")
-"${apt[@]}" update
-(cd "$work" && "${apt[@]}" source --download-only godot3 && tar xzf godot_*.orig.tar.gz --wildcards '*/modules/gdnative/*' --strip-components=3)
+unreachable() { echo "Debian's source package of Godot 3 cannot be reached"; exit 77; }
+command -v apt-get >/dev/null || unreachable
+timeout 120 "${apt[@]}" -o Acquire::Retries=1 -o APT::Update::Error-Mode=any update || unreachable
+(cd "$work" && timeout 180 "${apt[@]}" source --download-only godot3) || unreachable
+(cd "$work" && tar xzf godot_*.orig.tar.gz --wildcards '*/modules/gdnative/*' --strip-components=3)
 cp -r "$work/include" "$folder/"
 cd "$work"
 python3 - "$folder/include/gdnative_api_struct.gen.h" <<'PYTHON'

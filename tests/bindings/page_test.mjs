@@ -1,87 +1,116 @@
-// samples/web in headless Chromium: page_test.mjs RIG.glb PICTURE.png. The head is shown, moves, and the console is empty.
+// samples/web in headless Chromium: page_test.mjs HEAD.glb RIG.glb PLAYED.glb PICTURE.png. HEAD is a whole face, RIG a smaller
+// one to drop on the page, PLAYED what `fascia play` made of RIG. The faces are shown and move, and the console stays
+// empty. Exit 77 without WebGL 2.
 import assert from 'node:assert/strict';
-import {spawn} from 'node:child_process';
-import {mkdtempSync, readFileSync, writeFileSync} from 'node:fs';
-import {tmpdir} from 'node:os';
+import {readFileSync, writeFileSync} from 'node:fs';
 import {dirname, join} from 'node:path';
 import {fileURLToPath} from 'node:url';
+import {browserWithWebGL2, Child} from './browser.mjs';
 
-const [rig, picture] = process.argv.slice(2);
+const [head, rig, played, picture] = process.argv.slice(2);
 const sample = join(dirname(fileURLToPath(import.meta.url)), '../../samples/web');
-const server = spawn('node', ['serve.mjs', rig], {cwd: sample, env: {...process.env, PORT: '0'}, stdio: ['ignore', 'pipe', 'inherit']});
-const address = await new Promise((found) => server.stdout.on('data', (text) => {
-  const url = /http:\/\/\S+/.exec(text);
-  if (url) found(url[0]);
-}));
-const browser = spawn('chromium', ['--headless=new', '--no-sandbox', '--disable-gpu', '--use-gl=angle', '--use-angle=swiftshader',
-  '--enable-unsafe-swiftshader', '--window-size=1100,800', '--remote-debugging-port=0',
-  `--user-data-dir=${mkdtempSync(join(tmpdir(), 'fascia-'))}`, 'about:blank'], {stdio: ['ignore', 'ignore', 'pipe']});
+const open = [];  // to be closed whatever happens
+for (const signal of ['SIGTERM', 'SIGINT']) process.on(signal, () => end(1));
 let code = 1;
 try {
-  const devtools = await new Promise((found) => browser.stderr.on('data', (text) => {
-    const url = /ws:\/\/\S+/.exec(text);
-    if (url) found(url[0]);
-  }));
-  const targets = await (await fetch(`http://${new URL(devtools).host}/json`)).json();
-  const socket = new WebSocket(targets.find(({type}) => type === 'page').webSocketDebuggerUrl);
-  await new Promise((open) => socket.addEventListener('open', open));
-  const answers = new Map(), complaints = [];
-  let last = 0;
-  socket.addEventListener('message', ({data}) => {
-    const message = JSON.parse(data);
-    answers.get(message.id)?.(message);
-    if (message.method === 'Runtime.exceptionThrown') complaints.push(message.params.exceptionDetails.exception?.description ?? 'exception');
-    if (message.method === 'Log.entryAdded' && message.params.entry.level !== 'info' && !/GPU stall|GL Driver/.test(message.params.entry.text))
-      complaints.push(`${message.params.entry.text} ${message.params.entry.url ?? ""}`.trim());
-    if (message.method === 'Runtime.consoleAPICalled' && ['error', 'warning', 'assert'].includes(message.params.type))
-      complaints.push(message.params.args.map(({value}) => value).join(' '));
-  });
-  const send = (method, params = {}) => new Promise((answer) => {
-    answers.set(++last, answer);
-    socket.send(JSON.stringify({id: last, method, params}));
-  });
-  const ask = async (expression) => {
-    const {result} = await send('Runtime.evaluate', {expression, awaitPromise: true, returnByValue: true});
-    if (result.exceptionDetails) throw new Error(result.exceptionDetails.exception?.description ?? expression);
-    return result.result.value;
-  };
-  const until = async (expression) => {
-    for (let i = 0; i < 720; ++i) {
-      if (await ask(expression)) return;
-      await new Promise((later) => setTimeout(later, 250));
-    }
-    throw new Error(`in vain: ${expression}; ${complaints.join('; ')}`);
-  };
-  await send('Runtime.enable');
-  await send('Log.enable');
-  await send('Page.enable');
-  await send('Page.navigate', {url: address});
-  await until('window.fascia?.face != null');
-  const rest = await ask('Array.from(fascia.face.face.positions(0))');
-  const sliders = await ask('document.querySelectorAll("#sliders label").length');
-  assert.ok(sliders > 2, `${sliders} sliders`);
-  // A slider as a user moves it, then the capture.
-  await ask(`(() => { for (const label of document.querySelectorAll('#sliders label')) if (/smile/.test(label.dataset.name)) {
-    const input = label.querySelector('input'); input.value = 0.9; input.dispatchEvent(new Event('input')); } })()`);
-  await until(`fascia.face.parts.some(({index}) => fascia.face.asset.meshes[index].part === 'skin') &&
-               fascia.face.face.effectiveValues.some((value) => value > 0.3)`);
-  await new Promise((later) => setTimeout(later, 2500));
-  const {result} = await send('Page.captureScreenshot', {format: 'png'});
-  writeFileSync(picture, Buffer.from(result.data, 'base64'));
-  assert.notDeepEqual(await ask('Array.from(fascia.face.face.effectiveValues)'), await ask('fascia.face.asset.channels.map(({rest}) => rest)'));
-  await ask('document.getElementById("rest").click()');
-  await ask('document.getElementById("replay").click()');
-  await until('fascia.face.takes.length === 1 && fascia.face.takes[0].time > 0.2');
-  const cost = await ask('document.getElementById("status").textContent');
-  assert.deepEqual(complaints, []);
-  assert.equal(rest.length % 3, 0);
-  assert.ok(readFileSync(picture).length > 20000, 'the picture is empty');
-  console.log(`web page: ${sliders} sliders, ${cost}, the console is empty, all passed`);
-  code = 0;
+  code = await test();
 } catch (error) {
   console.error(error);
-} finally {
-  server.kill();
-  browser.kill();
-  process.exit(code);
+}
+end(code);
+
+function end(status) {
+  for (const each of open) each();
+  process.exit(status);
+}
+
+async function test() {
+  const server = new Child('node', ['serve.mjs', head], {cwd: sample, env: {...process.env, PORT: '0'}}, ['ignore', 'pipe', 'pipe']);
+  open.push(() => server.kill());
+  const [address] = await server.line(/http:\/\/\S+(?=\s)/, 20, 'the server');
+  const browser = await browserWithWebGL2();
+  if (!browser) {
+    console.log('web page: left out, Chromium has no WebGL 2 here');
+    return 77;
+  }
+  open.push(() => browser.close());
+  await browser.send('Page.navigate', {url: address});
+  await browser.until('window.fascia?.face != null');
+  const sliders = await moveASlider(browser);
+  const image = await browser.picture();
+  writeFileSync(picture, image);
+  assert.ok(image.length > 20000, 'the picture is empty');
+  await replayTheCapture(browser);
+  const cost = await browser.ask('document.getElementById("status").textContent');
+  await dropARig(browser);
+  const moved = await playTheAnimation(browser);
+  assert.deepEqual(browser.complaints, []);
+  console.log(`web page: ${sliders} sliders, ${cost}, a dropped rig played by its animation up to ${moved.toFixed(4)}, the console is empty`);
+  return 0;
+}
+
+/** Keeps the positions of all parts as window.kept; window.moved() is how far the farthest coordinate is from them now. */
+async function keepPositions(browser) {
+  await browser.ask(`(() => {
+    const all = () => fascia.face.parts.map(({index}) => Array.from(fascia.face.face.positions(index))).flat();
+    window.kept = all();
+    window.moved = () => { const now = all(); return now.reduce((most, x, i) => Math.max(most, Math.abs(x - kept[i])), 0); };
+  })()`);
+}
+
+/** A slider as a user moves it. */
+async function moveASlider(browser) {
+  await keepPositions(browser);
+  const sliders = await browser.ask('document.querySelectorAll("#sliders label").length');
+  assert.ok(sliders > 2, `${sliders} sliders`);
+  const found = await browser.ask(`(() => {
+    const smiles = [...document.querySelectorAll('#sliders label')].filter(({dataset}) => /smile/.test(dataset.name));
+    for (const label of smiles) {
+      const input = label.querySelector('input');
+      input.value = 0.9;
+      input.dispatchEvent(new Event('input'));
+    }
+    return smiles.length;
+  })()`);
+  assert.ok(found >= 1, 'no slider of a smile');
+  await browser.until('fascia.face.face.effectiveValues.some((value) => value > 0.3) && moved() > 0');
+  // Until the smile is complete: the skin stands still from one frame to the next.
+  await browser.until(`new Promise((next) => {
+    const before = moved();
+    requestAnimationFrame(() => requestAnimationFrame(() => next(Math.abs(moved() - before) < 1e-3 * moved())));
+  })`);
+  return sliders;
+}
+
+async function replayTheCapture(browser) {
+  await browser.ask('document.getElementById("rest").click()');
+  await keepPositions(browser);
+  await browser.ask('document.getElementById("replay").click()');
+  await browser.until('fascia.face.takes.length === 1 && fascia.face.takes[0].time > 0.2 && moved() > 0');
+}
+
+/** The bytes of a file as an expression of the page. */
+const bytesOf = (path) => `Uint8Array.from(atob('${readFileSync(path).toString('base64')}'), (c) => c.charCodeAt(0))`;
+
+async function dropARig(browser) {
+  await browser.ask(`(() => {
+    window.before = fascia.face;
+    const dropped = new DataTransfer();
+    dropped.items.add(new File([${bytesOf(rig)}], 'dropped.glb'));
+    dispatchEvent(new DragEvent('drop', {dataTransfer: dropped, bubbles: true, cancelable: true}));
+  })()`);
+  await browser.until('fascia.face !== before');
+  assert.notEqual(await browser.ask('fascia.face.asset.meshes.length'), 0);
+  assert.equal(await browser.ask('fascia.face.takes.length'), 0);
+}
+
+/** What `fascia play` wrote carries its curves as an animation: loaded and played, they move the dropped face. */
+async function playTheAnimation(browser) {
+  await keepPositions(browser);
+  await browser.ask(`fascia.replay(${bytesOf(played)})`);
+  await browser.until('fascia.face.takes.length === 1 && fascia.face.takes[0].curves.names.length > 0 && moved() > 0');
+  await browser.ask('window.most = 0');
+  const end = 'fascia.face.takes[0].time > 0.5 * fascia.face.takes[0].curves.duration';
+  await browser.until(`(window.most = Math.max(most, moved())) > 1e-4 && ${end}`);
+  return browser.ask('most');
 }

@@ -2,10 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <map>
 #include <sstream>
+#include <utility>
 
 #include "anatomy/anatomy.h"
 #include "builder/rigging/embedded_head.h"
@@ -192,6 +195,81 @@ TEST(AnyHead, FarFromTheOriginItPosesAlike) {
     high.face().pose({{shape, 1.0}});
     for (const char* name : {"cheilion_left", "cheilion_right", "labiale_superius", "labiale_inferius"})
       EXPECT_LT((high.face().moved(name) - plain.face().moved(name)).norm(), 0.1) << name << " in " << shape;
+  }
+}
+
+/// Each triangle in four, on the same surface; the vertices that were there come first.
+void halve_every_edge(TriangleMesh& skin) {
+  std::map<std::pair<int, int>, int> middles;
+  const auto middle = [&](int a, int b) {
+    const auto [entry, is_new] = middles.try_emplace(std::minmax(a, b), skin.vertex_count());
+    if (is_new)
+      skin.vertices.push_back(
+          0.5 * (skin.vertices[static_cast<size_t>(a)] + skin.vertices[static_cast<size_t>(b)]));
+    return entry->second;
+  };
+  std::vector<Triangle> finer;
+  for (const Triangle& t : skin.triangles) {
+    const int ab = middle(t[0], t[1]), bc = middle(t[1], t[2]), ca = middle(t[2], t[0]);
+    finer.insert(finer.end(), {{t[0], ab, ca}, {t[1], bc, ab}, {t[2], ca, bc}, {ab, bc, ca}});
+  }
+  skin.triangles = std::move(finer);
+}
+
+/// Each vertex's motion by where it is at rest, to a hundredth of a millimetre: files may order vertices
+/// anew.
+std::map<std::array<long, 3>, Vec3> motion_by_place(cli::Face& face) {
+  std::map<std::array<long, 3>, Vec3> motion;
+  for (size_t m = 0; m < face.meshes().size(); ++m) {
+    const auto now = face.positions(m), rest = face.rest(m);
+    for (size_t i = 0; i + 2 < now.size(); i += 3)
+      motion[{std::lround(1e5F * rest[i]), std::lround(1e5F * rest[i + 1]),
+              std::lround(1e5F * rest[i + 2])}] =
+          Vec3(now[i] - rest[i], now[i + 1] - rest[i + 1], now[i + 2] - rest[i + 2]);
+  }
+  return motion;
+}
+
+/// How far the vertices that both heads have move otherwise in a pose.
+struct Difference {
+  double share = 0.0;    ///< root mean square, over how far they move
+  double largest = 0.0;  ///< millimetres
+};
+Difference difference_in(const PosedFace::Values& pose, PosedFace& plain, PosedFace& finer) {
+  plain.pose(pose);
+  finer.pose(pose);
+  const auto coarse = motion_by_place(plain.face()), fine = motion_by_place(finer.face());
+  double difference = 0.0, motion = 0.0, largest = 0.0;
+  size_t found = 0;
+  for (const auto& [place, moved] : coarse) {
+    const auto other = fine.find(place);
+    if (other == fine.end()) continue;
+    ++found;
+    difference += (moved - other->second).squaredNorm();
+    largest = std::max(largest, 1e3 * (moved - other->second).norm());
+    motion += moved.squaredNorm();
+  }
+  EXPECT_GT(found, coarse.size() * 9 / 10);
+  return {std::sqrt(difference / motion), largest};
+}
+
+/// Stiffness is the tissue's, not the mesh's: with four triangles in place of each the same vertices move
+/// alike. A stiffness that went with the mesh's edges would change motions by half and more.
+TEST(AnyHead, ATessellationTwiceAsFineMovesAlike) {
+  Variant plain("coarse", no_change), finer("fine", halve_every_edge);
+  ASSERT_GT(finer.face().face().rest(0).size(), 3 * plain.face().face().rest(0).size());
+  // Lids are the thinnest folds, which a lattice of this detail has in a few columns: they differ most.
+  const std::pair<PosedFace::Values, double> poses[] = {
+      {{{"jaw_open", 0.6}}, 0.1},
+      {{{"zygomaticus_major_left", 1}, {"zygomaticus_major_right", 1}}, 0.2},
+      {{{"frontalis_left", 1}, {"frontalis_right", 1}}, 0.25},
+      {{{"lid_upper_left", 1.0}, {"lid_upper_right", 1.0}}, 0.35},
+  };
+  for (const auto& [pose, bound] : poses) {
+    const Difference apart = difference_in(pose, plain.face(), finer.face());
+    std::printf("%s: %.3f of the motion apart, at most %.2f mm\n", pose.begin()->first.c_str(), apart.share,
+                apart.largest);
+    EXPECT_LT(apart.share, bound) << pose.begin()->first;
   }
 }
 

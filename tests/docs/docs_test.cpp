@@ -21,7 +21,7 @@ fs::path project() {
 std::vector<fs::path> pages() {
   std::vector<fs::path> found = {project() / "README.md", project() / "CONTRIBUTING.md",
                                  project() / "CHANGELOG.md"};
-  for (const char* folder : {"docs", "anatomy", "rig/spec", "samples"})
+  for (const char* folder : {"docs", "anatomy", "rig/spec", "samples", "hosts", "bindings"})
     for (const auto& entry : fs::recursive_directory_iterator(project() / folder))
       if (entry.path().extension() == ".md" &&
           entry.path().string().find("node_modules") == std::string::npos)

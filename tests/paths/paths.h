@@ -9,7 +9,7 @@ namespace fascia::test {
 std::filesystem::path data();       ///< tests/data: small fixtures of the project's own
 std::filesystem::path snapshots();  ///< tests/snapshots
 std::filesystem::path
-measured_data();               ///< measured heads beside the project; may be absent, and tests then skip
+measured_data();               ///< measured heads, FASCIA_MEASURED or beside the project; without, tests skip
 std::filesystem::path tool();  ///< the `fascia` program of this build
 
 }  // namespace fascia::test

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Core>
 #include <vector>
 
 #include "tests/runtime/skinned_rig.h"
@@ -55,23 +54,7 @@ TEST(Skinning, ReproducesTheVertices) {
     const Face face(rig.asset, space);
     drive_everything(face.face);
     const Skinned data(face.face);
-    const std::vector<float> positions = face.positions();
-    double worst = 0.0;
-    for (uint32_t v = 0; v < data.skinning.vertex_count; ++v) {
-      const Eigen::Vector3f rest = Eigen::Map<const Eigen::Vector3f>(data.skinning.rest + 3 * v);
-      const uint32_t eye = data.skinning.eyes[v];
-      Eigen::Vector3f place = data.bone(eye, rest);
-      if (eye == 0) {
-        place = rest + data.skinning.jaw[v] * (data.bone(0, rest) - rest);
-        for (uint32_t i = 0; i < data.skinning.influences; ++i) {
-          const std::size_t at = std::size_t{v} * data.skinning.influences + i;
-          place += data.skinning.weights[at] * data.node(data.skinning.nodes[at]);
-        }
-      }
-      worst = std::max(
-          worst,
-          static_cast<double>((place - Eigen::Map<const Eigen::Vector3f>(positions.data() + 3 * v)).norm()));
-    }
+    const double worst = data.error(face.positions().data());
     EXPECT_LT(worst, space == FASCIA_SPACE_METRES ? 1e-6 : 1e-4);  // centimetres: 1e-6 m
   }
 }

@@ -103,6 +103,19 @@ TEST(Memory, AFrameAllocatesNothing) {
   fascia_curves_release(curves);
 }
 
+/// The counter of the test before sees what the library allocates.
+TEST(Memory, TheCounterSeesTheLibrarysAllocations) {
+  const Loaded rig;
+  int before = allocations;
+  const Face face(rig.asset);
+  EXPECT_GT(allocations, before) << "of making a face";
+  fascia_vectors vectors = {};
+  vectors.struct_size = sizeof vectors;
+  before = allocations;
+  ASSERT_EQ(fascia_face_normals(face.face, 0, &vectors), FASCIA_OK);
+  EXPECT_GT(allocations, before) << "of the first normals";
+}
+
 TEST(Memory, ComesFromTheHost) {
   Host host;
   const fascia_allocator allocator = {sizeof allocator, 0, allocate, release, &host};

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "rig/model/extensions.h"
 #include "tests/paths/paths.h"
 #include "tests/runtime/loaded.h"
 
@@ -31,6 +32,11 @@ TEST(Released, RigsAreReadAndMove) {
     ++rigs;
   }
   EXPECT_GE(rigs, 1);
+}
+
+TEST(Released, ARigOfThePresentVersionIsKept) {
+  EXPECT_TRUE(std::filesystem::exists(data() / "released" / ("rig-" + fascia::rig::spec_version + ".glb")))
+      << "a new version of the format: keep a rig of it (tests/data/released)";
 }
 
 }  // namespace
