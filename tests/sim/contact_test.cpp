@@ -121,7 +121,7 @@ TEST(Contact, PressedTissueStopsAtTheBone) {
 TEST(Contact, AFieldGoesWithItsBone) {
   PatchOptions o;
   const rig::TissueLevel level = patch_before_a_ball(o, 1);  // on the mandible
-  Jaw jaw;
+  Jaw jaw = jaw_of(rig::JawJoint{});
   jaw.forward_glide = 0.004;
   jaw.forward_drop = 0.0;
   const FaceModel model(lattice_of(level), jaw);
@@ -196,7 +196,7 @@ struct TwoLips : ::testing::Test {
     jaw.forward_glide = 0.004;
     jaw.forward_drop = 0.0;
   }
-  Jaw jaw;
+  Jaw jaw = jaw_of(rig::JawJoint{});
   /// The smallest gap between the two over the lower one's middle nodes, by the upper one's height beside
   /// them.
   double smallest_gap(const std::vector<Vec3f>& x) const {

@@ -20,7 +20,7 @@ using testing::PatchOptions;
 struct Everything : ::testing::Test {
   PatchOptions options;
   rig::TissueLevel level;
-  Jaw jaw;
+  Jaw jaw = jaw_of(rig::JawJoint{});
   Everything() {
     options.across = 12;
     options.along = 8;
