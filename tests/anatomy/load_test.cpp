@@ -137,6 +137,17 @@ TEST(LoadAnatomy, AFileThatNothingReadsIsRefused) {
   EXPECT_NE(message(copy.path()).find("holds no file"), std::string::npos);
 }
 
+TEST(LoadAnatomy, AFileThatIsOnlyCompiledInMayNotDiffer) {
+  for (const char* name : {"aliases.json", "correctives.json", "landmark_sets.json", "head_parts.obj",
+                           "head_skin.jpg", "head_skin_normal.jpg", "head_skin_roughness.jpg"}) {
+    const Copy copy;
+    EXPECT_EQ(message(copy.path()), "");
+    std::ofstream(copy.path() / name, std::ios::binary | std::ios::app) << "\n";
+    EXPECT_NE(message(copy.path()).find(name), std::string::npos) << name;
+    EXPECT_NE(message(copy.path()).find("compiled into the program"), std::string::npos) << name;
+  }
+}
+
 TEST(LoadAnatomy, UnknownChannelInATable) {
   const Copy copy;
   copy.edit("expressions/arkit.json", "\"jaw_open\"", "\"jaw_opened\"");
