@@ -219,7 +219,7 @@ TEST(Settings, ComeBackAndNonsenseIsTakenAsDefault) {
   std::filesystem::remove_all(folder);
 }
 
-TEST(Autosave, IsThereAfterACrashAndGoneAfterAGoodEnd) {
+TEST(Autosave, RemainsAfterACrashAndIsRemovedAfterARegularExit) {
   const std::filesystem::path file = std::filesystem::temp_directory_path() / "fascia_app_autosave.json";
   std::filesystem::remove(file);
   DocumentState state;

@@ -141,7 +141,7 @@ TEST_F(Window, WithoutADisplaySaysWhatToDo) {
   EXPECT_NE(log().find("xvfb-run"), std::string::npos) << log();
 }
 
-TEST_F(Window, RandomInputForAFewSecondsDoesNoHarm) {
+TEST_F(Window, HandlesRandomInput) {
   EXPECT_EQ(view("--monkey 7 --seconds 5"), 0) << log();
 }
 

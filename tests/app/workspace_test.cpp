@@ -191,7 +191,7 @@ TEST_F(WorkspaceTest, ASessionThatEndedInACrashIsOfferedAgain) {
   EXPECT_EQ(work_->value("jaw_open"), 0.5);
 }
 
-TEST(ToolJob, TellsHowItEndedAndCanBeGivenUp) {
+TEST(ToolJob, ReportsItsResultAndCanBeCancelled) {
   const auto wait = [](ToolJob& job) {
     for (int i = 0; i < 1000 && !job.poll(); ++i)
       std::this_thread::sleep_for(std::chrono::milliseconds(5));

@@ -114,7 +114,7 @@ class Environment : public ::testing::Test {
   }
 };
 
-TEST_F(Environment, NothingIsAllOfIt) {
+TEST_F(Environment, WithoutVariablesOneTaskHasAllHeads) {
   expect_task(0, 0, 1);
   EXPECT_THROW(task_of_environment(4), Error);
 }

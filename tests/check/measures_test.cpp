@@ -132,7 +132,7 @@ TEST(Mouth, OpensAsWideAsItsLipsPart) {
   EXPECT_NEAR(open.corner_right, 0.714, 0.04);
 }
 
-TEST(Mouth, ALowerLipThatGoesUpIsNoOpening) {
+TEST(Mouth, ALowerLipThatMovesUpIsNoOpening) {
   const Head closed = flat_mouth();
   const Skin skin(closed, Vec3::Zero(), 0.2);
   const Seam seam = mouth_seam(skin, closed.landmarks, 1.0);

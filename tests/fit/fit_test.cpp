@@ -98,7 +98,7 @@ TEST_F(Fit, FindsRandomActivationsAgain) {
   }
 }
 
-TEST_F(Fit, RestGivesNothing) {
+TEST_F(Fit, RestPoseGivesZeroActivations) {
   const FitResult result = Fitter(*subject).fit(target_of(rest()));
   EXPECT_EQ(result.activations, rest());
   EXPECT_LT(result.rms_mm, 1e-6);
@@ -141,7 +141,7 @@ TEST_F(Fit, TheGazeOfEyesThatAreNotSeenIsReadFromTheLids) {
   }
 }
 
-TEST_F(Fit, VerticesNobodyTrustsDoNotCount) {
+TEST_F(Fit, VerticesWithoutConfidenceAreIgnored) {
   std::vector<float> values = rest();
   set(values, "zygomaticus_minor_left", 0.6F);
   Target target = target_of(values);

@@ -127,14 +127,14 @@ TEST_F(FitScan, RestStaysRestWhereTheMouthIsHidden) {
   }
 }
 
-TEST_F(FitScan, RefusesWhatIsElsewhere) {
+TEST_F(FitScan, RejectsAScanAwayFromTheHead) {
   TriangleMesh far = scan(Eigen::VectorXd::Zero(subject->rest().size()));
   for (Vec3& p : far.vertices)
     p += Vec3(1.0, 0.0, 0.0);
   EXPECT_THROW(fit_scan(*subject, far), Error);
 }
 
-TEST_F(FitScan, LandmarksAloneTellTheFace) {
+TEST_F(FitScan, LandmarksAloneDriveTheFit) {
   const std::vector<float> values = values_of(smile_with_open_mouth());
   const Eigen::VectorXd truth = displacements(values);
   json rest, posed;

@@ -215,7 +215,7 @@ TEST(SameHead, PupilsLieOnTheGlobes) {
   }
 }
 
-TEST(GivenLandmarks, AlwaysHelp) {
+TEST(GivenLandmarks, ReduceTheError) {
   // Heads so changed that finding alone is far off, or finds nothing.
   const auto strange = [](const Vec3& p) {
     Vec3 to = as_creature(as_anime(p));
@@ -238,7 +238,7 @@ TEST(GivenLandmarks, AlwaysHelp) {
   }
 }
 
-TEST(GivenLandmarks, MakeAHeadOfWhatIsHardlyOne) {
+TEST(GivenLandmarks, AllowHeadsThatAreNotFoundWithoutThem) {
   // A ball with three bumps is no face, but it is if its owner says so.
   const MadeHead adult = made("adult", as_it_is);
   MadeHead ball = adult;

@@ -246,7 +246,7 @@ TEST(Openings, RewritesOnlyTheFacesThatWereCut) {
   EXPECT_TRUE(open({metres, again.meshes[0].triangles}, closed.landmarks).opened.parted.empty());
 }
 
-TEST(Openings, KnowsItsWords) {
+TEST(Openings, RejectsUnknownOptionValues) {
   openings::OpeningOptions options;
   options.add = {"ears"};
   EXPECT_THROW(openings::check(options), Error);

@@ -121,7 +121,7 @@ TEST(Mutation, TwoPercentOfAStrengthAreCaught) {
             0U);
 }
 
-TEST(Mutation, NothingChangedIsNotCaught) {
+TEST(Mutation, AnUnchangedRigPasses) {
   EXPECT_EQ(caught([](rig::Rig&) {}), 0U);
 }
 
