@@ -127,7 +127,7 @@ TEST(LoadAnatomy, ADirectoryMayHoldJustTheCorrectedFiles) {
   EXPECT_EQ(corrected_files(copy.path()), std::vector<std::string>{"mechanics.json"});
 }
 
-TEST(LoadAnatomy, AFileThatNothingReadsIsRefused) {
+TEST(LoadAnatomy, UnknownFilesAreRejected) {
   const Copy copy;
   fs::rename(copy.path() / "mechanics.json", copy.path() / "mechanic.json");
   EXPECT_NE(message(copy.path()).find("mechanic.json"), std::string::npos);

@@ -53,7 +53,7 @@ TEST(History, ADragIsOneStepAndTheNextDragAnother) {
   EXPECT_EQ(history.state(), 0);
 }
 
-TEST(History, WhatChangesNothingIsNoStepAndNewStepsDropUndoneOnes) {
+TEST(History, EmptyChangesAddNoStepAndNewStepsDropUndoneOnes) {
   History<int> history(7);
   history.commit(7, "nothing");
   EXPECT_FALSE(history.can_undo());

@@ -153,7 +153,7 @@ TEST_F(WorkspaceTest, ComparesWithRestAndRefusesOtherMeshes) {
   EXPECT_EQ(work_->notices.back().kind, Notice::Kind::error);
 }
 
-TEST_F(WorkspaceTest, SaysWhatIsWrongWithFilesAndKeepsWhatIsOpen) {
+TEST_F(WorkspaceTest, ReportsInvalidFilesAndKeepsTheOpenRig) {
   open();
   std::ofstream(folder_ / "empty.obj");
   std::ofstream(folder_ / "nonsense.csv") << "nothing at all";

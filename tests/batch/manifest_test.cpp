@@ -136,7 +136,7 @@ TEST_F(Environment, KnowsSlurmAwsAndParallel) {
   expect_task(20, 14, 20);
 }
 
-TEST_F(Environment, RefusesWhatMakesNoSense) {
+TEST_F(Environment, RejectsInvalidVariables) {
   setenv("SLURM_ARRAY_TASK_ID", "two", 1);
   EXPECT_THROW(task_of_environment(0), Error);
   setenv("SLURM_ARRAY_TASK_ID", "9", 1);

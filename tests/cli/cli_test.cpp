@@ -203,7 +203,7 @@ TEST_F(Tool, FailureWithJsonIsJsonToo) {
   EXPECT_NE(json::parse(outcome.out)["error"].get<std::string>().find("missing.glb"), std::string::npos);
 }
 
-TEST_F(Tool, InfoKnowsChannelsAndSoundness) {
+TEST_F(Tool, InfoListsChannelsAndValidates) {
   const json info = json::parse(run("info " + at("rig.glb") + " --channels --validate --json").out);
   EXPECT_EQ(info["valid"], true);
   EXPECT_EQ(info["sets"]["arkit"], 52);

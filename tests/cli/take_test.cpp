@@ -63,7 +63,7 @@ double error_of(const MotionSpace& space, const Components& parts, const Strip& 
   return largest;
 }
 
-TEST(Take, AMotionOfKnownRankIsFoundWhateverItsLength) {
+TEST(Take, AMotionOfKnownRankIsFoundForAnyLength) {
   for (const size_t frames : {1UL, 5UL, 40UL, 3000UL}) {
     const Strip strip(400, 6);
     MotionSpace::Options options;

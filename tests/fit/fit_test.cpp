@@ -118,7 +118,7 @@ TEST_F(Fit, JawAndEyesAreFound) {
 }
 
 /// A scan without eyeballs: lids follow the gaze, and tell it.
-TEST_F(Fit, TheGazeOfEyesThatAreNotSeenIsReadFromTheLids) {
+TEST_F(Fit, TheGazeOfHiddenEyesIsEstimatedFromTheLids) {
   for (const char* name : {"eye_yaw_left", "eye_pitch_left"}) {
     std::vector<float> values = rest();
     set(values, name, 0.4F);
@@ -238,7 +238,7 @@ TEST_F(Fit, ToolFitsACache) {
   EXPECT_GT(json::parse(fitted.out)["share"].get<double>(), 0.99);
 }
 
-TEST_F(Fit, ToolSaysWhatIsWrong) {
+TEST_F(Fit, ToolReportsInvalidInput) {
   std::ofstream(at("other.obj")) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
   std::ofstream(at("bad.pc2")) << "POINTCACHE2 and nothing more";
   const auto expect_error = [](const std::string& arguments, const std::string& says) {

@@ -181,7 +181,7 @@ TEST_F(Live, ByNamesInCpp) {
   EXPECT_THROW(api::Fit(rig, "unknown"), api::Error);
 }
 
-TEST_F(Live, SaysWhatIsWrong) {
+TEST_F(Live, ReportsInvalidInput) {
   fascia_fit_landmarks given{};
   given.struct_size = sizeof given;
   fascia_fit* made = nullptr;

@@ -111,7 +111,7 @@ TEST_F(FitScan, BringsTheScanOntoTheHead) {
   EXPECT_LT((transform_point(found.scan_to_head, motion * chin) - chin).norm(), 0.0015);
 }
 
-TEST_F(FitScan, RestStaysRestWhereTheMouthIsHidden) {
+TEST_F(FitScan, RestIsFoundWhenTheMouthIsHidden) {
   TriangleMesh mesh = scan(Eigen::VectorXd::Zero(subject->rest().size()));
   Vec3 mouth = Vec3::Zero();
   for (const rig::Landmark& landmark : subject->file().rig.skull.landmarks)

@@ -40,7 +40,7 @@ TEST(LandmarkFile, TurnsRasAndKeepsLps) {
   EXPECT_EQ(read_text(lps).points.at("nasion"), Vec3(1, 2, 3));
 }
 
-TEST(LandmarkFile, SaysWhatIsWrong) {
+TEST(LandmarkFile, ReportsInvalidInput) {
   for (const char* text :
        {"", "[]", "{", R"({"landmarks":{}})", R"({"units":"ell","landmarks":{"a":[1,2,3]}})",
         R"({"landmarks":{"a":[1,2]}})", R"({"landmarks":{"a":["x",2,3]}})", R"({"points":1})"})

@@ -147,7 +147,7 @@ TEST(LidOpening, IsSeenWhereTheLidsAreOpenAndNowhereElse) {
   EXPECT_FALSE(lid_opening(skin, cheek).has_value());
 }
 
-TEST(LipOpening, EndsAtTheCornersWhateverWidthIsLookedFor) {
+TEST(LipOpening, EndsAtTheCornersForAnySearchWidth) {
   const Vec3 left = *generic_anatomy().landmark("cheilion_left")->skin,
              right = *generic_anatomy().landmark("cheilion_right")->skin, middle = 0.5 * (left + right);
   const spatial::SurfaceQuery skin(face().skin);

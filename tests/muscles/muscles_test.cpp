@@ -387,7 +387,7 @@ TEST(BuildMuscles, CarriesRegionsByTheWarp) {
     EXPECT_LT(fibre.points[0].position[0], -0.03);
 }
 
-TEST(BuildMuscles, OneThatCannotBeLaidIsLeftOutAndNamedTheOthersStay) {
+TEST(BuildMuscles, OneThatFailsIsOmittedAndNamedTheOthersAreBuilt) {
   BallHead head;
   head.muscles = {strap("a", 1.0), strap("b", -1.0)};
   head.muscles[0].insertion.polygon[0][1] = NAN;
@@ -401,7 +401,7 @@ TEST(BuildMuscles, OneThatCannotBeLaidIsLeftOutAndNamedTheOthersStay) {
   EXPECT_THROW(build(head.inputs(), edited), Error);
 }
 
-TEST(BuildMuscles, SaysWhatIsMissing) {
+TEST(BuildMuscles, ReportsMissingInput) {
   BallHead head;
   head.muscles = {ring("o", MuscleKind::sphincter_ring, 0.004, 0.012, 0.0, kPi)};
   Inputs inputs = head.inputs();

@@ -157,7 +157,7 @@ TEST(Openings, PartsOnlyWhatIsClosed) {
   EXPECT_EQ(names(open(closed.skin, closed.landmarks).opened), (std::vector<std::string>{"mouth"}));
 }
 
-TEST(Openings, CutsBothSidesAlike) {
+TEST(Openings, CutsBothSidesSymmetrically) {
   const ClosedHead closed = closed_head(generic());
   const Case c = open(closed.skin, closed.landmarks);
   EXPECT_EQ(c.opened.parted[1].vertices, c.opened.parted[2].vertices);

@@ -45,7 +45,7 @@ Json& accessor_of(Json& root, const Json& index) {
 
 #define EXPECT_SAYS(message, part) EXPECT_NE((message).find(part), std::string::npos) << (message)
 
-TEST(Refusal, NothingIsWrongWithTheUnchangedFile) {
+TEST(Refusal, TheUnchangedFileIsAccepted) {
   EXPECT_EQ(refusal([](Json&) {}), "");
 }
 

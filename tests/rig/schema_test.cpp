@@ -124,7 +124,7 @@ TEST(Schema, EverythingWrittenIsDescribed) {
     expect_described(extensions[extension], root_schema(extension), extension);
 }
 
-TEST(Schema, EveryPropertyStandsOnItsPage) {
+TEST(Schema, EveryPropertyIsDocumentedOnItsPage) {
   for (const std::string& extension : rig::extensions) {
     const std::string page = file_text(folder(extension) / "README.md");
     for (const auto& entry : std::filesystem::directory_iterator(folder(extension) / "schema")) {

@@ -96,7 +96,7 @@ TEST_F(Moved, AnAcceleratedHeadsTissueLagsAsIfPushedBackTimesTheScale) {
   }
 }
 
-TEST_F(Moved, AHeadTurnedSidewaysFeelsItInItsOwnAxes) {
+TEST_F(Moved, InertiaActsInTheAxesOfTheHead) {
   fascia_face *const moving = face(), *const pushed = face();
   for (int k = 0; k < 20; ++k) {
     const double t = static_cast<double>(frame) * k;
@@ -225,7 +225,7 @@ std::vector<double> moves(fascia_face* face, const std::vector<float>& seconds) 
   return most;
 }
 
-TEST_F(Moved, TimeLostInALongFrameIsLost) {
+TEST_F(Moved, TimeBeyondTheLongestFrameIsSkipped) {
   for (const fascia_solver solver : {FASCIA_SOLVER_OWN, FASCIA_SOLVER_REFERENCE}) {
     fascia_face *const steady = face(solver), *const paused = face(solver);
     for (fascia_face* one : {steady, paused})

@@ -80,7 +80,7 @@ TEST(State, TheReferenceSolverHasOneToo) {
   fascia_face_release(face);
 }
 
-TEST(State, WhatDoesNotFitChangesNothing) {
+TEST(State, MismatchedBytesAreRejected) {
   const Loaded rig;
   const Face face(rig.asset), layered(rig.asset);
   play(face, 0, 15);

@@ -88,7 +88,7 @@ TEST(Energies, TrianglesThatLieOnEachOtherMakeNoHinge) {
   }
 }
 
-TEST(Energies, RigidMotionCostsNothing) {
+TEST(Energies, RigidMotionHasZeroEnergy) {
   const Eigen::AngleAxisd turn(1.1, Vec3(1, 2, -1).normalized());
   const Positions fan = {six[0], six[1], six[2], Vec3(.002, -.004, -.001)};
   Positions moved, moved_fan;
@@ -240,7 +240,7 @@ TEST(Lattice, FaultsAreReported) {
   EXPECT_FALSE(FaceModel(lattice_of(level), {}).valid());
 }
 
-TEST(ActivationForce, RisesFromNoneToTheWhole) {
+TEST(ActivationForce, RisesFromZeroToTheMaximum) {
   for (const double initial : {0.2, 0.45, 1.0}) {
     const auto force = [initial](double a) { return formulas::activation_force(a, initial); };
     EXPECT_EQ(force(0.0), 0.0);

@@ -325,7 +325,7 @@ TEST_F(Contracting, AbruptAndRandomActivationsStayFinite) {
   EXPECT_LT(largest(displacements_of(face)), 0.05);
 }
 
-TEST_F(Contracting, TheWatchdogResetsAndSaysSo) {
+TEST_F(Contracting, TheWatchdogResetsAndReports) {
   const FaceModel model(lattice_of(level), jaw);
   ReferenceSolver face(model, 2);
   face.velocities()[level.columns + column_at(options, 5, 4)] = Vec3(1e6, 0, 0);
@@ -336,7 +336,7 @@ TEST_F(Contracting, TheWatchdogResetsAndSaysSo) {
   EXPECT_EQ(face.step(1.0 / 60, {}).status, StepStatus::done);
 }
 
-TEST(Activation, RisesByItsTimeConstantWhateverTheStep) {
+TEST(Activation, RisesByItsTimeConstantForAnyStep) {
   const ActivationDynamics dynamics{0.03, 0.05};
   const float one[] = {1.0F}, zero[] = {0.0F};
   float coarse[] = {0.0F}, fine[] = {0.0F};

@@ -241,7 +241,7 @@ TEST_F(Everything, EveryInstructionSetAndAnyNumberOfThreadsGiveTheSameBits) {
   EXPECT_EQ(one, two);
 }
 
-TEST_F(Everything, WildDrivesStayFiniteAndBadNumbersReset) {
+TEST_F(Everything, RandomActivationStaysFiniteAndInvalidNumbersReset) {
   level.fibre_strength.assign(level.fibre_strength.size(), 4.0F);
   const FaceModel reference(lattice_of(level), jaw);
   const Model model(reference);
