@@ -12,7 +12,7 @@ void unique_names(const std::vector<Entry>& entries, const char* file) {
   std::set<std::string> names;
   for (const Entry& entry : entries)
     if (!names.insert(entry.name).second)
-      throw Error(std::string(file) + ": the name " + entry.name + " stands twice; rename or remove one");
+      throw Error(std::string(file) + ": the name " + entry.name + " occurs twice; rename or remove one");
 }
 
 void check_landmarks(const GenericAnatomy& anatomy) {
@@ -38,7 +38,7 @@ void check_channels(const GenericAnatomy& anatomy) {
       throw Error("actuators.json: lacks the muscle " + muscle.name + "; every muscle has a channel");
   for (const Whole& whole : anatomy.wholes) {
     if (anatomy.actuator(whole.name))
-      throw Error("actuators.json, " + whole.name + ": is both a channel and a whole; rename one");
+      throw Error("actuators.json, " + whole.name + ": is both a channel and a muscle group; rename one");
     for (const std::string& member : whole.members)
       if (!anatomy.actuator(member))
         throw Error("actuators.json, " + whole.name + ": no channel is called " + member);
@@ -48,7 +48,7 @@ void check_channels(const GenericAnatomy& anatomy) {
       const Whole* whole = anatomy.whole(muscle.whole);
       if (!whole ||
           std::find(whole->members.begin(), whole->members.end(), muscle.name) == whole->members.end())
-        throw Error("muscles.json, " + muscle.name + ": is not a member of its whole " + muscle.whole +
+        throw Error("muscles.json, " + muscle.name + ": is not a member of its muscle group " + muscle.whole +
                     " in actuators.json");
     }
 }
@@ -82,7 +82,7 @@ void check_tissue(const GenericAnatomy& anatomy) {
     if (!landmark || !landmark->skin)
       throw Error("tissue.json, smas_depths: no landmark on the skin is called " + site.landmark);
     if (!sites.insert(site.landmark).second)
-      throw Error("tissue.json, smas_depths: " + site.landmark + " stands twice");
+      throw Error("tissue.json, smas_depths: " + site.landmark + " occurs twice");
   }
 }
 

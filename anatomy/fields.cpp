@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "formats/files.h"
 #include "geometry/json.h"
@@ -23,6 +24,15 @@ Vec3 triple(const Json& value, const Fields& fields, const char* key) {
   return point;
 }
 
+/// Files of anatomy/data that are only compiled in: other parts of the program read them without a folder.
+bool is_fixed(const std::string& name) {
+  static const std::set<std::string> fixed = {
+      "aliases.json",  "correctives.json",     "landmark_sets.json",      "head_parts.obj",
+      "head_skin.jpg", "head_skin_normal.jpg", "head_skin_roughness.jpg",
+  };
+  return fixed.count(name) > 0;
+}
+
 }  // namespace
 
 void DataFiles::check_directory() const {
@@ -32,6 +42,11 @@ void DataFiles::check_directory() const {
     const std::string name = std::filesystem::relative(entry.path(), directory_).generic_string();
     const bool is_known = std::find(known.begin(), known.end(), name) != known.end();
     any = any || is_known;
+    if (is_fixed(name) && read(name) != embedded_file(name))
+      throw Error(
+          entry.path().string() +
+          ": cannot be corrected here, because it is compiled into the program; take it out, or correct "
+          "it in anatomy/data and build Fascia again");
     const std::string extension = entry.path().extension().string();
     if (!is_known && entry.is_regular_file() && (extension == ".json" || extension == ".obj"))
       throw Error(entry.path().string() +

@@ -78,7 +78,7 @@ ExpressionSet set_of(const Json& document, const std::string& file) {
     if (!expression.response.empty() && expression.response.size() != set.response_weights.size())
       entry.fail("\"response\" needs one number for each of the file's response_weights");
     check_rises(entry, expression.response, false);
-    if (set.find(expression.name)) entry.fail("stands twice");
+    if (set.find(expression.name)) entry.fail("occurs twice");
     set.expressions.push_back(expression);
   }
   return set;

@@ -82,7 +82,7 @@ TissueDepthTable depth_table_of(const Fields& entry) {
     depth.deviation = row.number_or("sd_mm", 0.0) * 1e-3;
     if (!(depth.mean > 0.0 && depth.mean < 0.2) || depth.deviation < 0.0 || depth.deviation > 0.2)
       row.fail("depths lie between 0 and 200 mm");
-    if (table.find(depth.key)) row.fail("the key \"" + depth.key + "\" stands twice in " + table.name);
+    if (table.find(depth.key)) row.fail("the key \"" + depth.key + "\" occurs twice in " + table.name);
     table.depths.push_back(depth);
   }
   return table;

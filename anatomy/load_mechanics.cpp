@@ -7,9 +7,10 @@
 namespace fascia::anatomy {
 namespace {
 
-/// What one of `unit` is in metres, radians and pascal. Divided by: 12 mm are then 0.012 m to the last bit.
+/// What one of `unit` is in metres, seconds, radians and pascal. Divided by: 12 mm are then 0.012 m to the
+/// last bit.
 double parts_of_unit(const std::string& unit) {
-  if (unit == "mm") return 1e3;
+  if (unit == "mm" || unit == "ms") return 1e3;
   if (unit == "deg") return 180.0 / std::numbers::pi;
   return 1.0;
 }
@@ -34,7 +35,7 @@ class Section {
     out = {ends[0] / parts_of_unit(unit), ends[1] / parts_of_unit(unit)};
   }
 
-  /// Whatever the builder knows nothing of would be corrected in vain.
+  /// A key that nothing reads is an error: a correction of it would have no effect.
   void refuse_unknown() const {
     for (const std::string& key : fields_.keys())
       if (key != "means" && known_.count(key) == 0)
@@ -117,6 +118,7 @@ void read(const Section& in, mechanics::Attachment& out) {
   in.value("air_depth", "mm", out.air_depth);
   in.value("air_shear_loss", "1", out.air_shear_loss);
   in.value("air_normal_loss", "1", out.air_normal_loss);
+  in.value("free_travel", "mm", out.free_travel);
 }
 
 void read(const Section& in, mechanics::Lids& out) {
@@ -146,6 +148,8 @@ void read(const Section& in, mechanics::Lids& out) {
   in.value("cornea_crease_depth", "mm", out.cornea_crease_depth);
   in.value("globe_radius_share", "1", out.globe_radius_share);
   in.value("globe_depth_share", "1", out.globe_depth_share);
+  in.value("cornea_apex_limit", "1", out.cornea_apex_limit);
+  in.value("cornea_clearance", "mm", out.cornea_clearance);
 }
 
 void read(const Section& in, mechanics::Lips& out) {
@@ -166,6 +170,10 @@ void read(const Section& in, mechanics::Lips& out) {
   in.value("protrusion_lower", "deg", out.protrusion_lower);
   in.value("protrusion_drive", "Pa/m", out.protrusion_drive);
   in.value("protrusion_fade", "mm", out.protrusion_fade);
+  in.value("side_blend", "mm", out.side_blend);
+  in.value("seal_hold", "N/m", out.seal_hold);
+  in.value("seal_reach", "mm", out.seal_reach);
+  in.value("seal_shortest", "1", out.seal_shortest);
 }
 
 void read(const Section& in, mechanics::Vestibule& out) {
@@ -188,6 +196,12 @@ void read(const Section& in, mechanics::Fibres& out) {
   in.value("midline_reach", "mm", out.midline_reach);
   in.value("orbit_reach", "mm", out.orbit_reach);
   in.value("lid_reach", "mm", out.lid_reach);
+}
+
+void read(const Section& in, mechanics::Muscles& out) {
+  in.value("stress", "Pa", out.stress);
+  in.value("modiolus_radius", "mm", out.modiolus_radius);
+  in.value("tissue_depth", "mm", out.tissue_depth);
 }
 
 void read(const Section& in, mechanics::Ligaments& out) {
@@ -234,11 +248,34 @@ void read(const Section& in, mechanics::JawMotion& out) {
   in.value("protrusion_down", "mm", out.protrusion_down);
   in.value("lateral_angle", "deg", out.lateral_angle);
   in.value("lateral_glide", "mm", out.lateral_glide);
+  in.value("travel_time", "ms", out.travel_time);
 }
 
 void read(const Section& in, mechanics::Contact& out) {
   in.value("lip_reach", "mm", out.lip_reach);
   in.value("lid_reach", "mm", out.lid_reach);
+  in.value("globe_stiffness", "N/m", out.globe_stiffness);
+  in.value("bone_stiffness", "N/m", out.bone_stiffness);
+  in.value("facing_stiffness", "N/m", out.facing_stiffness);
+  in.value("thickness", "mm", out.thickness);
+  in.value("lid_thickness", "mm", out.lid_thickness);
+  in.value("friction", "1", out.friction);
+  in.value("sticky_reach", "mm", out.sticky_reach);
+  in.value("sticky_stiffness", "N/m", out.sticky_stiffness);
+  in.value("lip_range_before", "mm", out.lip_range_before);
+  in.value("lip_range_behind", "mm", out.lip_range_behind);
+  in.value("lip_range_beside", "mm", out.lip_range_beside);
+  in.value("lid_range_before", "mm", out.lid_range_before);
+  in.value("lid_range_behind", "mm", out.lid_range_behind);
+  in.value("lid_range_beside", "mm", out.lid_range_beside);
+}
+
+void read(const Section& in, mechanics::Dynamics& out) {
+  in.value("stiffness_damping", "ms", out.stiffness_damping);
+  in.value("mass_damping", "1/s", out.mass_damping);
+  in.value("activation_rise", "ms", out.activation_rise);
+  in.value("activation_decay", "ms", out.activation_decay);
+  in.value("initial_force_slope", "1", out.initial_force_slope);
 }
 
 void read(const Section& in, mechanics::SmasShape& out) {
@@ -317,12 +354,14 @@ void load_mechanics(const DataFiles& files, GenericAnatomy& anatomy) {
   load("lips", m.lips);
   load("vestibule", m.vestibule);
   load("fibres", m.fibres);
+  load("muscles", m.muscles);
   load("ligaments", m.ligaments);
   load("depths", m.depths);
   load("jaw_influence", m.jaw_influence);
   load("region", m.region);
   load("jaw", m.jaw);
   load("contact", m.contact);
+  load("dynamics", m.dynamics);
   load("smas_shape", m.smas_shape);
   for (const std::string& name : sections.keys())
     if (known.count(name) == 0) sections.fail("nothing reads the section \"" + name + "\"; remove it");

@@ -57,7 +57,7 @@ Workspace::Workspace(Places places, Simulation::Pace pace)
 
 Workspace::~Workspace() {
   write_settings(places_.state / "view.json", settings);
-  // What a crash left behind stays as long as nobody has gone on with anything.
+  // The autosave of a crashed session is kept until a head is opened.
   if (!left_behind || !state().head.empty()) autosave_.remove();
 }
 

@@ -251,7 +251,7 @@ bool are_shut(const Skin& skin, const Seam& seam, double width) {
   std::vector<bool> within(mesh.vertices.size());
   for (size_t v = 0; v < within.size(); ++v)
     within[v] = seam.sides[v] != Seam::none;
-  // The way begins at the upper edge's own triangle, whatever else is as near.
+  // The path starts at the triangle of the upper edge, even if others are as near.
   for (const int v : lower)
     within[static_cast<size_t>(v)] =
         within[static_cast<size_t>(v)] && std::find(upper.begin(), upper.end(), v) == upper.end();

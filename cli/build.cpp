@@ -252,12 +252,12 @@ void add_detail_options(const Command& command, BuildRequest& request) {
       .option("--smas-galea", &request.smas_galea,
               "Extent of the SMAS along the galea: 0 the hairline, 1 the vertex")
       .range(0.0, 1.0)
-      .default_text("as the anatomy says, 0.35");
+      .default_text("galea in the anatomy's smas_shape");
   command
       .option("--smas-neck", &request.smas_neck_mm,
               "Extent of the SMAS with the platysma below the angle of chin and neck, in mm of an adult")
       .range(0.0, 80.0)
-      .default_text("as the anatomy says, 30");
+      .default_text("neck in the anatomy's smas_shape");
   command.flag("--smas-nostrils", request.options.smas.reach.nostrils,
                "Whether the SMAS is open under the nose", true);
   command.option("--fibre-spacing", &request.fibre_spacing_mm, "Millimetres between fibres")

@@ -58,7 +58,7 @@ RebuiltRig::RebuiltRig(const std::vector<uint8_t>& bytes, const rig::RigFile& fi
 const rig::Rig* RebuiltRig::at(const fit::Physique& physique, const std::string& detail) {
   std::unique_ptr<rig::Rig>& kept = rigs_[{physique.depth, physique.breadth, detail}];
   if (kept) return kept.get();
-  // What does not come out as it stands comes out in no other way either.
+  // If the rig cannot be rebuilt unchanged, it cannot be rebuilt with changes either.
   const bool has_any =
       std::any_of(rigs_.begin(), rigs_.end(), [](const auto& one) { return one.second != nullptr; });
   if (!fault_.empty() && !has_any) return nullptr;

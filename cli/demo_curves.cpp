@@ -9,6 +9,7 @@
 #include "formats/scene.h"
 #include "formats/write.h"
 #include "geometry/error.h"
+#include "geometry/smoothstep.h"
 
 namespace fascia::cli {
 
@@ -16,11 +17,7 @@ namespace {
 
 /// 0 before `begin`, 1 from `begin + rise` to `end - fall`, 0 after `end`; smooth in between.
 double plateau(double time, double begin, double rise, double end, double fall) {
-  const auto smooth = [](double x) {
-    const double t = std::clamp(x, 0.0, 1.0);
-    return t * t * (3.0 - 2.0 * t);
-  };
-  return smooth((time - begin) / rise) * (1.0 - smooth((time - (end - fall)) / fall));
+  return smoothstep((time - begin) / rise) * (1.0 - smoothstep((time - (end - fall)) / fall));
 }
 
 double blink(double time, double at) {

@@ -218,7 +218,7 @@ void Fitter::take_weights(const Target& target) {
   Eigen::VectorXd weights = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(subject_->vertex_count()));
   for (size_t v = 0; v < subject_->vertex_count(); ++v)
     if (subject_->follows(v)) weights[static_cast<Eigen::Index>(v)] = target.confidence[v];
-  if (!(weights.sum() > 0.0)) throw Error("the target tells nothing of the parts of the face that move");
+  if (!(weights.sum() > 0.0)) throw Error("the target contains no vertices that the muscles move");
   weights /= weights.sum();
   if (vertex_weights_.size() != weights.size() || vertex_weights_ != weights) linear_at_.clear();
   if (target.normals.size() > 0 || slide_normals_.size() > 0) linear_at_.clear();
@@ -247,7 +247,9 @@ Linearised Fitter::linearised(const Target& target, const std::vector<float>& va
   is_sequence_ = false;
   Eigen::VectorXd difference;
   objective(target, values, false, difference);
-  if (!linearise(values)) throw Error("the pose has no derivative: its stiffness has no factor");
+  if (!linearise(values))
+    throw Error(
+        "the pose has no derivative: its stiffness matrix is singular (some tissue is unconstrained)");
   Linearised out{fitted_, hessian_, slope_of(difference, false), 0.0, 0.0};
   for (Eigen::Index v = 0; v < vertex_weights_.size(); ++v) {
     if (!(vertex_weights_[v] > 0.0)) continue;
@@ -272,7 +274,7 @@ FitResult Fitter::solve(const Target& target, bool is_next) {
   Eigen::VectorXd difference;
   double value = objective(target, values, is_next, difference), damping = 0.0;
   for (; result.iterations < options_.iterations; ++result.iterations) {
-    // Columns serve until the face has gone some way from where they were taken; the adjoint stays exact.
+    // The Jacobian is reused until the pose has changed; the adjoint gradient is always exact.
     double away = linear_at_.empty() ? 1.0 : 0.0;
     for (size_t c = 0; c < linear_at_.size(); ++c)
       away = std::max(away, static_cast<double>(std::abs(linear_at_[c] - values[c])));
@@ -311,12 +313,12 @@ FitResult Fitter::solve(const Target& target, bool is_next) {
     }
     if (!fell) {
       subject_->pose(values, true);
-      if (!is_fresh && away > 0.0 && moved >= 1e-4) {  // columns of elsewhere mislead
+      if (!is_fresh && away > 0.0 && moved >= 1e-4) {  // a stale Jacobian is recomputed
         linear_at_.clear();
         damping = 0.0;
         continue;
       }
-      result.converged = true;  // nothing near is better
+      result.converged = true;  // no step decreases the objective
       break;
     }
     if (moved < 2e-3 || gain < 1e-4 * value + 1e-7) {

@@ -6,8 +6,7 @@
 namespace fascia::fit {
 namespace {
 
-/// Fibres that hold on at less of their length than this pull without end, and at more hardly at all (the
-/// lattice's own bounds).
+/// Bounds of the fraction of its length at which a fibre's force vanishes: those of the lattice.
 constexpr float shortest_fibre = 0.05F, longest_fibre = 0.95F;
 /// Skeletal muscle shortens by no more than about half its length (Gordon, Huxley & Julian 1966).
 constexpr float most_shortening = 0.5F;

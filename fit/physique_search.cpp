@@ -76,7 +76,7 @@ void PhysiqueSearch::search(Physique& best, double& factor) {
                         : values[0] < values[2] ? -2.0 * step
                                                 : 2.0 * step;
   factor = std::clamp(std::exp(vertex), options_.least_factor, options_.most_factor);
-  if (std::abs(std::log(factor)) > 0.02) tried(best);  // nearer to 1 it is as built
+  if (std::abs(std::log(factor)) > 0.02) tried(best);  // changes below 2 % are ignored
   best = trials_[best_of(count_)].physique;
 }
 

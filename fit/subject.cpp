@@ -21,7 +21,8 @@ size_t level_of(const rig::Tissue& tissue, const std::string& name) {
 Subject::Subject(rig::RigFile file, const std::string& level)
     : file_(std::move(file)), level_(level_of(file_.rig.tissue, level)) {
   const rig::TissueLevel& tissue = file_.rig.tissue.levels[level_];
-  model_ = std::make_unique<sim::FaceModel>(sim::lattice_of(tissue), sim::jaw_of(file_.rig.skull.jaw));
+  model_ = std::make_unique<sim::FaceModel>(sim::lattice_of(tissue), sim::jaw_of(file_.rig.skull.jaw),
+                                            sim::face_options_of(file_.rig.tissue));
   if (!model_->valid())
     throw Error("FASCIA_tissue, level '" + tissue.name + "': " + model_->fault() + "; build the rig again");
   jaw_muscles_ = sim::jaw_muscles_of(file_.rig);

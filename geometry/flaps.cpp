@@ -32,7 +32,7 @@ class Patches {
       turned ^= turned_[static_cast<size_t>(t)];
     return {t, turned};
   }
-  /// The smaller number becomes the root. If they are connected already, nothing changes.
+  /// The smaller number becomes the root. If both are connected already, the first assignment holds.
   void join(int a, int b, bool against) {
     const auto [p, p_turned] = compressed(a);
     const auto [q, q_turned] = compressed(b);

@@ -4,10 +4,16 @@
 
 namespace fascia {
 
-/// 0 up to `low`, 1 from `high` on (low < high), in between the cubic with zero slope at both ends.
+/// 0 up to t = 0, 1 from t = 1 on, in between the cubic with zero slope at both ends.
+template <class Number>
+Number smoothstep(Number t) {
+  t = std::clamp(t, Number(0), Number(1));
+  return t * t * (Number(3) - Number(2) * t);
+}
+
+/// The same from `low` to `high` (low < high).
 inline double smoothstep(double low, double high, double x) {
-  const double t = std::clamp((x - low) / (high - low), 0.0, 1.0);
-  return t * t * (3.0 - 2.0 * t);
+  return smoothstep((x - low) / (high - low));
 }
 
 }  // namespace fascia

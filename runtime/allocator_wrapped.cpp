@@ -71,7 +71,8 @@ void* hosts_block(std::size_t size, std::size_t alignment) {
   return block;
 }
 
-/// To the host that is set; one that took its allocator back has lost the table that is kept for good.
+/// Blocks are returned to the current allocator; memory kept for the process is leaked if the host removed
+/// it.
 void give_back_to_host(void* block) {
   const Notes notes = notes_of(block);
   const uint64_t nothing = 0;
@@ -80,9 +81,9 @@ void give_back_to_host(void* block) {
     host.release(static_cast<char*>(block) - (std::size_t{1} << (notes.mark & 15)), host.user);
 }
 
-/// Where memory comes from when it has run out: undoing what was begun takes some as well (nlohmann's
-/// destructor fills a list of what it is to delete), and a destructor that cannot have it would end the
-/// host's program. The last block is free again when it is given back, all of it when every block is.
+/// Emergency reserve: unwinding after out-of-memory also allocates (nlohmann's destructor fills a list of
+/// what it is to delete), and a destructor that cannot would end the host's program. Freeing the last block
+/// makes its memory available again; freeing every block makes all of it available.
 class Reserve {
  public:
   static constexpr std::size_t whole = 4 << 20, half = whole / 2;

@@ -8,23 +8,6 @@
 namespace fascia::runtime {
 namespace {
 
-// The file's numbers are the solver's.
-template <class A, class B>
-constexpr bool same(A file, B solver) {
-  return static_cast<int>(file) == static_cast<int>(solver);
-}
-static_assert(same(rig::NodeKind::free, sim::NodeKind::free));
-static_assert(same(rig::NodeKind::fixed, sim::NodeKind::fixed));
-static_assert(same(rig::NodeKind::fixed_cranium, sim::NodeKind::fixed_cranium));
-static_assert(same(rig::NodeKind::fixed_mandible, sim::NodeKind::fixed_mandible));
-static_assert(same(rig::NodeKind::gliding_cranium, sim::NodeKind::gliding_cranium));
-static_assert(same(rig::NodeKind::gliding_mandible, sim::NodeKind::gliding_mandible));
-static_assert(same(rig::NodeKind::mucosa, sim::NodeKind::mucosa));
-static_assert(same(rig::FibreEnd::smas, sim::FibreAnchor::smas));
-static_assert(same(rig::FibreEnd::skin, sim::FibreAnchor::skin));
-static_assert(same(rig::FibreEnd::cranium, sim::FibreAnchor::cranium));
-static_assert(same(rig::FibreEnd::mandible, sim::FibreAnchor::mandible));
-
 Failure unsound(std::size_t level, const std::string& fault) {
   return {FASCIA_ERROR_FORMAT, "FASCIA_tissue/levels/" + std::to_string(level) + ": " + fault};
 }
@@ -207,8 +190,9 @@ const std::vector<std::unique_ptr<MeshShape>>& Asset::shapes(std::size_t level, 
 const sim::FaceModel& Asset::model_under_lock(std::size_t level) const {
   auto& model = models_[level];
   if (!model) {
-    auto made = std::make_unique<sim::FaceModel>(sim::lattice_of(rig().tissue.levels[level]),
-                                                 sim::jaw_of(rig().skull.jaw));
+    auto made =
+        std::make_unique<sim::FaceModel>(sim::lattice_of(rig().tissue.levels[level]),
+                                         sim::jaw_of(rig().skull.jaw), sim::face_options_of(rig().tissue));
     if (!made->valid()) throw unsound(level, made->fault());
     model = std::move(made);
   }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <string>
 
+#include "geometry/smoothstep.h"
+
 namespace fascia::runtime {
 namespace {
 
@@ -155,8 +157,7 @@ void Face::follow() {
 
 float Face::held_share() const {
   if (fade_passed_ >= fade_length_) return 0.0F;
-  const float way = fade_passed_ / fade_length_;
-  return 1.0F - way * way * (3.0F - 2.0F * way);
+  return 1.0F - smoothstep(fade_passed_ / fade_length_);
 }
 
 void Face::move_head(const Eigen::Matrix4f& place, float inertia_scale) {
@@ -224,7 +225,8 @@ bool Face::step(double seconds) {
   fade_passed_ = std::min(fade_length_, fade_passed_ + static_cast<float>(seconds));
   if (std::isfinite(seconds)) {
     seconds = std::min(seconds, solver_->longest_frame());  // what the solver loses is lost for the jaw too
-    jaw_ = sim::approached(jaw_, wanted_jaw(mixer_.effective()), seconds);
+    jaw_ =
+        sim::approached(jaw_, wanted_jaw(mixer_.effective()), seconds, asset_->rig().skull.jaw.travel_time);
   }
   const bool is_sound = solver_->step(seconds, controls()).status == sim::StepStatus::done;
   shown_jaw_ = solver_->shown_jaw(jaw_);

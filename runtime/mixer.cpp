@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/smoothstep.h"
+
 namespace fascia::runtime {
 namespace {
 
@@ -154,8 +156,7 @@ void Mixer::gather(double seconds) {
   turn_eyes();
   if (blend_.passed < blend_.length) {
     blend_.passed = std::min(blend_.length, blend_.passed + static_cast<float>(seconds));
-    const float way = blend_.passed / blend_.length;
-    blend_.share = blend_.from + way * way * (3.0F - 2.0F * way) * (blend_.to - blend_.from);
+    blend_.share = blend_.from + smoothstep(blend_.passed / blend_.length) * (blend_.to - blend_.from);
   }
   if (blend_.share != 1.0F)
     for (std::size_t c = 0; c < effective_.size(); ++c)

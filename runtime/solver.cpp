@@ -24,8 +24,10 @@ std::unique_ptr<sim::Solver> make_solver(const fascia_face_options& options, con
   const sim::FaceModel& model = asset.model(level);
   if (kind == FASCIA_SOLVER_REFERENCE) {
     if (!model.has_factors())
-      throw Failure(FASCIA_ERROR_FORMAT, "FASCIA_tissue/levels/" + std::to_string(level) +
-                                             ": its stiffness has no factor; build the rig again");
+      throw Failure(
+          FASCIA_ERROR_FORMAT,
+          "FASCIA_tissue/levels/" + std::to_string(level) +
+              ": its stiffness matrix is singular (some tissue is unconstrained); build the rig again");
     pose.solver.iterations = 200;
     return std::make_unique<sim::ReferenceSolver>(model, channels, pose);
   }

@@ -41,8 +41,7 @@ AdjointResult ReferenceSolver::static_gradient(const Controls& controls, std::sp
     double curvature = 0.0;
     for (const uint32_t i : unknowns)
       curvature += a.direction[i].dot(a.product[i]);
-    if (!(curvature > 0.0))
-      break;  // a direction that costs nothing: what is found so far is the best there is
+    if (!(curvature > 0.0)) break;  // non-positive curvature: keep the best iterate
     const double length = energy / curvature;
     left = 0.0;
     for (size_t i = 0; i < unknowns.size(); ++i) {

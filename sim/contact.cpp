@@ -5,6 +5,8 @@
 #include <cmath>
 #include <map>
 
+#include "sim/formulas/elements.h"
+
 namespace fascia::sim {
 namespace {
 
@@ -155,16 +157,17 @@ Contacts::Contacts(const Lattice& lattice, const std::vector<Vec3>& rest, const 
     FacingPair pair;
     pair_of(i, rest.data(), search, pair);
     if (pair.is_found()) facing_margins_[i] = std::min(facing_margins_[i], pair.gap(rest.data()));
-    // Where a mesh's closed lips run into each other at rest there is no telling what is before what.
+    // If closed lips intersect at rest, front and back are undefined; the pair is dropped.
     if (facing_margins_[i] < -0.0005) facing_fans_[i] = FacingPair::none;
   }
 }
 
 Contacts::Touch Contacts::globe_touch(size_t c, const Vec3* x) const {
   const Vec3 away = x[globe_nodes_[c]] - globe_centres_[c];
-  const double distance = away.norm();
-  if (distance >= globe_radii_[c] || distance < 1e-12) return {};
-  return {globe_radii_[c] - distance, away / distance};
+  double distance = 0.0;
+  const double depth = formulas::depth_in_ball(globe_radii_[c], three(away), distance);
+  if (depth <= 0.0) return {};
+  return {depth, away / distance};
 }
 
 Contacts::Touch Contacts::bone_touch(size_t c, const RigidTransform& mandible, const Vec3* x) const {
@@ -255,7 +258,7 @@ size_t Contacts::find_grips(const RigidTransform& mandible, const RigidTransform
   for (size_t i = 0; i < pairs.size(); ++i) {
     const FacingPair& pair = pairs[i];
     if (!pair.is_found()) continue;
-    const double depth = pair.margin - pair.gap(x), reach = 0.003 * options_.stickiness;
+    const double depth = pair.margin - pair.gap(x), reach = options_.sticky_reach * options_.stickiness;
     const bool sticks = facing_sides_[i] < 2 && options_.stickiness > 0.0 && -depth < reach;
     if (depth <= 0.0 && !sticks) continue;
     Grip grip;
@@ -271,7 +274,7 @@ size_t Contacts::find_grips(const RigidTransform& mandible, const RigidTransform
     grip.anchor = now;
     if (sticks) {  // pulled back to touching, until the gap is past its reach
       grip.anchor -= std::max(0.0, -depth) * grip.normal;
-      grip.normal_stiffness = 20.0 * options_.stickiness;
+      grip.normal_stiffness = options_.sticky_stiffness * options_.stickiness;
     }
     add(grip, options_.facing_stiffness * std::max(0.0, depth), now - then);
   }

@@ -10,9 +10,16 @@
 
 namespace fascia::sim {
 
+/// Where a point may lie to be in contact with a facing lip or lid, metres.
+struct FacingRange {
+  double before = 0.0;  ///< in front of the surface
+  double behind = 0.0;  ///< behind it; deeper points belong to another surface
+  double beside = 0.0;  ///< beside it
+};
+
 /// Contact parameters. Contacts are penalties: a node closer than its margin is pushed back by the stiffness
 /// times the violation. A margin is never larger than the distance at rest, so that rest remains an
-/// equilibrium.
+/// equilibrium. The defaults are those of a rig without `mechanics` (rig/spec/FASCIA_tissue).
 struct ContactOptions {
   double globe_stiffness = 200.0;   ///< newton per metre a node
   double bone_stiffness = 150.0;    ///< newton per metre a node
@@ -20,8 +27,12 @@ struct ContactOptions {
   double thickness = 0.0004;        ///< metres: margin between skin and bone, lip and lip
   double lid_thickness =
       -0.0003;  ///< between the lids: their margins overlap slightly, so that no slit is left between nodes
-  double friction = 0.3;    ///< Coulomb coefficient of moist mucosa and skin; in time steps only
-  double stickiness = 0.0;  ///< 0..1: adhesion of lips in contact before they part; in time steps only
+  double friction = 0.3;           ///< Coulomb coefficient of moist mucosa and skin; in time steps only
+  double stickiness = 0.0;         ///< 0..1: adhesion of lips in contact before they part; in time steps only
+  double sticky_reach = 0.003;     ///< metres: gap at which lips part at stickiness 1
+  double sticky_stiffness = 20.0;  ///< newton per metre a node, at stickiness 1
+  FacingRange lips = {0.006, 0.0025, 0.0015};
+  FacingRange lids = {0.014, 0.0040, 0.0040};  ///< wider: edges meet head on across the whole fissure
 };
 
 /// A signed distance field of a bone on a grid in the bone's frame.

@@ -98,9 +98,8 @@ void add_spring(const Spring& s, const Vec3* x, Curvature& out) {
   const double length = along.norm(), stretch = length - s.length;
   if ((s.one_sided && stretch <= 0.0) || length < 1e-12) return;
   const double slope = stretch > s.limit ? s.second_stiffness : s.stiffness;
-  const double force =
-      s.stiffness * stretch + (s.second_stiffness - s.stiffness) * std::max(0.0, stretch - s.limit);
-  const double across = std::max(0.0, force / length);
+  const double tension = formulas::spring_tension(s.rest(), stretch, std::max(0.0, stretch - s.limit));
+  const double across = std::max(0.0, tension / length);
   const Vec3 unit = along / length;
   out.pairs.push_back(
       {s.nodes, {1.0, -1.0}, across * Mat3::Identity() + (slope - across) * unit * unit.transpose()});
@@ -150,7 +149,7 @@ void add_hinge(const Hinge& h, const Vec3* x, Curvature& out) {
     out.quads.push_back({n, h.weights, h.stiffness * Mat3::Identity()});
     return;
   }
-  // Gauss-Newton: the miss's own slopes, its curvature left out.
+  // Gauss-Newton: first derivatives of the residual; second-order terms are dropped.
   const Vec3 edge = x[n[1]] - x[n[0]], arm_a = x[n[2]] - x[n[0]], arm_b = x[n[3]] - x[n[0]];
   const HingeNormal normal = hinge_normal(h, x);
   const Mat3 turn = (h.bend / normal.length) * (Mat3::Identity() - normal.unit * normal.unit.transpose());

@@ -34,8 +34,7 @@ double angle_of(const HingeFrame& f) {
 
 double spring_energy(const Spring& s, const Vec3* x, Vec3* gradient) {
   double energy = 0.0, stiffer = 0.0;
-  const formulas::SpringRest<double> rest{s.length, s.stiffness, s.limit, s.second_stiffness - s.stiffness};
-  const Vec3 pull = vec3(formulas::spring(rest, s.one_sided ? 0.0 : formulas::no_slack,
+  const Vec3 pull = vec3(formulas::spring(s.rest(), s.one_sided ? 0.0 : formulas::no_slack,
                                           three(x[s.nodes[1]] - x[s.nodes[0]]), stiffer, energy));
   gradient[s.nodes[0]] -= pull;
   gradient[s.nodes[1]] += pull;

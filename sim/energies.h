@@ -17,6 +17,9 @@ struct Spring {
   std::array<uint32_t, 2> nodes;
   double length, stiffness, limit, second_stiffness;
   bool one_sided;
+  formulas::SpringRest<double> rest() const {
+    return {length, stiffness, limit, second_stiffness - stiffness};
+  }
 };
 
 /// A constant-strain triangle of corotated linear elasticity in plane stress.

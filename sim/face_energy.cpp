@@ -6,7 +6,7 @@
 #include "sim/formulas/activation_force.h"
 #include "sim/formulas/motion.h"
 
-// What FaceModel does again and again: moving the bones and carriers, and summing the energies.
+// The per-iteration part of FaceModel: moving bones and carriers, and summing the energies.
 namespace fascia::sim {
 namespace {
 
@@ -46,7 +46,8 @@ void FaceModel::place(const Controls& controls, Frame& frame) const {
   }
   for (size_t f = 0; f < frame.fibre_pulls.size(); ++f)
     frame.fibre_pulls[f] =
-        formulas::activation_force(std::max(0.0, value_of(controls.activations, lattice_.fibre_channel[f]))) *
+        formulas::activation_force(std::max(0.0, value_of(controls.activations, lattice_.fibre_channel[f])),
+                                   options_.initial_force_slope) *
         lattice_.fibre_strength[f];
   for (size_t p = 0; p < frame.pressures.size(); ++p)
     frame.pressures[p] = value_of(controls.activations, lattice_.pressure_channel[p]) * lattice_.pressure[p];
@@ -131,7 +132,8 @@ void FaceModel::channel_slopes(const Frame& frame, const Controls& controls, con
   };
   for (uint32_t f = 0; f < lattice_.fibre_count(); ++f) {
     const double value = std::max(0.0, value_of(controls.activations, lattice_.fibre_channel[f]));
-    const double pull = formulas::activation_force_slope(value) * lattice_.fibre_strength[f];
+    const double pull =
+        formulas::activation_force_slope(value, options_.initial_force_slope) * lattice_.fibre_strength[f];
     double slope = 0.0;  // the energy is linear in the pull
     pull_fibre(frame, f, pull, x, [&](uint32_t node, const Vec3& force) {
       if (!prescribed(node)) slope += lambda[node].dot(force);

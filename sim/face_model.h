@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/activation.h"
 #include "sim/contact.h"
 #include "sim/energies.h"
 #include "sim/jaw.h"
@@ -17,12 +18,40 @@
 
 namespace fascia::sim {
 
+/// Constants of a face that are the same for its whole tissue. The defaults are those of a rig without
+/// `mechanics` (rig/spec/FASCIA_tissue).
 struct FaceModelOptions {
-  double substep = 1.0 / 120.0;      ///< seconds; frames are divided into these
-  double stiffness_damping = 0.004;  ///< seconds: damping force per stiffness force and unit of rate
-  double mass_damping = 8.0;         ///< per second
+  double substep = 1.0 / 120.0;       ///< seconds; frames are divided into these
+  double stiffness_damping = 0.004;   ///< seconds: damping force per stiffness force and unit of rate
+  double mass_damping = 8.0;          ///< per second
+  double initial_force_slope = 0.45;  ///< see formulas::activation_force
+  ActivationDynamics dynamics;
   ContactOptions contact;
 };
+
+/// The options of a rig's tissue, whose `mechanics` is an optional struct with these names.
+template <class Tissue>
+FaceModelOptions face_options_of(const Tissue& tissue) {
+  FaceModelOptions options;
+  if (!tissue.mechanics) return options;
+  const auto& from = *tissue.mechanics;
+  options.stiffness_damping = from.stiffness_damping;
+  options.mass_damping = from.mass_damping;
+  options.initial_force_slope = from.initial_force_slope;
+  options.dynamics = {from.activation_rise, from.activation_decay};
+  ContactOptions& contact = options.contact;
+  contact.globe_stiffness = from.globe_stiffness;
+  contact.bone_stiffness = from.bone_stiffness;
+  contact.facing_stiffness = from.facing_stiffness;
+  contact.thickness = from.contact_thickness;
+  contact.lid_thickness = from.lid_thickness;
+  contact.friction = from.friction;
+  contact.sticky_reach = from.sticky_reach;
+  contact.sticky_stiffness = from.sticky_stiffness;
+  contact.lips = {from.lip_range.before, from.lip_range.behind, from.lip_range.beside};
+  contact.lids = {from.lid_range.before, from.lid_range.behind, from.lid_range.beside};
+  return options;
+}
 
 /// An external force on one node, newton in the head's frame.
 struct NodeForce {

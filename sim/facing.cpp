@@ -2,52 +2,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/closest_point.h"
 #include "sim/contact.h"
 
-// Which place of the other lip or lid a node faces.
+// The closest point of the facing lip or lid for each node.
 
 namespace fascia::sim {
 namespace {
-
-/// Where a place may lie that sees a facing surface, metres.
-struct Sight {
-  double reach;  ///< before the surface
-  double depth;  ///< behind it: what lies deeper has come from somewhere else
-  double slip;   ///< beside it
-};
-constexpr Sight lips = {0.006, 0.0025, 0.0015};
-constexpr Sight lids = {0.014, 0.0040, 0.0040};  // edges that meet head on across the whole fissure
-
-/// Weights of the point of a triangle that is closest to `p` (Ericson 2005, section 5.1.5).
-Vec3 closest_weights(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 ab = b - a, ac = c - a, ap = p - a;
-  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
-  if (d1 <= 0.0 && d2 <= 0.0) return {1, 0, 0};
-  const Vec3 bp = p - b;
-  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
-  if (d3 >= 0.0 && d4 <= d3) return {0, 1, 0};
-  const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) {
-    const double v = d1 / (d1 - d3);
-    return {1 - v, v, 0};
-  }
-  const Vec3 cp = p - c;
-  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
-  if (d6 >= 0.0 && d5 <= d6) return {0, 0, 1};
-  const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) {
-    const double w = d2 / (d2 - d6);
-    return {1 - w, 0, w};
-  }
-  const double va = d3 * d6 - d5 * d4;
-  if (va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0) {
-    const double w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-    return {0, 1 - w, w};
-  }
-  const double whole = va + vb + vc;
-  if (!(whole > 0.0)) return {1, 0, 0};
-  return {va / whole, vb / whole, vc / whole};
-}
 
 Vec3 area_of(const std::array<uint32_t, 3>& t, const Vec3* x) {
   return (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]);
@@ -117,14 +78,14 @@ void Contacts::pair_of(size_t contact, const Vec3* x, FacingSearch& search, Faci
   pair.margin = facing_margins_[contact];
   const uint8_t side = facing_sides_[contact];
   const Side& other = sides_[side ^ 1U];
-  const Sight& sight = side < 2 ? lips : lids;
+  const FacingRange& range = side < 2 ? options_.lips : options_.lids;
   if (facing_fans_[contact] == FacingPair::none || other.triangles.empty()) return;
   if (search.side != (side ^ 1U)) look_at_side(side ^ 1U, x, search);
   Vec3 facing = fan_area(sides_[side], facing_fans_[contact], x);
   if (facing.squaredNorm() < 1e-30) return;
   facing.normalize();
   const Vec3& p = x[pair.node];
-  double best = sight.reach * sight.reach, within = sight.reach;
+  double best = range.before * range.before, within = range.before;
   const auto look_at = [&](size_t i) {
     const auto& t = other.triangles[i];
     const double reach = within + search.reaches[i];
@@ -145,7 +106,7 @@ void Contacts::pair_of(size_t contact, const Vec3* x, FacingSearch& search, Faci
     if (size < 0.1 || normal.dot(facing) > 0.2 * size) return;  // its back, or a surface that runs along
     normal /= size;
     const double along = normal.dot(away);
-    if (along < -sight.depth || (away - along * normal).squaredNorm() > sight.slip * sight.slip) return;
+    if (along < -range.behind || (away - along * normal).squaredNorm() > range.beside * range.beside) return;
     best = distance;
     within = std::sqrt(best);
     pair.corners = t;
@@ -158,7 +119,7 @@ void Contacts::pair_of(size_t contact, const Vec3* x, FacingSearch& search, Faci
     for (size_t i = first; i < end; ++i)
       look_at(i);
   };
-  // The bundle in whose middle the node is most first: what it finds rules most others out.
+  // Search the cluster with the nearest centre first; its result culls most others.
   size_t nearest = 0;
   for (size_t b = 0; b < search.centres.size(); ++b) {
     search.squared[b] = (search.centres[b] - p).squaredNorm();
@@ -175,7 +136,7 @@ void Contacts::pair_of(size_t contact, const Vec3* x, FacingSearch& search, Faci
 double Contacts::find_facing(const Vec3* x, std::span<FacingPair> pairs, FacingSearch& search, size_t first,
                              size_t every) const {
   double change = 0.0;
-  search.side = sides_.size();  // what was known of a side is of another time
+  search.side = sides_.size();  // invalidate the cached side
   for (size_t i = first; i < facing_nodes_.size() && i < pairs.size(); i += every) {
     const FacingPair before = pairs[i];
     pair_of(i, x, search, pairs[i]);

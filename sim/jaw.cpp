@@ -21,6 +21,8 @@ const char* jaw_fault(const Jaw& jaw) {
         std::max({std::abs(jaw.forward_glide), std::abs(jaw.forward_drop), std::abs(jaw.lateral_glide)}) <=
             longest_glide))
     return "the jaw glides farther than any head is long";
+  if (!(jaw.travel_time >= 0.0 && jaw.travel_time <= 10.0))
+    return "the jaw takes longer than 10 s to open, or less than none";
   return nullptr;
 }
 
@@ -31,8 +33,9 @@ JawPose clamped(const JawPose& pose) {
   return {within(pose.open, 0.0F), within(pose.forward, 0.0F), within(pose.lateral, -1.0F)};
 }
 
-JawPose approached(const JawPose& from, const JawPose& to, double seconds) {
-  const auto most = static_cast<float>(std::max(0.0, seconds) / quickest_travel);
+JawPose approached(const JawPose& from, const JawPose& to, double seconds, double travel_time) {
+  if (travel_time <= 0.0) return to;
+  const auto most = static_cast<float>(std::max(0.0, seconds) / travel_time);
   const auto go = [most](float a, float b) { return a + std::clamp(b - a, -most, most); };
   return {go(from.open, to.open), go(from.forward, to.forward), go(from.lateral, to.lateral)};
 }

@@ -12,16 +12,18 @@ struct RigidTransform {
 };
 
 /// The temporomandibular joint in closed form: a hinge through both condyles that rotates and translates.
-/// Metres and radians; `lateral`, `up`, `forward` are unit axes, lateral to the subject's left.
+/// Metres and radians; `lateral`, `up`, `forward` are unit axes, lateral to the subject's left. By default it
+/// does not move.
 struct Jaw {
   Vec3 origin = Vec3::Zero();
   Vec3 lateral = Vec3::UnitX(), forward = Vec3::UnitZ(), up = Vec3::UnitY();
-  double open_angle = 0.436;                 ///< radians of rotation at open = 1
-  Vec3 open_glide = Vec3(0, -0.006, 0.008);  ///< (lateral, up, forward) at open = 1
-  double forward_glide = 0.008;              ///< at forward = 1
-  double forward_drop = 0.003;               ///< downward at forward = 1
-  double lateral_angle = 0.14;               ///< radians about `up` at lateral = 1
-  double lateral_glide = 0.003;              ///< to the subject's left at lateral = 1
+  double open_angle = 0.0;         ///< radians of rotation at open = 1
+  Vec3 open_glide = Vec3::Zero();  ///< (lateral, up, forward) at open = 1
+  double forward_glide = 0.0;      ///< at forward = 1
+  double forward_drop = 0.0;       ///< downward at forward = 1
+  double lateral_angle = 0.0;      ///< radians about `up` at lateral = 1
+  double lateral_glide = 0.0;      ///< to the subject's left at lateral = 1
+  double travel_time = 0.0;        ///< seconds: shortest, from 0 to 1 of a channel
 };
 
 /// Values of the jaw's channels: `open` and `forward` in 0..1, `lateral` in -1..1 (+ to the left).
@@ -38,11 +40,10 @@ const char* jaw_fault(const Jaw& jaw);
 /// `pose` within the joint's limits; values that are not finite become 0.
 JawPose clamped(const JawPose& pose);
 
-/// The pose reached from `from` toward `to` within some seconds: no component traverses its range in less
-/// than `quickest_travel`, so that a step change of a channel does not tear the tissue. Both within the
-/// joint's limits.
-inline constexpr double quickest_travel = 0.12;
-JawPose approached(const JawPose& from, const JawPose& to, double seconds);
+/// The pose reached from `from` toward `to` within some seconds: no component goes from 0 to 1 in less than
+/// `travel_time` seconds (of the joint), so that a step change of a channel does not tear the tissue. Both
+/// within the joint's limits.
+JawPose approached(const JawPose& from, const JawPose& to, double seconds, double travel_time);
 
 /// The motion of a point by the fraction `share` (0..1) of the pose. At 1 this is the mandible's motion; in
 /// between, tissue between both bones rotates by a fraction of the angle, which preserves lengths, unlike a
@@ -63,6 +64,7 @@ Jaw jaw_of(const Joint& joint) {
   jaw.forward_drop = joint.forward_drop;
   jaw.lateral_angle = joint.lateral_angle;
   jaw.lateral_glide = joint.lateral_glide;
+  jaw.travel_time = joint.travel_time;
   return jaw;
 }
 

@@ -43,7 +43,7 @@ struct Lattice {
 
   std::span<const float> skin_membrane, smas_membrane;  ///< #prisms, Young's modulus times thickness
   std::span<const float> skin_bending, smas_bending;    ///< #columns, flexural rigidity, newton metre
-  float poisson_ratio = 0.35F;                          ///< of both membranes
+  float poisson_ratio = 0.0F;                           ///< of both membranes
 
   std::span<const uint32_t> tether_nodes;
   std::span<const Vec3f> tether_normals;
@@ -95,9 +95,32 @@ struct Lattice {
 /// finite, negative stiffness.
 const char* lattice_fault(const Lattice& lattice);
 
+/// Whether two enumerators of a file and of the solver stand for the same number.
+template <class A, class B>
+constexpr bool is_same_number(A a, B b) {
+  return static_cast<uint8_t>(a) == static_cast<uint8_t>(b);
+}
+
+/// Ties the enumerators of a file, whose bytes `lattice_of` takes as they are, to those of the solver.
+template <class FileKind, class FileAnchor>
+constexpr bool has_same_numbers() {
+  return is_same_number(FileKind::free, NodeKind::free) && is_same_number(FileKind::fixed, NodeKind::fixed) &&
+         is_same_number(FileKind::fixed_cranium, NodeKind::fixed_cranium) &&
+         is_same_number(FileKind::fixed_mandible, NodeKind::fixed_mandible) &&
+         is_same_number(FileKind::gliding_cranium, NodeKind::gliding_cranium) &&
+         is_same_number(FileKind::gliding_mandible, NodeKind::gliding_mandible) &&
+         is_same_number(FileKind::mucosa, NodeKind::mucosa) &&
+         is_same_number(FileAnchor::smas, FibreAnchor::smas) &&
+         is_same_number(FileAnchor::skin, FibreAnchor::skin) &&
+         is_same_number(FileAnchor::cranium, FibreAnchor::cranium) &&
+         is_same_number(FileAnchor::mandible, FibreAnchor::mandible);
+}
+
 /// The view of a rig's tissue level (any struct with its field names).
 template <class Level>
 Lattice lattice_of(const Level& level) {
+  static_assert(has_same_numbers<typename decltype(level.kinds)::value_type,
+                                 typename decltype(level.fibre_anchor)::value_type>());
   const auto bytes = [](const auto& list) {
     return std::span<const uint8_t>(reinterpret_cast<const uint8_t*>(list.data()), list.size());
   };

@@ -163,7 +163,7 @@ StepResult ReferenceSolver::step(double seconds, const Controls& controls, const
     return sound(options);
   };
   const StepResult result = time_.run(seconds, controls, model_->options().substep,
-                                      options.largest_number_of_substeps, options.dynamics, solve);
+                                      options.largest_number_of_substeps, model_->options().dynamics, solve);
   if (result.status == StepStatus::reset) reset(controls);
   return result;
 }

@@ -26,7 +26,6 @@ struct PoseOptions {
 
 /// Options of a time step.
 struct StepOptions {
-  ActivationDynamics dynamics;
   MinimiseOptions solver{16, 3e-7};
   int largest_number_of_substeps = 16;  ///< longer frames are truncated
   double largest_displacement = 0.15;   ///< metres: beyond it the watchdog reports divergence

@@ -58,7 +58,7 @@ Eigen::SparseMatrix<double> assemble_rest_stiffness(const RestTerms& t) {
   for (const Tether& h : t.tethers)
     add_square(&h.node, &one, 1, (h.normal_stiffness + 2.0 * h.tangential_stiffness) / 3.0, t.unknown_of_node,
                triplets);
-  // A breath of stiffness on every node keeps the factor definite where an element has none across itself.
+  // A small diagonal term keeps the factor positive definite.
   for (size_t i = 0; i < t.unknowns; ++i) {
     const auto k = static_cast<int>(i);
     triplets.emplace_back(k, k, 1e-6);

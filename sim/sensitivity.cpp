@@ -87,8 +87,8 @@ void Sensitivity::find_forces(const Controls& controls) {
     const double rest_length = model_->fibre_lengths()[f];
     if (rest_length <= 0.0) continue;
     const double value = std::max(0.0F, controls.activation(lattice.fibre_channel[f]));
-    const double pull =
-        formulas::activation_force_slope(value) * static_cast<double>(lattice.fibre_strength[f]);
+    const double pull = formulas::activation_force_slope(value, model_->options().initial_force_slope) *
+                        static_cast<double>(lattice.fibre_strength[f]);
     const double tension = formulas::fibre_tension(pull, length, rest_length,
                                                    static_cast<double>(lattice.fibre_shortest[f]), energy);
     for (uint32_t p = first; p + 1 < last; ++p) {

@@ -37,15 +37,15 @@ void renew_scenes(const Workspace& work, Screen& screen) {
   screen.reference_of = other;
 }
 
-/// How carefully the window draws by itself: what takes longer than a tenth of a second is left to the thread
-/// for stills.
+/// The quality at which the window itself draws; pictures that take longer than a tenth of a second are left
+/// to the thread for stills.
 FacePicture::Care care_for(const Screen& screen, bool has_changed) {
   using Care = FacePicture::Care;
   if (screen.wants_full) return Care::full;
   const double fluid = 30.0, tolerable = 80.0, software = 8.0;  // milliseconds
   const auto costs = [&](Care care) { return screen.picture.milliseconds(care); };
   const double limit = has_changed ? fluid : tolerable;
-  // Nothing is known of a care not tried yet; after a quick picture that took long it is not tried at all.
+  // The duration of an untried quality is unknown; if a quick picture was slow, higher ones are not tried.
   const bool is_slow = costs(Care::quick) > software;
   if (costs(Care::full) > 0.0 ? costs(Care::full) < limit : !has_changed && !is_slow) return Care::full;
   if (costs(Care::good) > 0.0 && costs(Care::good) < limit) return Care::good;

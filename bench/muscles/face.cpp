@@ -37,6 +37,7 @@ std::unique_ptr<Face> embedded_face(double edge_length) {
   face->inputs.teeth = face->teeth.get();
   face->inputs.landmarks = inputs.landmarks;
   face->inputs.muscles = face->anatomy.muscles;
+  face->inputs.constants = face->anatomy.mechanics.muscles;
   return face;
 }
 

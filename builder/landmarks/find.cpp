@@ -45,11 +45,11 @@ double confidence_at(const GenericFace& face, const Registration& fit, const Vec
 }
 
 constexpr double confidence_of_openings = 0.9;
-/// Metres of the generic head from the surface at which a coarse fit tells nothing of a place.
+/// Residual of the coarse fit, metres on the generic head, beyond which it is no evidence for a position.
 constexpr double far_off = 0.012;
 
-/// Where the generic head comes to stand whatever placement near it the search ended with: a head that is
-/// turned, moved or made of other triangles gives the same landmarks.
+/// Refines `placement` to a fixed point that does not depend on where near it the search ended, so that a
+/// rotated, moved or remeshed head gives the same landmarks.
 Placement settled(const GenericFace& face, const Samples& samples, Placement placement,
                   const std::vector<Anchor>& anchors) {
   RegistrationOptions supple;  // a stiffer fit slides along chin and lips
@@ -182,7 +182,7 @@ std::map<std::string, Vec3> lip_landmarks(const GenericFace& face, const anatomy
   const Mat3& turn = fit.placement.rotation;
   const SkinLinks links(skin.mesh());
   Vec3 on_left = fit(left), on_right = fit(right);
-  // How near to its end an opening is seen goes with the width that is looked for.
+  // How near to its end an opening is detected depends on the width that is searched for.
   double change = 1.0;
   for (int round = 0; round < 4; ++round) {
     const double before = (on_left - on_right).norm();

@@ -179,7 +179,7 @@ class Search {
 };
 
 [[noreturn]] void refuse(const std::string& path, size_t surfaces) {
-  throw Error("'" + path + "': no face was found in it, of any size and turned any way" +
+  throw Error("'" + path + "': no face was found at any scale or orientation" +
               (surfaces > 1 ? ", neither in all of it nor mesh by mesh" : "") +
               ". If there is one, say where: --landmarks FILE with the two outer corners of the eyes, "
               "exocanthion_left and exocanthion_right (left is the subject's)");

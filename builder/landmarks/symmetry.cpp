@@ -39,11 +39,10 @@ std::vector<Vec3> places_of(const std::map<std::string, SkinLandmark>& landmarks
 }
 
 /// A millimetre in proportion to the face.
-double unit_of(const std::map<std::string, SkinLandmark>& landmarks) {
+double unit_of(const std::map<std::string, SkinLandmark>& landmarks, double adult_width) {
   const auto left = landmarks.find("exocanthion_left"), right = landmarks.find("exocanthion_right");
   if (left == landmarks.end() || right == landmarks.end()) return 0.001;
-  constexpr double adult = 0.09;  // metres between the outer canthi (Farkas 1994)
-  return 0.001 * (left->second.position - right->second.position).norm() / adult;
+  return spatial::adult_millimetre(left->second.position, right->second.position, adult_width);
 }
 
 /// The place of the skin on the plane that is nearest to `from`, by going from one to the other in turn, as
@@ -66,7 +65,7 @@ std::optional<Vec3> along_plane(const MirrorPlane& plane, const spatial::Surface
 }  // namespace
 
 std::optional<FaceMirror> face_mirror(const std::map<std::string, SkinLandmark>& landmarks,
-                                      const spatial::SurfaceQuery& skin) {
+                                      const spatial::SurfaceQuery& skin, double adult_width) {
   constexpr double within = 8.0, alike = 2.0, exact = 0.35;  // millimetres of an adult's face
   std::vector<std::pair<Vec3, Vec3>> pairs;
   for_each_pair(landmarks, [&](const SkinLandmark& left, const SkinLandmark& right) {
@@ -74,18 +73,18 @@ std::optional<FaceMirror> face_mirror(const std::map<std::string, SkinLandmark>&
   });
   const auto plane = spatial::plane_between(pairs);
   if (pairs.size() < 3 || !plane) return {};
-  const double unit = unit_of(landmarks);
+  const double unit = unit_of(landmarks, adult_width);
   const std::vector<Vec3> places = places_of(landmarks, skin);
   const spatial::MirrorFit fit = spatial::fit_mirror_plane(skin, places, *plane, within * unit);
   const double most = fit.most_apart();
   if (!fit.covers(places.size()) || most > alike * unit) return {};
-  return FaceMirror{fit.plane, most <= exact * unit};
+  return FaceMirror{fit.plane, most <= exact * unit, unit};
 }
 
 int make_symmetric(const FaceMirror& mirror, const spatial::SurfaceQuery& skin,
                    std::map<std::string, SkinLandmark>& landmarks) {
   const MirrorPlane& plane = mirror.plane;
-  const double unit = unit_of(landmarks), near = 0.6 * unit, far = (mirror.is_exact ? 5.0 : 3.0) * unit;
+  const double unit = mirror.unit, near = 0.6 * unit, far = (mirror.is_exact ? 5.0 : 3.0) * unit;
   const double least = mirror.is_exact ? 0.0 : far;
   int moved = 0;
   // Beside the mesh, as a mask's ears are, a landmark is as far from the skin as it was.

@@ -15,13 +15,14 @@ using spatial::MirrorPlane;
 struct FaceMirror {
   MirrorPlane plane;
   bool is_exact = false;  ///< as in modelled heads; otherwise approximate, as in people
+  double unit = 0.001;    ///< metres: a millimetre of an adult's face on this one
 };
 
 /// The symmetry plane of an approximately symmetric face: registered between the skin around the landmarks
 /// and its mirror image. Nothing if a tenth of the tested points are farther from their image than two
-/// millimetres of an adult's face.
+/// millimetres of an adult's face, whose outer canthi are `adult_width` metres apart.
 std::optional<FaceMirror> face_mirror(const std::map<std::string, SkinLandmark>& landmarks,
-                                      const spatial::SurfaceQuery& skin);
+                                      const spatial::SurfaceQuery& skin, double adult_width);
 
 /// Makes detected landmarks of both sides symmetric, and moves those of the midline onto the plane; on an
 /// approximately symmetric face, only those more than three millimetres of an adult's face apart. Given

@@ -12,7 +12,7 @@ class Depths {
   /// `floors` are the surfaces soft tissue ends on: bones and teeth. Tissue under the SMAS is taken as at
   /// most `deepest` metres thick, as where cheeks and lips are not over bone.
   Depths(const Carrier& smas, const spatial::SurfaceQuery& skin,
-         std::vector<const spatial::SurfaceQuery*> floors, double deepest = 0.014);
+         std::vector<const spatial::SurfaceQuery*> floors, double deepest);
 
   /// The point over or under `place` at `fraction` of the way from skin (0) to bone (1).
   FibrePoint at(const SurfacePoint& place, double fraction) const;

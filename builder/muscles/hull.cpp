@@ -144,9 +144,9 @@ Hull hull_about(Carrier& carrier, const SurfacePoint& middle, const std::vector<
   return hull;
 }
 
-/// Whether an outline that turns by `outline` radians about `points` has an inside: the outer angles of half
-/// a closed surface add up to nothing. Those of small regions are unreliable, and such cannot cover half of
-/// anything.
+/// Whether an outline around `points` with a total turning of `outline` radians has an interior: the exterior
+/// angles of an outline around half of a closed surface sum to zero. For small regions the sum is unreliable,
+/// but these cannot cover half of the surface.
 bool has_inside(Carrier& carrier, const SurfacePoint& middle, const std::vector<SurfacePoint>& points,
                 double outline) {
   constexpr double least_turning = 0.3, small = 0.25;  // radians; of the surface's diagonal

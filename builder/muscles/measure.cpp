@@ -76,7 +76,7 @@ int crossings_of(const SeenFibre& a, const SeenFibre& b) {
   int count = 0;
   for (size_t k = 0; k + 1 < a.points.size(); ++k)
     for (size_t l = 0; l + 1 < b.points.size();) {
-      // What is too far away stays so for as many steps as lie between.
+      // Skip as many segments as the gap guarantees.
       const double apart = (a.points[k].position - b.points[l].position).norm();
       if (apart > reach) {
         l += 1 + static_cast<size_t>((apart - reach) / step_b);

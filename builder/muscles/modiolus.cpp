@@ -4,10 +4,9 @@
 
 namespace fascia::muscles {
 
-std::vector<Modiolus> gather_modioli(const Carrier& smas, std::vector<Course>& courses,
-                                     const Options& options) {
+std::vector<Modiolus> gather_modioli(const Carrier& smas, std::vector<Course>& courses, double radius) {
   std::vector<Modiolus> modioli;
-  if (!(options.modiolus_radius > 0.0)) return modioli;
+  if (!(radius > 0.0)) return modioli;
   for (const anatomy::Side side : {anatomy::Side::left, anatomy::Side::right}) {
     std::vector<Course*> members;
     for (Course& course : courses)
@@ -35,14 +34,14 @@ std::vector<Modiolus> gather_modioli(const Carrier& smas, std::vector<Course>& c
       if (!course->insertion.is_sketched)
         for (const Vec3& p : course->insertion.polygon)
           farthest = std::max(farthest, flat(p).norm());
-    const double share = farthest > options.modiolus_radius ? options.modiolus_radius / farthest : 1.0;
+    const double share = farthest > radius ? radius / farthest : 1.0;
     for (Course* course : members) {
       node.muscles.push_back(course->muscle.name);
       if (course->insertion.is_sketched) continue;
       for (Vec3& p : course->insertion.polygon)
         p -= (1.0 - share) * flat(p);
     }
-    node.radius = options.modiolus_radius;
+    node.radius = radius;
     modioli.push_back(std::move(node));
   }
   return modioli;

@@ -139,7 +139,7 @@ std::map<std::string, double> orifice_reach(const std::vector<anatomy::Muscle>& 
   return reach;
 }
 
-Muscle described(const anatomy::Muscle& from, const Options& options) {
+Muscle described(const anatomy::Muscle& from, double stress, const Options& options) {
   Muscle muscle;
   muscle.name = from.name;
   muscle.whole = from.whole;
@@ -151,7 +151,7 @@ Muscle described(const anatomy::Muscle& from, const Options& options) {
   muscle.bundles = from.bundles;
   muscle.peak_shortening = from.peak_shortening;
   muscle.cross_section = from.cross_section;
-  muscle.strength = from.cross_section * options.stress * edit_of(from.name, options).strength;
+  muscle.strength = from.cross_section * stress * edit_of(from.name, options).strength;
   if (!from.band) {
     muscle.origin_on = from.origin.on;
     muscle.insertion_on = from.insertion.on;
@@ -226,8 +226,8 @@ struct Workshop {
   std::map<std::string, Course> courses;
   Result result;
 
-  /// Runs `make` for the muscle `name`. A muscle that cannot be made is left out with a warning and refuses
-  /// no head; what the user drew of it is an error that he is told of.
+  /// Runs `make` for the muscle `name`. A failing muscle is omitted with a warning; errors in user edits are
+  /// reported.
   template <class Make>
   bool attempt(const std::string& name, Make make) {
     try {
@@ -235,7 +235,7 @@ struct Workshop {
       return true;
     } catch (const Error& fault) {
       if (options.edits.count(name)) throw;
-      result.warnings.push_back(name + " was left out (" + fault.what() +
+      result.warnings.push_back(name + " was omitted (" + fault.what() +
                                 "); place the landmarks near it with --landmarks, or draw it in --edits");
       return false;
     }
@@ -248,7 +248,8 @@ struct Workshop {
       try {
         fibres = lay_on_smas(smas, depths, course, options, result.warnings);
       } catch (const Error& fault) {
-        result.warnings.push_back(course.muscle.name + " runs straight, for it has no way along the SMAS (" +
+        result.warnings.push_back(course.muscle.name +
+                                  " could not follow the SMAS and was built as a straight line (" +
                                   fault.what() + "); check the landmarks near it");
       }
     }
@@ -264,7 +265,7 @@ struct Workshop {
   }
 
   Muscle made(const anatomy::Muscle& from) {
-    Muscle muscle = described(from, options);
+    Muscle muscle = described(from, inputs.constants.stress, options);
     if (from.band) {
       muscle.fibres = lay_around(from);
       if (from.band->medial_on_bone) muscle.origin_on = Attachment::cranium;
@@ -308,7 +309,7 @@ void prepare_courses(Workshop& shop, const std::vector<anatomy::Muscle>& wanted)
       shop.attempt(muscle.name, [&] {
         courses.push_back(make_course(shop.inputs, shop.options, shop.smas.query, muscle));
       });
-  shop.result.modioli = gather_modioli(shop.smas, courses, shop.options);
+  shop.result.modioli = gather_modioli(shop.smas, courses, shop.inputs.constants.modiolus_radius);
   for (Course& course : courses)
     shop.courses.emplace(course.muscle.name, std::move(course));
 }
@@ -325,7 +326,7 @@ Result build(const Inputs& inputs, const Options& options) {
   if (inputs.mandible) bones.push_back(inputs.mandible);
   std::vector<const spatial::SurfaceQuery*> floors = bones;
   if (inputs.teeth) floors.push_back(inputs.teeth);
-  const Depths depths(smas, *inputs.skin, floors);
+  const Depths depths(smas, *inputs.skin, floors, inputs.constants.tissue_depth);
   std::vector<anatomy::Muscle> wanted;
   for (const anatomy::Muscle& muscle : inputs.muscles)
     if (is_wanted(muscle, options)) wanted.push_back(edited(muscle, options));

@@ -65,6 +65,7 @@ struct Inputs {
   /// exocanthion, endocanthion, palpebrale_superius and palpebrale_inferius.
   std::map<std::string, Vec3> landmarks;
   std::span<const anatomy::Muscle> muscles;
+  anatomy::mechanics::Muscles constants;  ///< of the anatomy
 };
 
 /// A region drawn on this head that replaces the generic one.
@@ -93,13 +94,9 @@ struct Options {
   int fewest_points = 5, most_points = 25;
   /// Where in a region a fibre ends: 0 at the side that faces the other region, 1 at the far side.
   double region_share = 0.5;
-  double stress = 3.0e5;              ///< of muscle at full activation, pascal
   double least_prevalence = 0.0;      ///< leave out muscles that fewer people have
   std::vector<std::string> absent;    ///< names or wholes to leave out
   std::map<std::string, Edit> edits;  ///< by name
-  /// Half the width of the node lateral to each corner of the mouth where the muscles meet that insert on the
-  /// modiolus, and the rings of the mouth with them, metres; 0 leaves each at its own place.
-  double modiolus_radius = 0.005;
 };
 
 /// The node lateral to a corner of the mouth in which muscles are interwoven and mechanically coupled.

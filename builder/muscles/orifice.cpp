@@ -8,6 +8,7 @@
 #include "builder/muscles/order.h"
 #include "builder/muscles/parts.h"
 #include "geometry/error.h"
+#include "geometry/smoothstep.h"
 
 namespace fascia::muscles {
 
@@ -245,8 +246,7 @@ namespace {
 /// orifice a fibre keeps at `share` of its way from the medial end.
 double kept_distance(double share) {
   constexpr double at_ligament = 0.35, way = 0.35;
-  const double t = std::clamp(share / way, 0.0, 1.0);
-  return at_ligament + (1.0 - at_ligament) * t * t * (3.0 - 2.0 * t);
+  return at_ligament + (1.0 - at_ligament) * smoothstep(share / way);
 }
 
 /// Where the node of a modiolus lies on the net.
@@ -280,7 +280,7 @@ std::optional<NodeOnNet> node_at(const OrificeNet& net, const std::vector<Modiol
 /// ring away. Rings keep their order: at the corner of the mouth they lie side by side across the node.
 void draw_to_node(const OrificeNet& net, const NodeOnNet& node, double share, double& ray, double& reach) {
   constexpr double way = 0.35, widest_band = 0.022;  // of the ring; metres
-  const double t = std::clamp(1.0 - share / way, 0.0, 1.0), drawn = t * t * (3.0 - 2.0 * t);
+  const double drawn = smoothstep(1.0 - share / way);
   const double at_node =
       node.distance + std::min(1.0, node.radius / widest_band) * (reach - 0.5 * widest_band);
   ray += drawn * std::remainder(node.ray - ray, double(net.rays.size()));

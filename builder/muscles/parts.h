@@ -29,10 +29,9 @@ std::vector<Vec3> sketched_region(const Sketch& sketch, const Place& place, cons
                                   const spatial::SurfaceQuery& smas, const std::string& what);
 
 /// The nodes of both sides: where the insertions of `courses` on the modiolus lie in the middle, those drawn
-/// together to `options.modiolus_radius` about it, but for sketched ones. Sides on which none inserts have
-/// none.
-std::vector<Modiolus> gather_modioli(const Carrier& smas, std::vector<Course>& courses,
-                                     const Options& options);
+/// together to `radius` metres about it, but for sketched ones. Sides on which none inserts have none, and
+/// with a radius of 0 each stays at its own place.
+std::vector<Modiolus> gather_modioli(const Carrier& smas, std::vector<Course>& courses, double radius);
 
 /// Fibres on the SMAS at their depth: straps, fans and sheets by one construction. None when an opening of
 /// the SMAS bars the way of one of them, or they cannot be laid without crossing. A region that had to be

@@ -141,14 +141,14 @@ MeetingLine find_line(const spatial::SurfaceQuery& skin, const Vec3& right, cons
   for (int column = 0; column < columns; ++column)
     for (int row = 0; row < rows; ++row) {
       const double off = (row - half_rows) * step / (search.keep_scale * width);
-      // At the corners nothing but what is expected tells where the line ends.
+      // At the corners only the expected line tells where it ends.
       const double held = search.keep * (1.0 + 8.0 * std::pow(std::abs(along_of(column)), 12.0));
       gain[static_cast<size_t>(row * columns + column)] =
           bend(map, column, row, fine) + 0.5 * bend(map, column, row, 2 * fine) - held * off * off;
     }
   const double column_step = width / (columns - 1.0);
-  // Lines are found as a height over what is expected, so that what is expected costs no slope.
-  // Searched from both corners: where ways are equally good the first one found must not favour a side.
+  // Heights are relative to the expected line, so that following it has no slope cost. The search runs from
+  // both corners, so that ties between equally good lines favour neither side.
   const double jump_cost = search.straight * (step / column_step) * (step / column_step);
   const std::vector<int> way = best_way(gain, jump_cost), back = best_way(mirrored(gain), jump_cost);
   line.heights.resize(columns);

@@ -90,7 +90,7 @@ bool is_arch(const Component& component) {
   return front > back && front - back < 0.6 * size[2];
 }
 
-/// Where a part lies; what it can be follows from it.
+/// The region of the head a part lies in, which restricts what it can be.
 enum class Zone { mouth, lids, about_head, unknown };
 
 struct Placed {
@@ -195,7 +195,8 @@ Part of_jaw(Part upper, const NamedPart& named, const Component& component,
   return component.box.centre()[1] < (*mouth)[1] - 0.003 ? lower : upper;
 }
 
-/// Place says what a part can be; among that the name decides, and where place says nothing, the name alone.
+/// The part's position restricts what it can be; within that its name decides. If the position is
+/// inconclusive, the name alone decides.
 Part part_of(const Component& component, const NamedPart& named,
              const std::map<std::string, Vec3>& landmarks) {
   constexpr double speck = 1.5e-5;  // square metres: a tooth's crown, or a lash card, has more
@@ -231,8 +232,8 @@ struct RowHeights {
   double upper = NAN, lower = NAN;
 };
 
-/// Puts every piece of teeth in its row by where all of them stand; what its name says goes first, and one
-/// row alone is told by the mouth's line. A piece that is both rows in one is neither.
+/// Assigns every piece of teeth to a row: by its name if that tells, else by its height relative to the other
+/// pieces; a single row is assigned by the line of the mouth. A piece that contains both rows gets neither.
 RowHeights tell_rows_apart(const std::vector<Component>& components, const std::vector<NamedPart>& names,
                            const std::map<std::string, Vec3>& landmarks, std::vector<Part>& parts) {
   constexpr double over = 0.006, under = 0.012;  // metres about the mouth's line that one row does not fill

@@ -111,7 +111,7 @@ std::optional<std::vector<bool>> lower_row(const std::vector<Bounds>& as_they_st
   std::vector<bool> lower(count);
   for (size_t i = 0; i < count; ++i) {
     size_t like = i;
-    // A tooth with no fellow over or under it goes with the nearest that has one.
+    // A tooth without an opposite one is assigned to the row of the nearest tooth that has one.
     for (size_t j = 0; above[group[like]] == 0 && j < count; ++j) {
       if (above[group[j]] == 0) continue;
       const auto far = [&](size_t k) { return (pieces[k].centre() - pieces[i].centre()).squaredNorm(); };

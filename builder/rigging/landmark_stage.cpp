@@ -131,7 +131,7 @@ formats::Scene turned_over(formats::Scene scene) {
   return scene;
 }
 
-/// What is said of a face that is hardly like one, and what to do next, by what was done already.
+/// The warning about an unlikely face, with a remedy that has not been tried yet.
 std::string doubt(const formats::Scene& scene, const formats::LandmarkFile& given) {
   const std::string found =
       "'" + scene.path.string() +
@@ -247,7 +247,8 @@ FoundLandmarks find_landmarks(const formats::Scene& file, const formats::Landmar
   const double prepared_at = now();
   place_landmarks(result, located, given, anatomy, with_regions);
   Mat3 turn = Mat3::Identity();
-  if (const auto mirror = landmarks::face_mirror(result.landmarks, *result.head.surface)) {
+  if (const auto mirror = landmarks::face_mirror(result.landmarks, *result.head.surface,
+                                                 anatomy.mechanics.smas_shape.adult_width)) {
     landmarks::make_symmetric(*mirror, *result.head.surface, result.landmarks);
     if (mirror->is_exact) pair_eyes(result.head, mirror->plane);
     result.mirror = mirror->plane;

@@ -120,6 +120,7 @@ std::vector<rig::Muscle> build_muscles(const anatomy::GenericAnatomy& anatomy,
   inputs.warp = &skull.warp;
   inputs.landmarks = landmarks;
   inputs.muscles = anatomy.muscles;
+  inputs.constants = anatomy.mechanics.muscles;
   const muscles::Options options = muscle_options(edits, anatomy, head.input_to_metres);
   const muscles::Result built = muscles::build(inputs, options);
   report_edits(edits, options, report);

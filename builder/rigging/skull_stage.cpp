@@ -157,6 +157,7 @@ rig::Skull rig_skull(const skull::FitResult& skull, const prepare::PreparedHead&
   out.jaw.forward_drop = static_cast<float>(motion.protrusion_down);
   out.jaw.lateral_angle = static_cast<float>(motion.lateral_angle);
   out.jaw.lateral_glide = static_cast<float>(motion.lateral_glide);
+  out.jaw.travel_time = motion.travel_time;
   out.eye_left = rig_eye(head.eye_left);
   out.eye_right = rig_eye(head.eye_right);
   return out;

@@ -159,7 +159,7 @@ rig::Tissue build_tissue(const formats::Scene& scene, const prepare::PreparedHea
     report.tissue.push_back({figures.level, figures.nodes, figures.springs});
     if (figures.turned_prisms > 0)
       report.warnings.push_back("level " + figures.level + " has " + std::to_string(figures.turned_prisms) +
-                                " turned prisms at rest");
+                                " inverted elements at rest; check the mesh at lips and lids");
   }
   const std::vector<MeshPart> parts = take_apart(scene, head);
   run_each(options.for_each, built.tissue.bindings.size(), [&](size_t level) {

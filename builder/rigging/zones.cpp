@@ -1,5 +1,6 @@
 #include "builder/rigging/zones.h"
 #include "geometry/alignment.h"
+#include "geometry/smoothstep.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -60,7 +61,7 @@ double ZoneField::operator()(const Vec3& point) const {
     if (std::abs(from.dot(area.normal)) > area.depth) continue;
     const double outside = distance_outside(area.outline, Vec2(from.dot(area.x), from.dot(area.y)));
     if (outside >= area.falloff) continue;
-    const double t = 1.0 - outside / area.falloff, weight = t * t * (3.0 - 2.0 * t);
+    const double weight = smoothstep(1.0 - outside / area.falloff);
     sum += weight * area.value;
     weights += weight;
     strongest = std::max(strongest, weight);

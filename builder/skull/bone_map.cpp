@@ -4,6 +4,7 @@
 
 #include "builder/skull/skull.h"
 #include "geometry/alignment.h"
+#include "geometry/smoothstep.h"
 
 namespace fascia::skull {
 
@@ -11,8 +12,7 @@ double BoneMap::Patch::strength(const Vec3& generic) const {
   double squared = std::numeric_limits<double>::infinity();
   for (const Vec3& anchor : anchors)
     squared = std::min(squared, (generic - anchor).squaredNorm());
-  const double s = std::clamp((outer - std::sqrt(squared)) / (outer - inner), 0.0, 1.0);
-  return s * s * (3 - 2 * s);
+  return smoothstep((outer - std::sqrt(squared)) / (outer - inner));
 }
 
 BoneMap::BoneMap(splines::Warp warp, std::vector<Patch> patches)

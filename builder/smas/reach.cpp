@@ -153,7 +153,7 @@ void ReachField::add_nostrils(const Landmarks& landmarks) {
   nose.z = nose.x.cross(tip - under).normalized();
   if (nose.z.dot(under - landmark(landmarks, "nasion")) < 0.0) nose.z = -nose.z;
   nose.y = nose.z.cross(nose.x);
-  // As wide as the alae, of which the lowest part goes with it: their free edges are thinner than a triangle.
+  // As wide as the alae, including their lowest part: their free edges are thinner than a triangle.
   const double wings = (landmark(landmarks, "alare_left") - landmark(landmarks, "alare_right")).norm();
   nose.half_width =
       std::max(0.5 * wings, 0.5 * (centres[0] - centres[1]).norm() + shape_.nostril_width * length);

@@ -101,7 +101,7 @@ bool collapse_short_edges(double feature_turn, SurfaceMesh* mesh) {
     if (length > 0.95 * wanted || touched[a] || touched[b]) continue;
     const int around_a = m.valence(a), around_b = m.valence(b);
     const bool border_a = m.on_boundary(a), border_b = m.on_boundary(b);
-    // A vertex of three or four triangles spoils their angles whatever the lengths.
+    // A vertex of three or four triangles has poor angles regardless of the lengths.
     const bool poor = (around_a <= 4 && !border_a) || (around_b <= 4 && !border_b);
     if (!poor && length > 2.0 / 3.0 * wanted) continue;
     if (border_a || (!border_b && around_b < around_a)) std::swap(a, b);
@@ -164,7 +164,7 @@ bool flip_if_better(double feature, int h, SurfaceMesh* mesh) {
 
 void flip_edges(double feature_turn, SurfaceMesh* mesh) {
   const double feature = std::cos(feature_turn);
-  // After the first round only edges of triangles that changed can have become worth a flip.
+  // After the first round only edges of changed triangles can need a flip.
   std::vector<char> changed(mesh->triangles.size(), 1), next;
   bool flipped = true;
   for (int round = 0; flipped && round < 5; ++round) {

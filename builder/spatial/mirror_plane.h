@@ -28,6 +28,12 @@ struct MirrorFit {
   bool covers(size_t tried) const { return apart.size() >= 12 && 5 * apart.size() >= 4 * tried; }
 };
 
+/// A millimetre of an adult's face on a face with these outer canthi; `adult_width` is the distance of the
+/// adult's, metres.
+inline double adult_millimetre(const Vec3& canthus_left, const Vec3& canthus_right, double adult_width) {
+  return 0.001 * (canthus_left - canthus_right).norm() / adult_width;
+}
+
 /// The plane in the middle of pairs of places, each to the left and to the right; none where there are no
 /// pairs or they lie on one another.
 std::optional<MirrorPlane> plane_between(const std::vector<std::pair<Vec3, Vec3>>& pairs);

@@ -26,7 +26,7 @@ double below_smas(double smas_depth) {
   return 1.3 * smas_depth + 2e-4;
 }
 
-/// The tip of the nose, where the septal cartilage stands beneath the skin and goes with the cranium as bone
+/// The tip of the nose, where the septal cartilage lies beneath the skin and moves with the cranium as bone
 /// does (Gray's Anatomy, 41st ed.): a ball about the pronasale.
 class NoseTip {
  public:

@@ -140,8 +140,8 @@ void follow_roots(const PartMesh& part, const SkinQuery& outer, const MovingSkin
   }
 }
 
-/// Hair: a strand goes with the skin at its root, so a moustache with the lip and the scalp's hair with
-/// nothing. What is larger, a cap or a whole beard, clings to the skin it lies on and less the farther off.
+/// Hair: a strand follows the skin at its root, so that a moustache moves with the lip and hair of the scalp
+/// does not move. Larger parts, a cap or a whole beard, follow the skin they lie on, less with distance.
 void follow_scalp(const PartMesh& part, const SkinQuery& whole, const MovingSkin& skin,
                   rig::Binding& binding) {
   constexpr double strand = 0.06, near = 0.008, far = 0.02;  // metres
@@ -165,8 +165,8 @@ void follow_scalp(const PartMesh& part, const SkinQuery& whole, const MovingSkin
   }
 }
 
-/// Gums, tongue and palate in one piece: each place goes with the teeth it is nearer to along the surface, so
-/// that the tongue goes with the lower gum it grows from. Without teeth the mouth's height decides.
+/// Gums, tongue and palate in one piece: each point follows the row of teeth that is nearer along the
+/// surface, so that the tongue follows the lower gum. Without teeth the height of the mouth decides.
 std::vector<float> between_the_jaws(const PartMesh& part, const TissueInputs& inputs) {
   std::vector<int> vertex_map;
   const TriangleMesh welded = weld({part.vertices, part.triangles}, 1e-6, &vertex_map);
@@ -230,7 +230,7 @@ std::vector<rig::Binding> bind_parts(const TissueInputs& inputs, const FaceRegio
     } else if (part.part == "mouth_interior") {
       binding.jaw_weights = between_the_jaws(part, inputs);
     } else if (part.part == "other" || part.part == "eye_surround") {
-      // Tear film, caruncle, stubble: whatever clings to the face goes with it, the rest stays.
+      // Tear film, caruncle, stubble: parts that lie on the face follow it; others do not move.
       for (size_t v = 0; v < part.vertices.size(); ++v) {
         const SkinPlace place = outer.at(part.vertices[v]);
         const double share = std::clamp((0.004 - place.distance) / 0.003, 0.0, 1.0);

@@ -9,6 +9,7 @@
 #include "builder/tissue/mirror.h"
 #include "geometry/error.h"
 #include "sim/energies.h"
+#include "sim/face_model.h"
 #include "sim/lattice.h"
 
 namespace fascia::tissue {
@@ -52,6 +53,29 @@ std::string closed_features(const FaceRegion& region) {
   return closed;
 }
 
+/// What the solver needs to know of the anatomy beside the lattice.
+rig::TissueMechanics solver_constants(const anatomy::Mechanics& anatomy) {
+  const anatomy::mechanics::Contact& contact = anatomy.contact;
+  const anatomy::mechanics::Dynamics& dynamics = anatomy.dynamics;
+  rig::TissueMechanics out;
+  out.stiffness_damping = dynamics.stiffness_damping;
+  out.mass_damping = dynamics.mass_damping;
+  out.activation_rise = dynamics.activation_rise;
+  out.activation_decay = dynamics.activation_decay;
+  out.initial_force_slope = dynamics.initial_force_slope;
+  out.globe_stiffness = contact.globe_stiffness;
+  out.bone_stiffness = contact.bone_stiffness;
+  out.facing_stiffness = contact.facing_stiffness;
+  out.contact_thickness = contact.thickness;
+  out.lid_thickness = contact.lid_thickness;
+  out.friction = contact.friction;
+  out.sticky_reach = contact.sticky_reach;
+  out.sticky_stiffness = contact.sticky_stiffness;
+  out.lip_range = {contact.lip_range_before, contact.lip_range_behind, contact.lip_range_beside};
+  out.lid_range = {contact.lid_range_before, contact.lid_range_behind, contact.lid_range_beside};
+  return out;
+}
+
 /// A level with all that its columns carry. Throws Error when it came out unsound.
 rig::TissueLevel complete_level(const TissueInputs& inputs, const FaceRegion& region, const Beneath& beneath,
                                 const LevelOptions& wanted, const TissueOptions& options,
@@ -79,6 +103,8 @@ TissueResult build(const TissueInputs& given, const TissueOptions& options) {
   if (!(given.mechanics.tissue.density > 0.0))
     throw Error("the tissue needs the constants of the anatomy: fill TissueInputs::mechanics");
   TissueResult result;
+  result.tissue.mechanics = solver_constants(given.mechanics);
+  const sim::FaceModelOptions solver = sim::face_options_of(result.tissue);
   const FaceRegion region = find_region(given, options);
   const std::optional<Symmetry> symmetry = symmetry_of(given, region);
   const TissueInputs inputs = symmetry && symmetry->is_exact ? with_mirrored_sides(given, *symmetry) : given;
@@ -97,7 +123,7 @@ TissueResult build(const TissueInputs& given, const TissueOptions& options) {
     const Columns columns = make_columns(inputs, region, beneath, symmetry, wanted, options);
     rig::TissueLevel level = complete_level(inputs, region, beneath, wanted, options, columns);
     const std::vector<Follow> skin = follow_skin(inputs, region, columns);
-    settle_lids(inputs, region, columns, skin, symmetry && symmetry->is_exact, level);
+    settle_lids(inputs, region, columns, skin, symmetry && symmetry->is_exact, solver, level);
     result.tissue.bindings[at] = bind_parts(inputs, region, columns, skin);
     result.figures[at] = figures_of(level);
     result.tissue.levels[at] = std::move(level);

@@ -79,7 +79,7 @@ struct Surfaces {
         }) {}
 };
 
-/// Adds one point of a fibre that goes with the place nearest to it on `surface`, whose nodes begin at
+/// Adds one point of a fibre that follows the point nearest to it on `surface`, whose nodes begin at
 /// `layer`.
 void add_point(const LayerSurface& surface, uint32_t layer, const rig::Vec3f& point, rig::FibreEnd end,
                double taper, rig::TissueLevel& level) {

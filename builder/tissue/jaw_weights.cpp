@@ -50,8 +50,8 @@ std::vector<double> jaw_weights(const TriangleMesh& mesh, const std::vector<bool
     const double sure = m.certain_ratio.rise(far / std::max(near, 1e-4)) * m.bone_distance.fall(near);
     double weight = share * (undecided + sure),
            goal = to_mandible < to_cranium ? sure / (sure + undecided) : 0.0;
-    // Bones are no guide between the lips, where both rows of teeth are near; which lip it is, is. From the
-    // corner, which goes half the way, the share changes along the whole lip.
+    // Between the lips bone distance is ambiguous, because both rows of teeth are near; lip membership
+    // decides. From the corner, which moves half the way, the weight changes along the whole lip.
     const double lip = share * m.lip_fade.fall(lips.distance[static_cast<size_t>(v)]);
     goal = (weight * goal + lip * m.lip_passage.rise(lips.lower[static_cast<size_t>(v)])) / (weight + lip);
     weight += lip;

@@ -8,8 +8,8 @@
 namespace fascia::tissue {
 namespace {
 
-// A coarse lattice closes less for the same angle: what is added to the closing per metre of column spacing
-// beyond that of the medium level.
+// Correction of the discretisation: a coarse lattice closes less for the same angle, so that this is added to
+// the closing per metre of column spacing beyond that of the medium level.
 constexpr double closing_per_spacing = 60.0, medium_spacing = 0.002;
 // Radians that the upper lid of a head with closed eyes is lifted: a fissure of some 9 mm before a globe of
 // 12 (Farkas 1994).
@@ -38,15 +38,16 @@ double apex_of(const TissueInputs& inputs, bool left, const Fissure& f) {
     if (part.part == (left ? "eye_left" : "eye_right"))
       for (const Vec3& p : part.vertices) {
         const double distance = (p - f.centre).norm();
-        if (distance < 1.15 * f.radius) apex = std::max(apex, distance);
+        if (distance < inputs.mechanics.lids.cornea_apex_limit * f.radius) apex = std::max(apex, distance);
       }
   return apex;
 }
 
 /// Clearance over a ball of `radius` for the skin between columns near an opening: several times the sagitta
-/// of a chord as long as their spacing, because triangles span more than that, plus the give of contact and
-/// smoothing.
-double chord_clearance(const Columns& c, const std::vector<double>& opening, double radius) {
+/// of a chord as long as their spacing, because triangles span more than that, plus `clearance` for the
+/// compliance of contact and smoothing.
+double chord_clearance(const Columns& c, const std::vector<double>& opening, double radius,
+                       double clearance) {
   double area = 0.0;
   int count = 0;
   for (size_t v = 0; v < opening.size(); ++v) {
@@ -54,7 +55,7 @@ double chord_clearance(const Columns& c, const std::vector<double>& opening, dou
     area += c.area[v];
     ++count;
   }
-  return 5e-4 + 5.0 * area / std::max(1, count) / (8.0 * radius);
+  return clearance + 5.0 * area / std::max(1, count) / (8.0 * radius);
 }
 
 /// How much deeper than a column, toward the eye's centre, the skin around it lies, metres: lids rotate about
@@ -95,7 +96,7 @@ void add_eye(const TissueInputs& inputs, const FaceRegion& region, const Columns
   level.globe_radius.push_back(static_cast<float>(f.radius));
   const double bulge = m.cornea_radius_share * f.radius, apex = apex_of(inputs, left, f);
   const bool has_cornea = apex > f.radius + 1e-4;
-  const double clearance = chord_clearance(c, opening, bulge);
+  const double clearance = chord_clearance(c, opening, bulge, m.cornea_clearance);
   const double growth = m.cornea_crease_depth / (cornea_spheres - 1);
   const auto first = static_cast<uint32_t>(level.globe_centre.size());
   for (uint32_t step = 0; has_cornea && step < cornea_spheres; ++step) {
@@ -154,7 +155,7 @@ void add_eye(const TissueInputs& inputs, const FaceRegion& region, const Columns
       turn(is_upper ? draw_upper : draw_lower, f.up, drawn, -drawn);
       // The cornea's bulge takes both lids a little way sideways.
       turn(yaw, f.up, m.follows_yaw * fade, -m.follows_yaw * fade);
-      // One of a node's carriers holds it, however many move it.
+      // The hold stiffness is applied once per node, however many carriers move it.
       if (level.carrier_node.size() > before) level.carrier_stiffness[before] = static_cast<float>(stiffness);
     }
   }

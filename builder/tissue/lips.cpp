@@ -14,7 +14,8 @@ namespace {
 struct LipEdges {
   LipEdges(const TissueInputs& inputs, const FaceRegion& region, const Beneath& beneath)
       : centre(0.5 * (landmark(inputs, "cheilion_left") + landmark(inputs, "cheilion_right"))),
-        half(0.5 * (landmark(inputs, "cheilion_left") - landmark(inputs, "cheilion_right")).norm()) {
+        half(0.5 * (landmark(inputs, "cheilion_left") - landmark(inputs, "cheilion_right")).norm()),
+        blend(inputs.mechanics.lips.side_blend) {
     for (const MarginPlace& p : margin_places(region, Opening::mouth))
       edges[beneath.lower_lip[static_cast<size_t>(p.vertex)] < 0.5].add(place_of(p.position),
                                                                         p.position.tail<2>());
@@ -24,12 +25,12 @@ struct LipEdges {
   double lateral(const Vec3& p) const { return std::abs(p.x() - centre.x()) / half; }
   /// How much of a place belongs to a side.
   double side(const Vec3& p, bool left) const {
-    constexpr double blend = 0.005;  // metres from the midline over which left passes into right
     return smoothstep(-blend, blend, left ? p.x() - centre.x() : centre.x() - p.x());
   }
 
   Vec3 centre;
   double half;                  ///< width of the mouth
+  double blend;                 ///< metres from the midline over which left passes into right
   std::array<Margin, 2> edges;  ///< height and depth, of the lower lip, of the upper
 };
 
@@ -104,10 +105,6 @@ void add_lip_turns(const TissueInputs& inputs, const FaceRegion& region, const B
 
 namespace {
 
-// The seal is contact that draws from afar: a penalty's stiffness (newton per metre of gap, of each side's
-// lips together), not tissue's, and how much of each lip it takes hold of.
-constexpr double seal_hold = 1200.0, seal_reach = 0.004;
-
 /// A column near the lips' edge.
 struct LipColumn {
   size_t column;
@@ -116,10 +113,8 @@ struct LipColumn {
 };
 
 /// Adds a strand between two nodes that pulls them together.
-void add_strand(const Columns& c, size_t from, size_t to, double hold, int channel, uint32_t muscle,
-                rig::TissueLevel& level) {
-  constexpr double shortest =
-      0.3;  // of the length at rest, where the pull ends: the lips' own contact is before
+void add_strand(const Columns& c, size_t from, size_t to, double hold, double shortest, int channel,
+                uint32_t muscle, rig::TissueLevel& level) {
   constexpr double least_length = 0.0005;  // metres: lips that touch at rest
   const std::vector<rig::Vec3f>& rest = level.rest;
   const double length = std::max(least_length, static_cast<double>((rest[to] - rest[from]).norm()));
@@ -142,6 +137,7 @@ void add_strand(const Columns& c, size_t from, size_t to, double hold, int chann
 }  // namespace
 
 void add_lip_seal(const TissueInputs& inputs, const Columns& c, rig::TissueLevel& level) {
+  const anatomy::mechanics::Lips& m = inputs.mechanics.lips;
   const Vec3 left = landmark(inputs, "cheilion_left"), right = landmark(inputs, "cheilion_right");
   const auto& distance = c.opening_distance[static_cast<size_t>(Opening::mouth)];
   constexpr double corner_share = 0.06;  // of the way from lip to lip: at the corner both lips are one
@@ -157,10 +153,10 @@ void add_lip_seal(const TissueInputs& inputs, const Columns& c, rig::TissueLevel
     for (size_t v = 0; v < static_cast<size_t>(c.count()); ++v) {
       const double place = (c.mesh.vertices[v].x() - right.x()) / (left.x() - right.x());
       const bool is_lower = c.lower_lip[v] > 0.5;
-      if (c.rim[v] || !(distance[v] < seal_reach) || std::abs(c.lower_lip[v] - 0.5) < corner_share ||
+      if (c.rim[v] || !(distance[v] < m.seal_reach) || std::abs(c.lower_lip[v] - 0.5) < corner_share ||
           place <= 0.02 || place >= 0.98 || (place > 0.5) != is_left)
         continue;
-      const double nearness = 1.0 - distance[v] / seal_reach;
+      const double nearness = 1.0 - distance[v] / m.seal_reach;
       lips[is_lower].push_back({v, place, c.area[v] * nearness});
       sum += is_lower ? 0.0 : lips[0].back().share;
     }
@@ -171,11 +167,12 @@ void add_lip_seal(const TissueInputs& inputs, const Columns& c, rig::TissueLevel
       const auto apart = [&](const LipColumn& lower) {
         return std::abs(lower.place - upper.place) * (left - right).norm() +
                std::abs(distance[lower.column] - distance[upper.column]) +
-               (c.outer[lower.column] == c.outer[upper.column] ? 0.0 : seal_reach);
+               (c.outer[lower.column] == c.outer[upper.column] ? 0.0 : m.seal_reach);
       };
       const auto lower = std::min_element(lips[1].begin(), lips[1].end(),
                                           [&](const auto& a, const auto& b) { return apart(a) < apart(b); });
-      add_strand(c, upper.column, lower->column, seal_hold * upper.share / sum, channel, index, level);
+      add_strand(c, upper.column, lower->column, m.seal_hold * upper.share / sum, m.seal_shortest, channel,
+                 index, level);
     }
   }
 }

@@ -128,13 +128,6 @@ class ImageFinder {
   std::array<std::vector<int>, 2> triangle_of_;                      // of their triangles, in the mesh
 };
 
-/// A millimetre of an adult's face on this one.
-double unit_of(const TissueInputs& inputs) {
-  constexpr double adult = 0.09;  // metres between the outer canthi (Farkas 1994)
-  return 0.001 * (landmark(inputs, "exocanthion_left") - landmark(inputs, "exocanthion_right")).norm() /
-         adult;
-}
-
 }  // namespace
 
 std::optional<Symmetry> symmetry_of(const TissueInputs& inputs, const FaceRegion& region) {
@@ -145,7 +138,9 @@ std::optional<Symmetry> symmetry_of(const TissueInputs& inputs, const FaceRegion
       pairs.emplace_back(left->second, right);
   const auto plane = spatial::plane_between(pairs);
   if (pairs.size() < 3 || !plane) return {};
-  const double unit = unit_of(inputs);
+  const double unit =
+      spatial::adult_millimetre(landmark(inputs, "exocanthion_left"), landmark(inputs, "exocanthion_right"),
+                                inputs.mechanics.smas_shape.adult_width);
   const Vec3 chin = landmark(inputs, "gnathion"), brow = landmark(inputs, "glabella");
   std::vector<Vec3> places;  // of the face between chin and brow, where neither neck nor hair begin
   for (size_t v = 0; v < region.mesh.vertices.size(); ++v)

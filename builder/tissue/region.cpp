@@ -70,7 +70,7 @@ std::vector<bool> seen_from_outside(const TissueInputs& inputs, const std::vecto
   return seen;
 }
 
-/// Removes specks: a vertex goes with the majority of its neighbours, a few times over.
+/// Removes specks: each vertex takes the value of most of its neighbours, in a few iterations.
 void calm(const TriangleMesh& mesh, std::vector<bool>& flags) {
   const auto neighbours = vertex_neighbours(mesh);
   for (int pass = 0; pass < 2; ++pass) {

@@ -10,11 +10,12 @@ namespace fascia::tissue {
 namespace {
 
 constexpr size_t stations = 33;
+// Tolerances of the search for slits; they depend on meshes, not on anatomy.
 constexpr double first = 0.05;       // of the fissure: nearer to a canthus both lids are one
-constexpr double overlap = 0.03;     // radians that a closed upper lid is to reach over the lower one
-constexpr double touching = -0.012;  // radians: more is a slit, for edges are polygons between stations
+constexpr double overlap = 0.03;     // radians by which a closed upper lid should overlap the lower one
+constexpr double touching = -0.012;  // radians: larger is a slit, because edges are polygons between stations
 constexpr double doubtful = 0.012;   // radians above `touching` within which a slit counts in part
-constexpr double slope = 0.06;       // radians a station: how steeply what is added may change along a lid
+constexpr double slope = 0.06;       // radians per station: largest change of the addition along a lid
 
 /// The edges of the head's own mesh that lie along an eye's fissure, and the lid each is of.
 class LidEdges {
@@ -90,8 +91,8 @@ struct Eye {
         edges(region, fissure, left),
         channel(channel_index(inputs.channels, left ? "lid_upper_left" : "lid_upper_right")) {}
 
-  /// Adds what gapes at each station; false when nothing does. What was added in vain, as where not the lids
-  /// are apart but a fold beside them, is taken back.
+  /// Adds the width of the slit at each station; false when there is none. Additions without effect, as where
+  /// a fold beside the lids was mistaken for a slit, are undone.
   bool widen(const std::vector<Vec3>& places) {
     constexpr double least_use = 0.08;  // radians closed, of one that was added
     constexpr double most_gain = 2.0;
@@ -109,7 +110,7 @@ struct Eye {
         gain[k] = std::clamp(1.0 / std::max(use, 1e-3), 1.0, most_gain);
       }
       if (in_vain[k]) own[k] = 0.0;
-      // In proportion near the bound, lest a last digit of the pose decide over a whole step.
+      // Proportional near the bound, so that rounding of the pose cannot trigger a whole step.
       const double slit = std::clamp((gaps[k] - touching) / doubtful, 0.0, 1.0);
       given[k] = in_vain[k] ? 0.0 : slit * gain[k] * (gaps[k] + overlap);
       before[k] = gaps[k];
@@ -188,7 +189,8 @@ void share_with_image(Eye& left, Eye& right) {
 }  // namespace
 
 void settle_lids(const TissueInputs& inputs, const FaceRegion& region, const Columns& c,
-                 const std::vector<Follow>& skin, bool is_mirrored, rig::TissueLevel& level) {
+                 const std::vector<Follow>& skin, bool is_mirrored, const sim::FaceModelOptions& solver,
+                 rig::TissueLevel& level) {
   constexpr int rounds = 5;
   if (inputs.blink.empty()) return;
   std::vector<Eye> eyes;
@@ -200,7 +202,7 @@ void settle_lids(const TissueInputs& inputs, const FaceRegion& region, const Col
   const auto n = static_cast<size_t>(c.count());
   const std::vector<float> angles = level.carrier_angle;
   for (int round = 0; round < rounds && !eyes.empty(); ++round) {
-    const sim::FaceModel model(sim::lattice_of(level), sim::jaw_of(inputs.jaw));
+    const sim::FaceModel model(sim::lattice_of(level), sim::jaw_of(inputs.jaw), solver);
     if (!model.valid()) return;
     const sim::realtime::Model fast(model);
     if (!fast.valid()) return;

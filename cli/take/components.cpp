@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "cli/take/product.h"
+#include "geometry/smoothstep.h"
 
 namespace fascia::cli {
 
@@ -148,9 +149,9 @@ class FrameFit {
   FrameFit(const MatrixXf& rows, const MatrixXf& mix)
       : shapes_(product(rows, mix)), gram_(shapes_.transpose() * shapes_) {}
 
-  /// Moves `weights` towards the best for a frame whose judged vertices are `off` from them. Far off is what
-  /// counts: a frame hardly off keeps its weights, in between they go part of the way, so that the motion
-  /// stays as smooth as it was. Errors up to `small` are left, from `large` on all is done.
+  /// Moves `weights` toward the optimum for a frame with the residuals `off` at the sampled vertices. Only
+  /// frames with large errors change: up to `small` the weights are kept, from `large` on they become the
+  /// optimum, and in between they are blended, so that the motion remains as smooth as it was.
   void improve(VectorXf off, float small, float large, Eigen::Ref<VectorXf> weights) const {
     constexpr int rounds = 6;
     constexpr float norm = 10.0F, over_relaxation = 1.5F, floor = 1e-3F;
@@ -181,7 +182,7 @@ class FrameFit {
         best = now;
       }
     }
-    weights = start + share * share * (3.0F - 2.0F * share) * (best - start);
+    weights = start + smoothstep(share) * (best - start);
   }
 
  private:

@@ -141,14 +141,15 @@ void MotionSpace::take_block() {
       give_up(share_given_up * options_.tolerance, directions_.size() / 4);
     }
     extend(worst);
-    follow_less_closely();
+    loosen_tolerance();
   }
   measure_block();
   waiting_ = 0;
 }
 
-/// A motion of many directions cannot be written as closely as one of few, and need not be followed so.
-void MotionSpace::follow_less_closely() {
+/// A motion of many dimensions cannot be stored as accurately as one of few: beyond `fine_directions` the
+/// tolerance grows.
+void MotionSpace::loosen_tolerance() {
   if (directions_.size() < options_.fine_directions) return;
   options_.tolerance *= growth;
   const size_t before = directions_.size();

@@ -58,7 +58,7 @@ class MotionSpace {
   void take_block();
   void find_moving();
   void measure_block();
-  void follow_less_closely();
+  void loosen_tolerance();
   void extend(Eigen::Index column);
   void give_up(double budget, size_t least);
   void add_what_is_lost(const Eigen::MatrixXf& directions, double little);

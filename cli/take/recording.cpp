@@ -18,7 +18,7 @@ using Eigen::Index;
 using Eigen::MatrixXf;
 
 // Of what the written motion may be off: the part that directions, components and linear weights may each
-// take. Together they stay below the whole, as they are hardly ever all at their worst in one place.
+// take. Their sum stays below the total, because they rarely have their maxima at the same vertex.
 constexpr double share_of_directions = 0.2, share_of_components = 0.75, share_of_keys = 0.2;
 
 /// Every n-th 3-vector of the shapes' rows, some `most` of them.

@@ -5,30 +5,10 @@
 #include <map>
 
 #include "geometry/error.h"
+#include "sim/closest_point.h"
 
 namespace fascia::fit {
 namespace {
-
-/// Shares of a triangle's corners at its point nearest to `p` (Ericson 2005, "Real-Time Collision Detection",
-/// section 5.1.5).
-std::array<double, 3> nearest_shares(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
-  const double d1 = ab.dot(ap), d2 = ac.dot(ap), d3 = ab.dot(bp), d4 = ac.dot(bp), d5 = ab.dot(cp),
-               d6 = ac.dot(cp);
-  if (d1 <= 0.0 && d2 <= 0.0) return {1.0, 0.0, 0.0};
-  if (d3 >= 0.0 && d4 <= d3) return {0.0, 1.0, 0.0};
-  if (d6 >= 0.0 && d5 <= d6) return {0.0, 0.0, 1.0};
-  const double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
-  const auto along = [](double from, double to) { return from / (from - to); };
-  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) return {1.0 - along(d1, d3), along(d1, d3), 0.0};
-  if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) return {1.0 - along(d2, d6), 0.0, along(d2, d6)};
-  if (va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0) {
-    const double t = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-    return {0.0, 1.0 - t, t};
-  }
-  const double sum = va + vb + vc;
-  return {va / sum, vb / sum, vc / sum};
-}
 
 /// The binding of a primitive, or null.
 const rig::Binding* binding_of(const rig::RigFile& file, size_t level, size_t primitive) {
@@ -59,11 +39,11 @@ std::optional<SkinPlace> nearest_skin(const rig::RigFile& file, size_t level, co
       const Vec3 &a = places[t[0]], &b = places[t[1]], &c = places[t[2]];
       const double reach = best_distance + std::sqrt(std::max((b - a).squaredNorm(), (c - a).squaredNorm()));
       if ((a - point).squaredNorm() > reach * reach) continue;
-      const std::array<double, 3> shares = nearest_shares(point, a, b, c);
+      const Vec3 shares = sim::closest_weights(point, a, b, c);
       const double distance = (shares[0] * a + shares[1] * b + shares[2] * c - point).norm();
       if (!(distance < best_distance)) continue;
       best_distance = distance;
-      best = SkinPlace{static_cast<uint32_t>(p), t, shares};
+      best = SkinPlace{static_cast<uint32_t>(p), t, {shares[0], shares[1], shares[2]}};
     }
   }
   return best;

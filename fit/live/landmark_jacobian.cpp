@@ -14,7 +14,8 @@ LandmarkJacobian::LandmarkJacobian(const sim::FaceModel& model, std::span<const 
       channels_(channels.begin(), channels.end()),
       sensitivity_(model),
       nodes_(model.rest()) {
-  if (!sensitivity_.linearise({}, nodes_)) throw Error("the rig's stiffness has no factor; build it again");
+  if (!sensitivity_.linearise({}, nodes_))
+    throw Error("the rig's stiffness matrix is singular (some tissue is unconstrained); build the rig again");
   making_.resize(static_cast<Eigen::Index>(3 * landmarks_.size()),
                  static_cast<Eigen::Index>(channels_.size()));
   gather(sensitivity_.columns(std::span(channels_).first(channels_.size() - 3)), 0);

@@ -295,7 +295,7 @@ class ScanFitter {
   static FitOptions steps(FitOptions fitting, double cost) {
     fitting.ridge *= cost;
     fitting.sparsity *= cost;
-    fitting.iterations = 3;  // the next round's matches are worth more than this round's last digit
+    fitting.iterations = 3;  // new correspondences matter more than converging this round
     fitting.smoothness = 0.0;
     return fitting;
   }

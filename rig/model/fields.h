@@ -13,6 +13,7 @@
 ///
 /// A visitor offers
 ///   text(name, string)                     number(name, scalar)              hash(name, uint64_t)
+///   bounded(name, double, least, most)     a number that must be given, within bounds
 ///   vector(name, Vec3f)                    matrix(name, Mat4f)               choice(name, enum, names)
 ///   object(name, body)                     array(name, std::vector, body(visitor, element, index))
 ///   list(name, std::vector, length)        finite numbers, in an accessor
@@ -47,6 +48,7 @@ void jaw_fields(V& v, T& jaw) {
   v.number("forwardDrop", jaw.forward_drop);
   v.number("lateralAngle", jaw.lateral_angle);
   v.number("lateralGlide", jaw.lateral_glide);
+  v.number("travelTime", jaw.travel_time);
 }
 
 template <class V, class T>
@@ -205,6 +207,32 @@ void tissue_level_fields(V& v, T& level, const TissueLimits& limits) {
 
   v.index("facingPrisms", level.facing_prism, any, prisms);
   v.index("facingSides", level.facing_side, level.facing_prism.size(), 6);
+}
+
+template <class V, class T>
+void facing_range_fields(V& v, T& range) {
+  v.bounded("before", range.before, 0.0, 0.1);
+  v.bounded("behind", range.behind, 0.0, 0.1);
+  v.bounded("beside", range.beside, 0.0, 0.1);
+}
+
+template <class V, class T>
+void mechanics_fields(V& v, T& mechanics) {
+  v.bounded("stiffnessDamping", mechanics.stiffness_damping, 0.0, 1.0);
+  v.bounded("massDamping", mechanics.mass_damping, 0.0, 1000.0);
+  v.bounded("activationRise", mechanics.activation_rise, 0.0, 10.0);
+  v.bounded("activationDecay", mechanics.activation_decay, 0.0, 10.0);
+  v.bounded("initialForceSlope", mechanics.initial_force_slope, 0.0, 1.0);
+  v.bounded("globeStiffness", mechanics.globe_stiffness, 0.0, 1e5);
+  v.bounded("boneStiffness", mechanics.bone_stiffness, 0.0, 1e5);
+  v.bounded("facingStiffness", mechanics.facing_stiffness, 0.0, 1e5);
+  v.bounded("contactThickness", mechanics.contact_thickness, -0.01, 0.01);
+  v.bounded("lidThickness", mechanics.lid_thickness, -0.01, 0.01);
+  v.bounded("friction", mechanics.friction, 0.0, 10.0);
+  v.bounded("stickyReach", mechanics.sticky_reach, 0.0, 0.1);
+  v.bounded("stickyStiffness", mechanics.sticky_stiffness, 0.0, 1e5);
+  v.object("lipRange", [&](auto& o) { facing_range_fields(o, mechanics.lip_range); });
+  v.object("lidRange", [&](auto& o) { facing_range_fields(o, mechanics.lid_range); });
 }
 
 /// `nodes` is the number of nodes of the level the binding belongs to.

@@ -3,11 +3,13 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 /// The data model of a face rig, independent of any file format. Everything is in metres, right-handed, +Y
-/// up, the face looking along +Z, in the head's bind pose; single precision, as it is stored and simulated.
+/// up, the face looking along +Z, in the head's bind pose; in single precision, as it is stored and
+/// simulated, where nothing else is said.
 namespace fascia::rig {
 
 using Vec2f = Eigen::Vector2f;
@@ -44,6 +46,7 @@ struct JawJoint {
   float forward_drop = 0.003F;    ///< metres downward at jaw_forward = 1
   float lateral_angle = 0.14F;    ///< radians about `up` at jaw_lateral = 1 (to the subject's left)
   float lateral_glide = 0.003F;   ///< metres to the subject's left at jaw_lateral = 1
+  double travel_time = 0.12;      ///< seconds: shortest, from 0 to 1 of a channel
 };
 
 /// An eyeball.
@@ -212,8 +215,37 @@ struct Binding {
   std::vector<uint8_t> eye;          ///< #vertices: 0 none, 1 left, 2 right
 };
 
+/// Where a point may lie to be in contact with a facing lip or lid, metres.
+struct FacingRange {
+  double before = 0.0;  ///< in front of the surface
+  double behind = 0.0;  ///< behind it; deeper points belong to another surface
+  double beside = 0.0;  ///< beside it
+};
+
+/// Constants of damping, activation and contact, the same for the whole tissue and all its levels. In double
+/// precision, so that they are used exactly as in the anatomy's data.
+struct TissueMechanics {
+  double stiffness_damping = 0.0;  ///< seconds: damping force per stiffness force and unit of rate
+  double mass_damping = 0.0;       ///< per second
+
+  double activation_rise = 0.0, activation_decay = 0.0;  ///< seconds: time constants
+  double initial_force_slope = 0.0;  ///< of a muscle's force, relative to maximal, over activation at 0
+
+  double globe_stiffness = 0.0;    ///< newton per metre a node: of contact with an eyeball
+  double bone_stiffness = 0.0;     ///< the same with bone and teeth
+  double facing_stiffness = 0.0;   ///< the same between lips and between lids
+  double contact_thickness = 0.0;  ///< metres: margin between skin and bone, lip and lip
+  double lid_thickness = 0.0;      ///< metres: margin between the lids; negative: they overlap
+  double friction = 0.0;           ///< Coulomb's coefficient
+  double sticky_reach = 0.0;       ///< metres: gap at which sticky lips part
+  double sticky_stiffness = 0.0;   ///< newton per metre a node: of their adhesion
+  FacingRange lip_range, lid_range;
+};
+
 /// All levels of detail with their bindings.
 struct Tissue {
+  /// Absent in rigs of releases that kept these constants in the solver.
+  std::optional<TissueMechanics> mechanics;
   std::vector<TissueLevel> levels;
   std::vector<std::vector<Binding>> bindings;  ///< one list per level
 };

@@ -80,6 +80,8 @@ Tissue tissue_of(const tinygltf::Model& model, const tinygltf::Value& object, co
   Tissue tissue;
   Reader reader(model, object, path);
   reader.matrix("inputToMetres", input_to_metres);
+  if (reader.has("mechanics"))
+    reader.object("mechanics", [&](Reader& inner) { mechanics_fields(inner, tissue.mechanics.emplace()); });
   reader.array("levels", tissue.levels, [&](Reader& inner, TissueLevel& level, std::size_t index) {
     tissue_level_fields(inner, level, limits);
     tissue.bindings.resize(index + 1);
@@ -129,7 +131,7 @@ bool add_default_morphs(const tinygltf::Model& model, const Binding& binding, co
 }
 
 /// An attribute for shading only, of vectors with as many components as Vector; empty where the file has none
-/// or what it has makes no sense.
+/// or it is malformed.
 template <class Vector>
 std::vector<Vector> shading_attribute(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
                                       const char* name, std::size_t count, const std::string& path) {

@@ -13,6 +13,14 @@ void Reader::hash(const char* name, uint64_t& value) {
     fail(name, "not sixteen hexadecimal digits");
 }
 
+void Reader::fail_bounds(const char* name, double value, double least, double most) const {
+  const auto text_of = [](double number) {
+    char digits[32];
+    return std::string(digits, std::to_chars(digits, digits + sizeof digits, number).ptr);
+  };
+  fail(name, text_of(value) + " is not within " + text_of(least) + " .. " + text_of(most));
+}
+
 void Reader::numbers(const char* name, float* to, std::size_t count) {
   if (!has(name)) return;
   const tinygltf::Value& values = object_.Get(name);

@@ -38,6 +38,12 @@ class Reader {
     if (has(name)) value = checked_number<T>(object_.Get(name), name);
   }
 
+  void bounded(const char* name, double& value, double least, double most) {
+    if (!has(name)) fail(name, "missing");
+    number(name, value);
+    if (!(value >= least && value <= most)) fail_bounds(name, value, least, most);
+  }
+
   void hash(const char* name, uint64_t& value);
   void vector(const char* name, Vec3f& value) { numbers(name, value.data(), 3); }
   void matrix(const char* name, Mat4f& value) { numbers(name, value.data(), 16); }
@@ -153,6 +159,8 @@ class Reader {
   }
 
  private:
+  [[noreturn]] void fail_bounds(const char* name, double value, double least, double most) const;
+
   template <class T>
   T checked_number(const tinygltf::Value& value, const char* name) const {
     if (!value.IsNumber()) fail(name, "not a number");

@@ -28,6 +28,11 @@ class Writer {
     if (!std::isfinite(value)) fail(name, "not a finite number");
     json[name] = shortest(value);
   }
+  void number(const char* name, double value) {
+    if (!std::isfinite(value)) fail(name, "not a finite number");
+    json[name] = value;
+  }
+  void bounded(const char* name, double value, double /*least*/, double /*most*/) { number(name, value); }
   void number(const char* name, uint32_t value) { json[name] = value; }
   void number(const char* name, int32_t value) { json[name] = value; }
   void hash(const char* name, uint64_t value);

@@ -75,6 +75,8 @@ Json tissue_object(const Rig& rig, const Tissue& tissue, gltf::Appendix& appendi
   Writer writer(appendix, tissue_extension);
   writer.json["specVersion"] = spec_version;
   writer.matrix("inputToMetres", rig.input_to_metres);
+  if (tissue.mechanics)
+    writer.object("mechanics", [&](Writer& inner) { mechanics_fields(inner, *tissue.mechanics); });
   const TissueLimits limits{rig.muscles.size(), rig.actuation.channels.size()};
   writer.array("levels", tissue.levels, [&](Writer& inner, const TissueLevel& level, std::size_t index) {
     tissue_level_fields(inner, level, limits);

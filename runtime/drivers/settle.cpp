@@ -71,7 +71,7 @@ struct Pause {
   double taken = 0.0;  ///< seconds that are taken off, of this pause and of all before it
 };
 
-/// Pauses of the recorder: nobody waits for them to be simulated. Leaves a second of each.
+/// Shortens pauses of the recorder to one second, so that they are not simulated.
 void shorten_pauses(Curves& curves) {
   const std::vector<double> times = times_of_keys(curves);
   if (times.size() < 3) return;

@@ -194,14 +194,13 @@ struct BulletFace::World {
     const double s = options.length_scale;
     model.place({activations, controls.jaw, controls.acceleration, controls.touches}, frame);
     if (substeps++ % 20 == 0)
-      model.find_facing(state.data(), frame);  // lips hardly move in a hundredth of a second
+      model.find_facing(state.data(), frame);  // contact pairs hardly change within 20 substeps
     joint->setFrames(to_bullet(jaw_transform(model.jaw(), clamped(controls.jaw)), s) * condyles, condyles);
     carry_nodes();
     model.energy_beside_links(frame, state.data(), forces.data());
     add_link_corrections();
     for (const uint32_t i : model.unknowns()) {
-      // No element is worth more than a fifth of a millimetre a substep: what asks for it is inside out or
-      // about to be.
+      // Forces are capped at 0.2 mm displacement per substep: larger ones come from inverted elements.
       const double most = 2e-4 * masses[i] / (options.substep * options.substep), size = forces[i].norm();
       tissue->m_nodes[static_cast<int>(i)].m_f +=
           to_bullet(-(size > most ? most / size : 1.0) * forces[i], s);

@@ -189,6 +189,11 @@ template <class N>
 struct SpringRest {
   N length, stiffness, limit, extra;
 };
+/// Its tension at a `stretch`, of which `beyond` exceeds the limit.
+template <class N>
+FASCIA_INLINE N spring_tension(const SpringRest<N>& s, const N& stretch, const N& beyond) {
+  return s.stiffness * stretch + s.extra * beyond;
+}
 /// Force on the first end; the second has the opposite. `slack` is the stretch below which it is zero: 0 for
 /// a one-sided spring, else no_slack.
 constexpr double no_slack = -1e3;
@@ -198,7 +203,7 @@ FASCIA_INLINE Three<N> spring(const SpringRest<N>& s, const N& slack, const Thre
   const N length = greater(square_root(dot(along, along)), 1e-12),
           stretch = greater(length - s.length, slack);
   const N beyond = positive(stretch - s.limit), none = like(length, 0.0);
-  const N force = s.stiffness * stretch + s.extra * beyond;
+  const N force = spring_tension(s, stretch, beyond);
   stiffer = where_below(none, beyond, s.extra, none);
   energy += 0.5 * (s.stiffness * stretch * stretch + s.extra * beyond * beyond);
   return (force / length) * along;

@@ -9,7 +9,7 @@ namespace {
 
 using Matrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
-constexpr size_t last_piece = 16;  // unknowns that are not worth cutting further
+constexpr size_t last_piece = 16;  // unknowns: smaller pieces are not dissected further
 
 const Vec3 directions[] = {{1, 0, 0}, {0, 1, 0},  {0, 0, 1}, {1, 1, 0}, {1, -1, 0},
                            {1, 0, 1}, {1, 0, -1}, {0, 1, 1}, {0, 1, -1}};
@@ -181,10 +181,10 @@ void PanelFactor::pack(const Dissection::Front& from, const Dense& matrix, std::
 }
 
 bool PanelFactor::compute(const Dissection& dissection, const Matrix& matrix) {
-  // Twice as fast in single precision, whose rounding that of the fronts hides; where it does not let a pivot
-  // stay positive, double precision does.
+  // Single precision is twice as fast, and its rounding is hidden by that of the stored fronts; if a pivot is
+  // not positive in it, double precision is used.
   if (factor<float>(dissection, matrix) || factor<double>(dissection, matrix)) return true;
-  *this = {};  // a part of a factor is none
+  *this = {};  // an incomplete factor is discarded
   return false;
 }
 

@@ -186,8 +186,8 @@ Lanes fibre_energy(const Packed& packed, const Boundary& boundary, const float* 
   Lanes energy = splat(0.0F);
   for (size_t b = 0; b < packed.fibre_batches; ++b) {
     const FibreBatch& f = packed.fibres[b];
-    const Lanes pull =
-        formulas::activation_force(positive(channel_values(boundary.values, f.channel))) * load(f.strength);
+    const Lanes activation = positive(channel_values(boundary.values, f.channel));
+    const Lanes pull = formulas::activation_force(activation, packed.initial_force_slope) * load(f.strength);
     if (!any_below(splat(0.0F), pull)) continue;
     const FibrePointBatch* points = packed.fibre_points + f.first;
     // First the positions and lengths; the direction of each segment is kept.

@@ -5,9 +5,9 @@
 namespace fascia::sim::realtime {
 namespace {
 
-constexpr double least = 0.01;    // of a prism's volume at rest, that is left to it
-constexpr float touched = 1e30F;  // stiffness that marks nodes taken back
-constexpr int passes = 24;        // over neighbours that a node's way back may turn in their stead
+constexpr double least = 0.01;    // smallest volume of a prism, relative to rest
+constexpr float touched = 1e30F;  // stiffness that marks restored nodes
+constexpr int passes = 24;        // restoring a node may invert neighbours, which are restored in turn
 
 float f(double value) {
   return static_cast<float>(value);
@@ -16,12 +16,12 @@ Vec3 place_at(const float* list, size_t at) {
   return {list[at], list[at + 1], list[at + 2]};
 }
 
-/// A prism on its way through one substep.
+/// A prism at the start and the end of a substep.
 struct Way {
   std::array<Vec3, 6> now, back,
-      corners;  ///< where it is, where it was but for its bones' mean motion, and a place between
+      corners;  ///< at the end; at the start, moved with the mean motion of its bones; between the two
 
-  /// Goes back as far as it must for a volume of `room`; false when that is not to be had.
+  /// Moves the corners toward the start until the volume is above `room`; false if that is impossible.
   bool go_back(double room) {
     constexpr double shares[] = {0.5, 0.25, 0.125, 0.0};
     for (const double share : shares) {

@@ -54,7 +54,9 @@ Model::Model(const FaceModel& face, lanes::InstructionSet instructions)
   pack_held();
   pack_fibres();
   if (!make_factors())
-    fault_ = "its stiffness has no factor: an element is far stiffer than the others, or flat at rest";
+    fault_ =
+        "its stiffness matrix is singular: some tissue is unconstrained, or an element is far stiffer than "
+        "the others or flat at rest";
   else if (!find_balance())
     fault_ = "an element pulls at rest with a force that is not finite";
 }

@@ -97,10 +97,11 @@ struct Packed {
   const PressureBatch* pressures;
   size_t triangle_batches, edge_batches, spring_batches, tether_batches, carrier_batches, globe_batches,
       fibre_batches, pressure_batches;
-  size_t places;           ///< 4 * columns
-  const float* rest;       ///< places
-  const float* balance;    ///< positions: gradient at rest; null while it is computed
-  const float* jaw_share;  ///< #positions, one float each: jaw weight
+  size_t places;               ///< 4 * columns
+  double initial_force_slope;  ///< see formulas::activation_force
+  const float* rest;           ///< places
+  const float* balance;        ///< positions: gradient at rest; null while it is computed
+  const float* jaw_share;      ///< #positions, one float each: jaw weight
 };
 
 /// Boundary conditions of a solve: bones, actuators and channel values.

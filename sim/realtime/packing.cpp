@@ -22,7 +22,7 @@ void put(Sixteen* list, size_t lane, const Vec3& value) {
 }
 
 /// Calls `set(batch, lane, element, counts)` for every lane. Each lane takes a strip of neighbouring
-/// elements, so that hardly a place occurs twice in one batch: adding to a place just written stalls on
+/// elements, so that few places occur twice in one batch: adding to a place just written stalls on
 /// store-to-load forwarding. Lanes left over repeat the last element, and are to have no stiffness (`counts`
 /// false).
 template <class Batch, class Set>
@@ -207,8 +207,7 @@ void Model::pack_fibres() {
   };
   for (uint32_t fibre = 0; fibre < lattice.fibre_count(); ++fibre)
     if (points_of(fibre) > 1 && face_->fibre_lengths()[fibre] > 0.0) order.push_back(fibre);
-  // A muscle's together, so that those at rest are passed over; of muscles, those of like length, so that few
-  // lanes idle.
+  // Grouped by muscle, so that inactive ones are skipped, then by length, to fill lanes.
   std::map<uint32_t, uint32_t> longest;
   for (const uint32_t fibre : order)
     longest[lattice.fibre_channel[fibre]] = std::max(longest[lattice.fibre_channel[fibre]], points_of(fibre));
@@ -255,6 +254,7 @@ void Model::pack_fibres() {
   packed_.fibres = fibres_.data();
   packed_.fibre_points = fibre_points_.data();
   packed_.fibre_batches = fibres_.size();
+  packed_.initial_force_slope = face_->options().initial_force_slope;
 }
 
 }  // namespace fascia::sim::realtime

@@ -182,8 +182,9 @@ StepResult Solver::step(double seconds, const Controls& controls, const StepOpti
     solved = substep(now, options, searches_left, *work);
     return sound(carried_.data(), options.largest_displacement);
   };
-  const StepResult result = time_.run(seconds, controls, model_->face().options().substep,
-                                      options.largest_number_of_substeps, options.dynamics, solve);
+  const StepResult result =
+      time_.run(seconds, controls, model_->face().options().substep, options.largest_number_of_substeps,
+                model_->face().options().dynamics, solve);
   if (work) {
     std::copy(work->start.data(), work->start.data() + model_->places(), before_.data());
     model_->give_back(std::move(work));

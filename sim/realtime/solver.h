@@ -10,7 +10,6 @@ namespace fascia::sim::realtime {
 
 /// Options of a time step in real time.
 struct StepOptions {
-  ActivationDynamics dynamics;
   /// Of each substep. A substep with a large residual after two or more is continued with line search, once
   /// per frame; from eight on all iterations use line search.
   int iterations = 2;

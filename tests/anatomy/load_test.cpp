@@ -127,7 +127,7 @@ TEST(LoadAnatomy, ADirectoryMayHoldJustTheCorrectedFiles) {
   EXPECT_EQ(corrected_files(copy.path()), std::vector<std::string>{"mechanics.json"});
 }
 
-TEST(LoadAnatomy, AFileThatNothingReadsIsRefused) {
+TEST(LoadAnatomy, UnknownFilesAreRejected) {
   const Copy copy;
   fs::rename(copy.path() / "mechanics.json", copy.path() / "mechanic.json");
   EXPECT_NE(message(copy.path()).find("mechanic.json"), std::string::npos);
@@ -135,6 +135,17 @@ TEST(LoadAnatomy, AFileThatNothingReadsIsRefused) {
     fs::remove(copy.path() / name);
   fs::remove(copy.path() / "mechanic.json");
   EXPECT_NE(message(copy.path()).find("holds no file"), std::string::npos);
+}
+
+TEST(LoadAnatomy, AFileThatIsOnlyCompiledInMayNotDiffer) {
+  for (const char* name : {"aliases.json", "correctives.json", "landmark_sets.json", "head_parts.obj",
+                           "head_skin.jpg", "head_skin_normal.jpg", "head_skin_roughness.jpg"}) {
+    const Copy copy;
+    EXPECT_EQ(message(copy.path()), "");
+    std::ofstream(copy.path() / name, std::ios::binary | std::ios::app) << "\n";
+    EXPECT_NE(message(copy.path()).find(name), std::string::npos) << name;
+    EXPECT_NE(message(copy.path()).find("compiled into the program"), std::string::npos) << name;
+  }
 }
 
 TEST(LoadAnatomy, UnknownChannelInATable) {

@@ -83,7 +83,7 @@ class Numbers {
     add_section(m.glide), add_section(m.attachment), add_section(m.lids), add_section(m.lips);
     add_section(m.vestibule), add_section(m.fibres), add_section(m.ligaments), add_section(m.depths);
     add_section(m.jaw_influence), add_section(m.region), add_section(m.jaw), add_section(m.contact);
-    add_section(m.smas_shape);
+    add_section(m.dynamics), add_section(m.muscles), add_section(m.smas_shape);
     add(m.attachment_regions, m.holds);
   }
   template <class First, class... Rest>
@@ -209,7 +209,7 @@ INSTANTIATE_TEST_SUITE_P(
               "/gliding_planes"_json_pointer, "/ligaments"_json_pointer},
              load_tissue,
              1000},
-        File{"mechanics.json", {}, load_mechanics, 500},
+        File{"mechanics.json", {}, load_mechanics, 580},
         File{"actuators.json", {"/others"_json_pointer}, load_actuation, 20},
         File{"expressions/arkit.json", {"/expressions"_json_pointer}, load_actuation, 200},
         File{"expressions/facs.json", {"/expressions"_json_pointer}, load_actuation, 50},

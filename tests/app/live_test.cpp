@@ -96,7 +96,7 @@ TEST(LiveLink, ReadsArkitsNamesInTheirOrder) {
   EXPECT_NEAR(values.at("arkit:tongueOut"), 0.51, 1e-6);
 }
 
-TEST(Packets, NothingOfAnyLengthOrContentDoesHarm) {
+TEST(Packets, ArbitraryBytesAreHandled) {
   std::mt19937 random(5);
   const std::vector<Bytes> good = {bundle({vmc("Joy", 0.5F), bundle({vmc("A", 1.0F)})}), live_link("x")};
   for (const Bytes& whole : good)

@@ -53,7 +53,7 @@ TEST(History, ADragIsOneStepAndTheNextDragAnother) {
   EXPECT_EQ(history.state(), 0);
 }
 
-TEST(History, WhatChangesNothingIsNoStepAndNewStepsDropUndoneOnes) {
+TEST(History, EmptyChangesAddNoStepAndNewStepsDropUndoneOnes) {
   History<int> history(7);
   history.commit(7, "nothing");
   EXPECT_FALSE(history.can_undo());
@@ -219,7 +219,7 @@ TEST(Settings, ComeBackAndNonsenseIsTakenAsDefault) {
   std::filesystem::remove_all(folder);
 }
 
-TEST(Autosave, IsThereAfterACrashAndGoneAfterAGoodEnd) {
+TEST(Autosave, RemainsAfterACrashAndIsRemovedAfterARegularExit) {
   const std::filesystem::path file = std::filesystem::temp_directory_path() / "fascia_app_autosave.json";
   std::filesystem::remove(file);
   DocumentState state;

@@ -133,7 +133,7 @@ TEST_F(Window, AScriptThatCannotBeDoneNamesItsLine) {
   EXPECT_NE(log().find("script.txt:2: rig is 'no'"), std::string::npos) << log();
 }
 
-TEST_F(Window, WithoutADisplaySaysWhatToDo) {
+TEST_F(Window, WithoutADisplayReportsARemedy) {
   const std::string command = "cd '" + folder_.string() + "' && env -u DISPLAY -u WAYLAND_DISPLAY '" +
                               test::tool().string() + "' view > log.txt 2>&1";
   const int status = std::system(command.c_str());
@@ -141,7 +141,7 @@ TEST_F(Window, WithoutADisplaySaysWhatToDo) {
   EXPECT_NE(log().find("xvfb-run"), std::string::npos) << log();
 }
 
-TEST_F(Window, RandomInputForAFewSecondsDoesNoHarm) {
+TEST_F(Window, HandlesRandomInput) {
   EXPECT_EQ(view("--monkey 7 --seconds 5"), 0) << log();
 }
 

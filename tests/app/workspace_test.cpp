@@ -153,7 +153,7 @@ TEST_F(WorkspaceTest, ComparesWithRestAndRefusesOtherMeshes) {
   EXPECT_EQ(work_->notices.back().kind, Notice::Kind::error);
 }
 
-TEST_F(WorkspaceTest, SaysWhatIsWrongWithFilesAndKeepsWhatIsOpen) {
+TEST_F(WorkspaceTest, ReportsInvalidFilesAndKeepsTheOpenRig) {
   open();
   std::ofstream(folder_ / "empty.obj");
   std::ofstream(folder_ / "nonsense.csv") << "nothing at all";
@@ -191,7 +191,7 @@ TEST_F(WorkspaceTest, ASessionThatEndedInACrashIsOfferedAgain) {
   EXPECT_EQ(work_->value("jaw_open"), 0.5);
 }
 
-TEST(ToolJob, TellsHowItEndedAndCanBeGivenUp) {
+TEST(ToolJob, ReportsItsResultAndCanBeCancelled) {
   const auto wait = [](ToolJob& job) {
     for (int i = 0; i < 1000 && !job.poll(); ++i)
       std::this_thread::sleep_for(std::chrono::milliseconds(5));

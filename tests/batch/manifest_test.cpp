@@ -115,7 +115,7 @@ class Environment : public ::testing::Test {
   }
 };
 
-TEST_F(Environment, NothingIsAllOfIt) {
+TEST_F(Environment, WithoutVariablesOneTaskHasAllHeads) {
   expect_task(0, 0, 1);
   EXPECT_THROW(task_of_environment(4), Error);
 }
@@ -137,7 +137,7 @@ TEST_F(Environment, KnowsSlurmAwsAndParallel) {
   expect_task(20, 14, 20);
 }
 
-TEST_F(Environment, RefusesWhatMakesNoSense) {
+TEST_F(Environment, RejectsInvalidVariables) {
   setenv("SLURM_ARRAY_TASK_ID", "two", 1);
   EXPECT_THROW(task_of_environment(0), Error);
   setenv("SLURM_ARRAY_TASK_ID", "9", 1);

@@ -147,7 +147,7 @@ TEST_F(Batch, ResultsAreThereWhileTheyAreReplaced) {
   expect_no_leftovers();
 }
 
-TEST_F(Batch, TakesUpWhereItWasAndNoticesChanges) {
+TEST_F(Batch, ResumesAndRebuildsChangedHeads) {
   add("a", "good");
   add("b", "good");
   add("c", "refused");
@@ -170,7 +170,7 @@ TEST_F(Batch, TakesUpWhereItWasAndNoticesChanges) {
   EXPECT_EQ(run().fates, (std::vector<Fate>{Fate::done, Fate::done, Fate::failed}));
 }
 
-TEST_F(Batch, OneBadHeadHarmsNoOther) {
+TEST_F(Batch, AFailingHeadDoesNotAffectOthers) {
   options.limits = {2.0, 1024};
   for (const char* kind : {"poisoned", "killed", "once", "hungry", "thirsty", "hanging", "stubborn",
                            "refused", "broken", "empty"})
@@ -228,7 +228,7 @@ TEST_F(Batch, TwoAtOnceShareTheWork) {
   expect_no_leftovers();
 }
 
-TEST_F(Batch, StopsSoonAndLeavesNothingHalf) {
+TEST_F(Batch, StopsSoonWithoutPartialFiles) {
   for (int i = 0; i < 40; ++i)
     add("head" + std::to_string(i), "slow");
   std::thread stopper([&] {
@@ -250,7 +250,7 @@ TEST_F(Batch, StopsSoonAndLeavesNothingHalf) {
     expect_whole(head.id);
 }
 
-TEST_F(Batch, AKilledBatchIsTakenUp) {
+TEST_F(Batch, AKilledBatchIsResumed) {
   for (int i = 0; i < 12; ++i)
     add("head" + std::to_string(i), "slow");
   const pid_t child = fork();

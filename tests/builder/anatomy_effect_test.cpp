@@ -38,6 +38,9 @@ class Digest {
   void number(std::string_view, const T& number) {
     bytes(&number, sizeof number);
   }
+  void bounded(std::string_view name, double number_, double /*least*/, double /*most*/) {
+    number(name, number_);
+  }
   template <class T>
   void hash(std::string_view name, const T& value) {
     number(name, value);
@@ -171,6 +174,7 @@ class Stages {
     }
     return digest.value();
   }
+  uint64_t muscles_alone(const GenericAnatomy& changed) const { return muscles(changed); }
   uint64_t actuation(const GenericAnatomy& changed) const {
     Digest digest;
     const rig::Actuation built = rigging::rig_actuation(changed, rig_.muscles);
@@ -198,6 +202,7 @@ class Stages {
     const tissue::TissueResult built = tissue::build(inputs, options);
     for (const rig::TissueLevel& level : built.tissue.levels)
       rig::tissue_level_fields(digest, level, rig::TissueLimits{});
+    rig::mechanics_fields(digest, built.tissue.mechanics.value());
     return digest.value();
   }
   smas::Result smas_of(const GenericAnatomy& anatomy) const {
@@ -230,6 +235,8 @@ using Stage = uint64_t (Stages::*)(const GenericAnatomy&) const;
 Stage stage_of(const std::string& section, const std::string& name) {
   if (section == "jaw") return &Stages::jaw;
   if (section == "smas_shape") return &Stages::smas;
+  if (section == "muscles") return &Stages::muscles_alone;
+  if (name == "free_travel") return &Stages::zones;
   if (section == "contact" || section == "ligaments") return &Stages::touching;
   return name.starts_with("globe_") ? &Stages::eyeless : &Stages::tissue;
 }
@@ -263,7 +270,8 @@ std::vector<GenericAnatomy> changes_of(const Json& document, const Pointer& at, 
 TEST(AnatomyEffect, EveryConstantOfTheMechanicsChangesTheRig) {
   const Json document = Json::parse(anatomy::embedded_file("mechanics.json"));
   const auto run = [](Stage stage, const GenericAnatomy& anatomy) { return (stages().*stage)(anatomy); };
-  const Stage all[] = {&Stages::jaw, &Stages::smas, &Stages::tissue, &Stages::touching, &Stages::eyeless};
+  const Stage all[] = {&Stages::jaw,    &Stages::smas,     &Stages::zones,  &Stages::muscles_alone,
+                       &Stages::tissue, &Stages::touching, &Stages::eyeless};
   std::vector<uint64_t> before;
   for (const Stage stage : all)
     before.push_back(run(stage, stages().anatomy()));
@@ -271,7 +279,8 @@ TEST(AnatomyEffect, EveryConstantOfTheMechanicsChangesTheRig) {
   for (const auto& [section, entries] : document["sections"].items())
     for (const auto& [name, entry] : entries.items()) {
       if (name == "means") continue;
-      const auto kind = static_cast<size_t>(std::find(all, all + 5, stage_of(section, name)) - all);
+      const auto kind =
+          static_cast<size_t>(std::find(std::begin(all), std::end(all), stage_of(section, name)) - all);
       const Pointer at = Pointer("/sections") / section / name / "value";
       std::vector<Pointer> numbers = {at};
       if (entry["value"].is_array()) numbers = {at / 0, at / 1};

@@ -127,7 +127,7 @@ TEST(AnyHead, WithTrianglesOfNoArea) {
   }
 }
 
-TEST(AnyHead, OpensItsMouthAlikeOnBothSides) {
+TEST(AnyHead, OpensItsMouthSymmetrically) {
   Variant head("even", no_change);
   for (const double open : {0.4, 0.6, 0.7, 0.8, 1.0}) {
     head.face().pose({{"jaw_open", open}});
@@ -164,7 +164,7 @@ TEST(AnyHead, AsAMaskWithHolesForMouthAndEyes) {
   EXPECT_LT(face.moved("pogonion").y(), -8.0) << "a mask's edge at the chin goes with the jaw";
 }
 
-TEST(AnyHead, TurnedAndMovedItPosesAlike) {
+TEST(AnyHead, PosesDoNotDependOnRotationAndPosition) {
   const Mat3 turn =
       (Eigen::AngleAxisd(0.15, Vec3::UnitY()) * Eigen::AngleAxisd(-0.12, Vec3::UnitX())).matrix();
   Variant plain("straight", no_change),
@@ -182,7 +182,7 @@ TEST(AnyHead, TurnedAndMovedItPosesAlike) {
   }
 }
 
-TEST(AnyHead, FarFromTheOriginItPosesAlike) {
+TEST(AnyHead, PosesDoNotDependOnTheDistanceFromTheOrigin) {
   const Vec3 standing(0.25, 1.5, -0.125);  // a character that stands on its origin
   Variant plain("origin", no_change),
       high("standing", no_change, [&](const Vec3&p) { return Vec3(p + standing); });

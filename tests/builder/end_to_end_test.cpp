@@ -35,7 +35,7 @@ class EmbeddedHead : public ::testing::Test {
 fs::path* EmbeddedHead::folder_ = nullptr;
 PosedFace* EmbeddedHead::face_ = nullptr;
 
-TEST_F(EmbeddedHead, MovesAsAnatomySays) {
+TEST_F(EmbeddedHead, MovesAnatomically) {
   expect_face_moves_as_anatomy_says(*face_);
 }
 

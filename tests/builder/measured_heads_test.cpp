@@ -58,7 +58,7 @@ void expect_published_lengths(const rigging::BuildReport& report, const fs::path
     EXPECT_NEAR(ratios[k] / size, 1.0, 0.25) << pairs[k].ours;
 }
 
-TEST(MeasuredHeads, IctMeanHeadMovesAsAnatomySays) {
+TEST(MeasuredHeads, IctMeanHeadMovesAnatomically) {
   const fs::path head = data / "ict/neutral.glb";
   if (!fs::exists(head)) GTEST_SKIP() << "the measured heads are not at " << data;
   PosedFace face(head, fixtures / "ict_neutral_landmarks.json", "test_ict");

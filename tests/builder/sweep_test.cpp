@@ -80,7 +80,7 @@ void show(SweptFace& face, const std::vector<std::string>& names) {
   face.pose();
 }
 
-TEST(Lids, AFullBlinkShutsTheEyesAndGoesNoFarther) {
+TEST(Lids, AFullBlinkClosesTheEyesWithoutOvershoot) {
   for (size_t level = 0; level < 2; ++level) {
     SweptFace face(embedded_head(), level);
     const rig::Skull& skull = face.asset().rig().skull;

@@ -105,7 +105,7 @@ sim::JawPose SweptFace::wanted_jaw() const {
 }
 
 void SweptFace::pass(double seconds) {
-  jaw_ = sim::approached(jaw_, wanted_jaw(), seconds);
+  jaw_ = sim::approached(jaw_, wanted_jaw(), seconds, asset_->rig().skull.jaw.travel_time);
 }
 
 sim::Controls SweptFace::drive() const {

@@ -27,7 +27,7 @@ LidState lids_of(const Head& head, const Head& posed) {
   return look.look(skin.vertices(shape), shape);
 }
 
-TEST(Lids, GapIsTheArcThatOneSeesBetweenThem) {
+TEST(Lids, GapIsTheVisibleArcBetweenThem) {
   const Head open = eye_with_lids(0.5, -0.3);
   const LidState state = lids_of(open, open);
   ASSERT_EQ(state.gaps.size(), 9U);
@@ -71,13 +71,13 @@ Head scanned(Head head) {
   return head;
 }
 
-TEST(Lids, AnEyeThatIsOneSurfaceWithThemIsWhatOneSeesBetweenThem) {
+TEST(Lids, AnEyeMergedWithTheLidsIsTheVisiblePartBetweenThem) {
   const Head open = scanned(eye_with_lids(0.5, -0.3));
   EXPECT_NEAR(lids_of(open, open).widest, 0.8 * 0.012, 1.5e-4);
   EXPECT_EQ(lids_of(open, scanned(eye_with_lids(0.0, 0.0))).widest, 0.0);
 }
 
-TEST(Lids, AFlatEyeThatIsOneSurfaceWithThemIsCoveredByWhatComesBeforeIt) {
+TEST(Lids, AFlatEyeMergedWithTheLidsCountsAsCoveredByThem) {
   constexpr double deep = 0.5, before = 0.55;  // of where eyes lie
   // What of the lids has come between the edges at rest lies deep too.
   const auto flat = [&](Head head) {
@@ -132,7 +132,7 @@ TEST(Mouth, OpensAsWideAsItsLipsPart) {
   EXPECT_NEAR(open.corner_right, 0.714, 0.04);
 }
 
-TEST(Mouth, ALowerLipThatGoesUpIsNoOpening) {
+TEST(Mouth, ALowerLipThatMovesUpIsNoOpening) {
   const Head closed = flat_mouth();
   const Skin skin(closed, Vec3::Zero(), 0.2);
   const Seam seam = mouth_seam(skin, closed.landmarks, 1.0);

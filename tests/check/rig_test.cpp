@@ -112,7 +112,7 @@ TEST(Check, AQuickRunPlaysItsPosesAlone) {
   EXPECT_EQ(played, 3);
 }
 
-TEST(Check, LidsThatFollowNothingStayOpen) {
+TEST(Check, DetectsLidsThatDoNotClose) {
   rig::Rig broken = built().result.rig;
   const Vec3 eye = broken.skull.eye_left.centre.cast<double>();
   for (auto& bindings : broken.tissue.bindings)
@@ -220,7 +220,7 @@ TEST(Check, AHollowPlateTurnsAboutTheGlobeBehindIt) {
   expect_fails(rows_about(before), "look_left.centre_left");
 }
 
-TEST(Check, AMouthThatStaysShutIsFound) {
+TEST(Check, DetectsAMouthThatDoesNotOpen) {
   RigHead rig(built().bytes(built().result.rig), "embedded");
   const Player sound = rig.player();
   const auto rows = rows_of(rig, [&](Weights weights) {

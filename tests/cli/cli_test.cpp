@@ -105,7 +105,7 @@ TEST_F(Tool, BuildWritesOnePageThatNeedsNothingElse) {
   EXPECT_FALSE(std::filesystem::exists(at("none/report.html")));
 }
 
-TEST_F(Tool, WrongUsageIsTwo) {
+TEST_F(Tool, UsageErrorExitsWith2) {
   EXPECT_EQ(run("").code, 2);
   EXPECT_EQ(run("sculpt").code, 2);
   EXPECT_EQ(run("build").code, 2);
@@ -153,7 +153,7 @@ TEST_F(Tool, BakedFilesBearTheNameOfTheirFormat) {
   EXPECT_FALSE(fs::exists(at("x.pc2")));
 }
 
-TEST_F(Tool, FaultyInputIsOneAndNamed) {
+TEST_F(Tool, InputErrorExitsWith1AndNamesTheFile) {
   std::ofstream(at("empty.glb"));
   std::ofstream(at("text.glb")) << "hello";
   const std::string rig = text_of(at("rig.glb"));
@@ -203,14 +203,14 @@ TEST_F(Tool, FailureWithJsonIsJsonToo) {
   EXPECT_NE(json::parse(outcome.out)["error"].get<std::string>().find("missing.glb"), std::string::npos);
 }
 
-TEST_F(Tool, InfoKnowsChannelsAndSoundness) {
+TEST_F(Tool, InfoListsChannelsAndValidates) {
   const json info = json::parse(run("info " + at("rig.glb") + " --channels --validate --json").out);
   EXPECT_EQ(info["valid"], true);
   EXPECT_EQ(info["sets"]["arkit"], 52);
   EXPECT_EQ(info["channel_list"].size(), info["channels"].get<size_t>());
 }
 
-TEST_F(Tool, InfoCallsNothingSoundThatAHostWouldRefuse) {
+TEST_F(Tool, InfoReportsRigsThatTheRuntimeRefuses) {
   // The knots at which a member's response is given have to rise: the first is put behind the others.
   std::string file = text_of(at("rig.glb"));
   uint32_t json_length = 0;
@@ -268,7 +268,16 @@ TEST_F(Tool, PosedGlbKeepsMeshesAndCounts) {
   }
 }
 
-TEST_F(Tool, ValuesBeyondTheirRangeAreSaidToBeCutOff) {
+#ifdef FASCIA_HAS_BULLET
+TEST_F(Tool, LoadsBulletsModuleForItsSolver) {
+  std::ofstream(at("still.csv")) << "time,jaw_open\n0,0\n0.2,0.1\n";
+  const Outcome played = run("play " + at("rig.glb") + " --curves " + at("still.csv") +
+                             " --solver bullet --fps 30 -o " + at("bullet.glb"));
+  EXPECT_EQ(played.code, 0) << played.err;
+}
+#endif
+
+TEST_F(Tool, WarnsOfClampedValues) {
   const Outcome outcome = run("pose " + at("rig.glb") + " -o " + at("wide.glb") +
                               " --set jaw_open=5 --set arkit:mouthSmileLeft=1.5 --set arkit:browInnerUp=1 "
                               "--set jaw_lateral=-1");

@@ -129,7 +129,7 @@ TEST_F(Play, AStillTakeHasAKeyAtItsEndsAndFew) {
   EXPECT_LE(report["largest_error_mm"].get<double>(), 0.1);
 }
 
-TEST_F(Play, FewTargetsAreSaidToBeTooFew) {
+TEST_F(Play, WarnsWhenTargetsAreTooFew) {
   const std::string take = "time,jawOpen,mouthPucker\n0,0,0\n0.3,1,0\n0.6,0,1\n";
   EXPECT_LE(play(take)["largest_error_mm"].get<double>(), 0.1);
   EXPECT_EQ(said.find("morph targets are up to"), std::string::npos) << said;
@@ -186,7 +186,7 @@ TEST_F(Play, CachesHoldEveryVertexOfTheInputInItsOrder) {
   }
 }
 
-TEST_F(Play, AnInterruptedRunLeavesNothing) {
+TEST_F(Play, AnInterruptedRunLeavesNoFile) {
   curves("time,jawOpen\n0,0\n600,1\n");
   const fs::path place = *folder / "interrupted";
   fs::create_directories(place);

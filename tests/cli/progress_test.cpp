@@ -9,7 +9,7 @@
 namespace fascia::cli {
 namespace {
 
-TEST(Progress, TellsPercentAndTimeLeft) {
+TEST(Progress, ShowsPercentAndTimeLeft) {
   EXPECT_EQ(progress_line("build: tissue", 0.0, 0.0), "build: tissue  0 %") << "too early to tell";
   EXPECT_EQ(progress_line("build: tissue", 0.25, 1.0), "build: tissue  25 %, 3 s left");
   EXPECT_EQ(progress_line("play", 0.1, 100.0), "play  10 %, 15 min left");
@@ -34,7 +34,7 @@ TEST(Progress, JobsWithinJobsAreRegisteredAndGoInOrder) {
 }
 
 /// `script` gives the tool a terminal; what it shows there ends up in the file.
-TEST(Progress, IsSeenOnATerminalAndNowhereElse) {
+TEST(Progress, IsShownOnTerminalsOnly) {
   if (std::system("command -v script >/dev/null 2>&1") != 0) GTEST_SKIP() << "needs script(1) of bsdutils";
   const std::filesystem::path folder = std::filesystem::temp_directory_path() / "fascia_progress_test";
   std::filesystem::remove_all(folder);

@@ -63,7 +63,7 @@ double error_of(const MotionSpace& space, const Components& parts, const Strip& 
   return largest;
 }
 
-TEST(Take, AMotionOfKnownRankIsFoundWhateverItsLength) {
+TEST(Take, AMotionOfKnownRankIsFoundForAnyLength) {
   for (const size_t frames : {1UL, 5UL, 40UL, 3000UL}) {
     const Strip strip(400, 6);
     MotionSpace::Options options;
@@ -80,7 +80,7 @@ TEST(Take, AMotionOfKnownRankIsFoundWhateverItsLength) {
   }
 }
 
-TEST(Take, VerticesThatBeginToMoveLateAreTakenIn) {
+TEST(Take, VerticesThatMoveOnlyLateAreIncluded) {
   MotionSpace::Options options;
   options.tolerance = 1e-6;
   MotionSpace space(40, options);
@@ -164,7 +164,7 @@ TEST(Take, FewDirectionsAreKeptWhereMemoryIsShort) {
   }
 }
 
-TEST(Take, ALongRichMotionIsFollowedLessCloselyInsteadOfForEver) {
+TEST(Take, ToleranceGrowsForLongMotionsOfManyDimensions) {
   std::mt19937 random(3);
   std::normal_distribution<float> normal;
   const MatrixXf basis = MatrixXf::NullaryExpr(

@@ -78,7 +78,7 @@ TEST(ArithmeticMode, FlushingSubnormalsChangesNothing) {
 }
 
 /// A host that traps invalid operations and the like is not ended by the library, and still traps afterwards.
-TEST(ArithmeticMode, TrapsOfTheHostAreNotSprung) {
+TEST(ArithmeticMode, FloatingPointTrapsOfTheHostAreNotTriggered) {
   const std::vector<uint8_t> bytes = fascia::test::tiny_rig_file();
   const unsigned before = _mm_getcsr();
   const unsigned trapping = 0;  // all six exceptions, inexact results too: our arithmetic would spring them
@@ -125,7 +125,7 @@ TEST(ArithmeticMode, ThreadsOfTheHostChangeNothing) {
 #endif
 
 /// Numbers are read with a point wherever the host's language writes a comma.
-TEST(ArithmeticMode, CommasOfTheHostChangeNothing) {
+TEST(ArithmeticMode, DecimalCommaOfTheHostLocaleChangesNothing) {
   const auto curve = [] {
     const std::string csv = "time,jaw_open\n0,0.25\n1.5,0.75\n";
     const std::string json = R"({"fps":12.5,"channels":{"jaw_open":[0.25,0.75]}})";

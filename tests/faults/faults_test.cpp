@@ -112,14 +112,14 @@ TEST_F(Faults, AllocationsMayFail) {
   expect_allocations_may_fail(build_job(), is_thorough ? 60 : 5);
 }
 
-TEST_F(Faults, AFullStandardOutputIsSaid) {
+TEST_F(Faults, AFullStandardOutputIsReported) {
   if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "there is no /dev/full";
   const int status = std::system(
       (test::tool().string() + " info " + at("rig.glb") + " --json >/dev/full 2>/dev/null").c_str());
   EXPECT_EQ(WEXITSTATUS(status), 1);
 }
 
-TEST_F(Faults, AFileThatMayNotGrowIsSaid) {
+TEST_F(Faults, AFileSizeLimitIsReported) {
   for (const Job& job : jobs()) {
     if (job.output == "found.json") continue;  // a few hundred bytes
     const std::set<std::string> before = names();

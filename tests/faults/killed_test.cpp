@@ -29,7 +29,7 @@ class Killed : public Workplace {
   }
 };
 
-TEST_F(Killed, AtAnyMomentNothingIsHalfWritten) {
+TEST_F(Killed, NoPartialFileAtAnyMoment) {
   rigging::write_embedded_head(at("head.obj"), at("landmarks.json"));
   const std::vector<std::string> build = {"build",    at("head.obj"), "--landmarks", at("landmarks.json"),
                                           "--detail", "low",          "-o",          at("built.glb")};
@@ -66,7 +66,7 @@ TEST_F(Killed, AtAnyMomentNothingIsHalfWritten) {
 }
 
 /// The same of what is written on a rig: the words of a command and its output.
-TEST_F(Killed, WhatIsMadeOfARigIsWholeOrNotThere) {
+TEST_F(Killed, OutputsFromARigAreCompleteOrAbsent) {
   std::mt19937 random(11);
   for (const Job& job : jobs()) {
     const std::vector<std::string> words = words_of(job);
@@ -94,7 +94,7 @@ TEST_F(Killed, WhatIsMadeOfARigIsWholeOrNotThere) {
 }
 
 /// ffmpeg outlives the tool for a moment and ends what it was writing.
-TEST_F(Killed, AFilmIsWholeOrNotThere) {
+TEST_F(Killed, AFilmIsCompleteOrAbsent) {
   if (std::system("command -v ffmpeg >/dev/null 2>&1") != 0) GTEST_SKIP() << "ffmpeg is not installed";
   const std::set<std::string> usual = names();
   const std::vector<std::string> film = {"render", at("rig.glb"), "--view", "turntable",
@@ -112,7 +112,7 @@ TEST_F(Killed, AFilmIsWholeOrNotThere) {
     }
 }
 
-TEST_F(Killed, TwoOnOneOutputLeaveOneWhole) {
+TEST_F(Killed, ConcurrentWritersLeaveOneCompleteOutput) {
   const std::vector<std::string> smile = {"pose", at("rig.glb"), "--set", "zygomaticus_major_left=1",
                                           "-o",   at("out.glb")};
   const std::vector<std::string> open_mouth = {"pose",       at("rig.glb"), "--set",
@@ -132,7 +132,7 @@ TEST_F(Killed, TwoOnOneOutputLeaveOneWhole) {
   EXPECT_EQ(names(), (std::set<std::string>{"rig.glb", "curves.csv", "out.glb", "smile.ply"}));
 }
 
-TEST_F(Killed, TwoOfOneCommandOnOneOutputLeaveItWhole) {
+TEST_F(Killed, ConcurrentRunsOfOneCommandLeaveACompleteOutput) {
   for (const Job& job : jobs()) {
     const std::vector<std::string> words = words_of(job);
     ASSERT_EQ(wait_for(start(words)), 0) << job.words;

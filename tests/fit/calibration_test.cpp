@@ -76,7 +76,7 @@ TEST_F(Calibrate, FindsStrengthsAndHeldOutExpressionsImprove) {
       << "each expression is judged by gains found from the others";
 }
 
-TEST_F(Calibrate, APhysiqueChangesWhatItSaysAndNothingElse) {
+TEST_F(Calibrate, APhysiqueChangesOnlyItsOwnFields) {
   const rig::Rig& own = subject->file().rig;
   const rig::Rig other = with_physique(own, {1.0, 0.8, {1.3, 1.0, 0.7}});
   const rig::TissueLevel &before = own.tissue.levels[0], &after = other.tissue.levels[0];
@@ -149,7 +149,7 @@ TEST_F(Calibrate, GainsThatExpressionsLeftOutContradictAreNotKept) {
   EXPECT_LT(found.gains_kept, 1.0);
 }
 
-TEST_F(Calibrate, TheTablesOwnPersonStaysAsTheyAre) {
+TEST_F(Calibrate, TheAveragePersonIsUnchanged) {
   const Named smile = {{"zygomaticus_major_superior_left", 0.6F}, {"zygomaticus_major_superior_right", 0.6F}};
   const Calibration found = calibrate(*subject, {seen("smile", smile, {})});
   for (const double one : found.gains)

@@ -98,7 +98,7 @@ TEST_F(Fit, FindsRandomActivationsAgain) {
   }
 }
 
-TEST_F(Fit, RestGivesNothing) {
+TEST_F(Fit, RestPoseGivesZeroActivations) {
   const FitResult result = Fitter(*subject).fit(target_of(rest()));
   EXPECT_EQ(result.activations, rest());
   EXPECT_LT(result.rms_mm, 1e-6);
@@ -118,7 +118,7 @@ TEST_F(Fit, JawAndEyesAreFound) {
 }
 
 /// A scan without eyeballs: lids follow the gaze, and tell it.
-TEST_F(Fit, TheGazeOfEyesThatAreNotSeenIsReadFromTheLids) {
+TEST_F(Fit, TheGazeOfHiddenEyesIsEstimatedFromTheLids) {
   for (const char* name : {"eye_yaw_left", "eye_pitch_left"}) {
     std::vector<float> values = rest();
     set(values, name, 0.4F);
@@ -141,7 +141,7 @@ TEST_F(Fit, TheGazeOfEyesThatAreNotSeenIsReadFromTheLids) {
   }
 }
 
-TEST_F(Fit, VerticesNobodyTrustsDoNotCount) {
+TEST_F(Fit, VerticesWithoutConfidenceAreIgnored) {
   std::vector<float> values = rest();
   set(values, "zygomaticus_minor_left", 0.6F);
   Target target = target_of(values);
@@ -238,7 +238,7 @@ TEST_F(Fit, ToolFitsACache) {
   EXPECT_GT(json::parse(fitted.out)["share"].get<double>(), 0.99);
 }
 
-TEST_F(Fit, ToolSaysWhatIsWrong) {
+TEST_F(Fit, ToolReportsInvalidInput) {
   std::ofstream(at("other.obj")) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
   std::ofstream(at("bad.pc2")) << "POINTCACHE2 and nothing more";
   const auto expect_error = [](const std::string& arguments, const std::string& says) {

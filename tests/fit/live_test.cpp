@@ -20,14 +20,14 @@ TEST_F(Live, FollowsATakeOfItsOwn) {
 }
 
 /// With noise, the fitted landmarks are nearer to the truth than the points are.
-TEST_F(Live, TakesNoiseOutOfATake) {
+TEST_F(Live, SmoothsNoiseInATake) {
   Fit fit;
   const Outcome outcome = follow_take(fit, 0.5, 60);
   EXPECT_LT(outcome.landmarks_mm, 0.5);
   EXPECT_GT(outcome.share, 0.9);
 }
 
-TEST_F(Live, FindsWhereTheHeadIs) {
+TEST_F(Live, FindsTheHeadPose) {
   Fit fit;
   const std::vector<Vec3> places = places_of(values_of({{"jaw_open", 0.3F}}), false);
   const Mat3 turn = Eigen::AngleAxisd(0.7, Vec3(0.2, 1.0, 0.1).normalized()).toRotationMatrix();
@@ -48,7 +48,7 @@ TEST_F(Live, FindsWhereTheHeadIs) {
 }
 
 /// The mouth stands open and is hidden for a second while brows and head move on: it stays as it was.
-TEST_F(Live, WhatIsHiddenHolds) {
+TEST_F(Live, KeepsPoseOfHiddenParts) {
   Fit fit;
   std::mt19937 random(5);
   std::normal_distribution<double> noise(0.0, 2e-4);
@@ -109,7 +109,7 @@ TEST_F(Live, SeesThroughACamera) {
 }
 
 /// A detector that puts its points elsewhere than ours, on a face of other proportions.
-TEST_F(Live, ANeutralFrameTakesOutTheDetectorsOwnPlaces) {
+TEST_F(Live, ANeutralFrameRemovesTheDetectorsBias) {
   const std::vector<Vec3> rest = places_of(values_of({}), false);
   const std::vector<Vec3> places = places_of(values_of({{"zygomaticus_major_superior_left", 0.6F}}), false);
   const auto elsewhere = [](std::vector<Vec3> list) {
@@ -134,7 +134,7 @@ TEST_F(Live, ANeutralFrameTakesOutTheDetectorsOwnPlaces) {
   EXPECT_LT(fit.push(neutral).residual, 1e-4F);
 }
 
-TEST_F(Live, SameFramesSameAnswer) {
+TEST_F(Live, IsDeterministic) {
   std::vector<float> values[2];
   for (std::vector<float>& list : values) {
     Fit fit;
@@ -146,7 +146,7 @@ TEST_F(Live, SameFramesSameAnswer) {
   EXPECT_EQ(values[0], values[1]);
 }
 
-TEST_F(Live, SeesNothingAndHolds) {
+TEST_F(Live, KeepsPoseWithoutLandmarks) {
   Fit fit;
   const Seen frame = seen(places_of(values_of({{"jaw_open", 0.3F}}), false));
   const fascia_fit_result first = fit.push(frame);
@@ -181,7 +181,7 @@ TEST_F(Live, ByNamesInCpp) {
   EXPECT_THROW(api::Fit(rig, "unknown"), api::Error);
 }
 
-TEST_F(Live, SaysWhatIsWrong) {
+TEST_F(Live, ReportsInvalidInput) {
   fascia_fit_landmarks given{};
   given.struct_size = sizeof given;
   fascia_fit* made = nullptr;

@@ -111,7 +111,7 @@ TEST_F(FitScan, BringsTheScanOntoTheHead) {
   EXPECT_LT((transform_point(found.scan_to_head, motion * chin) - chin).norm(), 0.0015);
 }
 
-TEST_F(FitScan, RestStaysRestWhereTheMouthIsHidden) {
+TEST_F(FitScan, RestIsFoundWhenTheMouthIsHidden) {
   TriangleMesh mesh = scan(Eigen::VectorXd::Zero(subject->rest().size()));
   Vec3 mouth = Vec3::Zero();
   for (const rig::Landmark& landmark : subject->file().rig.skull.landmarks)
@@ -127,14 +127,14 @@ TEST_F(FitScan, RestStaysRestWhereTheMouthIsHidden) {
   }
 }
 
-TEST_F(FitScan, RefusesWhatIsElsewhere) {
+TEST_F(FitScan, RejectsAScanAwayFromTheHead) {
   TriangleMesh far = scan(Eigen::VectorXd::Zero(subject->rest().size()));
   for (Vec3& p : far.vertices)
     p += Vec3(1.0, 0.0, 0.0);
   EXPECT_THROW(fit_scan(*subject, far), Error);
 }
 
-TEST_F(FitScan, LandmarksAloneTellTheFace) {
+TEST_F(FitScan, LandmarksAloneDriveTheFit) {
   const std::vector<float> values = values_of(smile_with_open_mouth());
   const Eigen::VectorXd truth = displacements(values);
   json rest, posed;

@@ -40,7 +40,7 @@ TEST(LandmarkFile, TurnsRasAndKeepsLps) {
   EXPECT_EQ(read_text(lps).points.at("nasion"), Vec3(1, 2, 3));
 }
 
-TEST(LandmarkFile, SaysWhatIsWrong) {
+TEST(LandmarkFile, ReportsInvalidInput) {
   for (const char* text :
        {"", "[]", "{", R"({"landmarks":{}})", R"({"units":"ell","landmarks":{"a":[1,2,3]}})",
         R"({"markups":[{"controlPoints":[{"label":"a","position":[1,2,3],"positionStatus":1}]}]})",

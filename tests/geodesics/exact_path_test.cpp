@@ -38,7 +38,7 @@ TEST(ExactPath, IsOursOnAGentleSurface) {
   EXPECT_GE(compare(mesh, random_pairs(mesh, 20)), 19);
 }
 
-TEST(ExactPath, IsOursOrOnTheOtherSideOfABump) {
+TEST(ExactPath, MatchesCgalOrAnEquallyShortPath) {
   const TriangleMesh mesh =
       grid(24, 24, [](double u, double v) { return Vec3(u, v, 0.12 * std::sin(9 * u) * std::cos(7 * v)); });
   EXPECT_GE(compare(mesh, random_pairs(mesh, 20)), 12);

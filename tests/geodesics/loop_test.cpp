@@ -36,7 +36,7 @@ TEST(TightenLoop, FindsTheWaistOfAHyperboloid) {
   EXPECT_NEAR(loop.path.length, around * 2 * std::sin(kPi / around), 1e-6);
 }
 
-TEST(TightenLoop, PullsTogetherWhereNothingHoldsIt) {
+TEST(TightenLoop, CollapsesWithoutAnObstacle) {
   const Surface surface = make_surface(plane(12));
   const LoopResult loop = tighten_loop(
       surface, {below(surface.mesh, 0.2, 0.2), below(surface.mesh, 0.8, 0.3), below(surface.mesh, 0.5, 0.8)});

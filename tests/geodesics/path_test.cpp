@@ -333,7 +333,7 @@ TEST(Connect, NamesPartsThatDoNotHangTogether) {
   EXPECT_THROW(connect(surface, at(0, -1, -1, -1), at(0, 1, 0, 0)), Error);
 }
 
-TEST(MakeSurface, RefusesMeshesWithoutSense) {
+TEST(MakeSurface, RejectsInvalidMeshes) {
   EXPECT_THROW(make_surface({}), Error);
   TriangleMesh mesh = plane(2);
   mesh.vertices[3][1] = std::nan("");

@@ -90,7 +90,7 @@ TEST(Trace, StopsAtTheBoundary) {
   EXPECT_NEAR(result.path.positions.back()[0], 1.0, 1e-12);
 }
 
-TEST(Trace, RefusesWhatIsNoDirection) {
+TEST(Trace, RejectsInvalidDirectionsAndLengths) {
   const Surface surface = make_surface(plane(3));
   EXPECT_THROW(trace(surface, at(0, 0.3, 0.3, 0.4), Vec3(0, 0, 1), 1.0), Error);
   EXPECT_THROW(trace(surface, at(0, 0.3, 0.3, 0.4), Vec3(0, 0, 0), 1.0), Error);

@@ -35,7 +35,7 @@ TEST(Alignment, ARigidMotionKeepsLengthsEvenOfAScaledCopy) {
   EXPECT_LT((found.topLeftCorner<3, 3>() - some_turn).norm(), 1e-12);
 }
 
-TEST(Alignment, NothingIsMirrored) {
+TEST(Alignment, ReflectionsAreExcluded) {
   Mat3 mirror = Mat3::Identity();
   mirror(0, 0) = -1.0;
   EXPECT_NEAR(nearest_rotation(mirror).determinant(), 1.0, 1e-12);

@@ -22,7 +22,7 @@ TriangleMesh grid(int n) {
   return mesh;
 }
 
-TEST(Flaps, AFinIsLeftOutAndNothingElse) {
+TEST(Flaps, OnlyTheFinIsRemoved) {
   TriangleMesh mesh = grid(8);
   const size_t count = mesh.triangles.size();
   const Triangle under = mesh.triangles[40];
@@ -33,7 +33,7 @@ TEST(Flaps, AFinIsLeftOutAndNothingElse) {
   EXPECT_EQ(std::count(kept.begin(), kept.end(), true), static_cast<std::ptrdiff_t>(count));
 }
 
-TEST(Flaps, WhereTwoSheetsCrossNeitherGoes) {
+TEST(Flaps, CrossingSheetsAreBothKept) {
   TriangleMesh mesh = grid(4);
   TriangleMesh other = grid(4);
   std::vector<int> map;
@@ -53,7 +53,7 @@ TEST(Flaps, WhereTwoSheetsCrossNeitherGoes) {
   EXPECT_EQ(std::count(kept.begin(), kept.end(), false), 0);
 }
 
-TEST(Flaps, TurnedTrianglesAreToldFromTheirNeighbours) {
+TEST(Flaps, TurnedTrianglesAreFoundFromTheirNeighbours) {
   TriangleMesh mesh = grid(8);
   std::vector<bool> turned(mesh.triangles.size(), false);
   for (const size_t t : {0U, 17U, 18U, 19U, 55U, 127U})

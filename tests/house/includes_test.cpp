@@ -86,7 +86,7 @@ TEST(House, RoomsIncludeOnlyWhatTheyMay) {
   EXPECT_GT(files, 60);
 }
 
-TEST(House, TheJudgeItselfCanSayNo) {
+TEST(House, IncludeRulesRejectViolations) {
   EXPECT_FALSE(allowed("geometry", "formats/scene.h"));
   EXPECT_FALSE(allowed("sim", "rig/model/rig.h"));
   EXPECT_FALSE(allowed("runtime", "rig/write/write.h"));

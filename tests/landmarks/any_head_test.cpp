@@ -88,7 +88,7 @@ TEST(AnyHead, WithEyesDrawnLowAndLarge) {
         << name;
 }
 
-TEST(AnyHead, DressedWhateverTheMeshesAreCalled) {
+TEST(AnyHead, DressedWithMeshesOfAnyName) {
   expect_found(dressed(made("adult", as_it_is), {"Body", "Coat", "Hair"}), 2.0, 5.0);
   expect_found(dressed(made("adult", as_it_is), {"mesh_1", "mesh_2", "mesh_3"}), 2.0, 5.0);
   expect_found(dressed(made("child", as_child), {"Body", "Coat", "Hair"}), 3.0, 8.0);
@@ -165,7 +165,7 @@ double lean(const rigging::FoundLandmarks& found, const Mat3& rotation) {
   return std::acos(std::clamp(left.x(), -1.0, 1.0)) * 180 / EIGEN_PI;
 }
 
-TEST(SameHead, StandsUprightHoweverItLeans) {
+TEST(SameHead, IsSetUprightFromAnyTilt) {
   // By less than the axes of a file are taken for the head's.
   for (const MadeHead& head : {made("adult", as_it_is), made("anime", as_anime)})
     for (const Mat3& rotation : {turn(4, Vec3(0, 0, 1)), turn(-4, Vec3(0, 1, 0)), turn(3, Vec3(0, 1, 1))}) {
@@ -215,7 +215,7 @@ TEST(SameHead, PupilsLieOnTheGlobes) {
   }
 }
 
-TEST(GivenLandmarks, AlwaysHelp) {
+TEST(GivenLandmarks, ReduceTheError) {
   // Heads so changed that finding alone is far off, or finds nothing.
   const auto strange = [](const Vec3& p) {
     Vec3 to = as_creature(as_anime(p));
@@ -238,7 +238,7 @@ TEST(GivenLandmarks, AlwaysHelp) {
   }
 }
 
-TEST(GivenLandmarks, MakeAHeadOfWhatIsHardlyOne) {
+TEST(GivenLandmarks, AllowHeadsThatAreNotFoundWithoutThem) {
   // A ball with three bumps is no face, but it is if its owner says so.
   const MadeHead adult = made("adult", as_it_is);
   MadeHead ball = adult;

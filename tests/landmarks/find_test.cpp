@@ -147,7 +147,7 @@ TEST(LidOpening, IsSeenWhereTheLidsAreOpenAndNowhereElse) {
   EXPECT_FALSE(lid_opening(skin, cheek).has_value());
 }
 
-TEST(LipOpening, EndsAtTheCornersWhateverWidthIsLookedFor) {
+TEST(LipOpening, EndsAtTheCornersForAnySearchWidth) {
   const Vec3 left = *generic_anatomy().landmark("cheilion_left")->skin,
              right = *generic_anatomy().landmark("cheilion_right")->skin, middle = 0.5 * (left + right);
   const spatial::SurfaceQuery skin(face().skin);
@@ -238,7 +238,7 @@ TEST(FindHead, LooksOnlyWhereTheCrownMayBe) {
   }
 }
 
-TEST(FindHead, RefusesWhatIsNoFace) {
+TEST(FindHead, RejectsShapesThatAreNoFace) {
   const auto refused = [](const TriangleMesh& mesh) {
     try {
       find_head(face(), mesh, "thing.obj");
@@ -265,7 +265,7 @@ TEST(FindHead, RefusesWhatIsNoFace) {
   EXPECT_TRUE(refused(back));
 }
 
-TEST(FindHead, SurvivesRubbish) {
+TEST(FindHead, RejectsDegenerateMeshes) {
   TriangleMesh flat;
   flat.vertices = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)};
   flat.triangles = {{0, 1, 2}};

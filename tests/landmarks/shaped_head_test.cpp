@@ -112,7 +112,7 @@ TEST(ShapedHead, SidesMayBeTheViewers) {
   EXPECT_TRUE(places->agree({}));
 }
 
-TEST(ShapedHead, ThreePlacesTellNothing) {
+TEST(ShapedHead, ThreePlacesAreNotEnough) {
   const MadeHead plain = made_head(anatomy_of_tests(), "plain", [](const Vec3& p) { return p; });
   EXPECT_FALSE(rigging::places_by_shapes(plain.scene, anatomy_of_tests()));
   EXPECT_FALSE(rigging::places_by_shapes(with_shapes(plain, {arkit[0], arkit[1], arkit[2]}).scene,

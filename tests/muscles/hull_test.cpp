@@ -75,7 +75,7 @@ TEST(GeodesicHull, KeepsATriangleOnTheSphere) {
   EXPECT_NEAR(2 * kPi - hull.turning, area, 0.08);
 }
 
-TEST(GeodesicHull, DrawsInWhatCoversHalfASphere) {
+TEST(GeodesicHull, ShrinksRegionsThatCoverHalfASphere) {
   Bench bench(geodesics::sphere(3));
   std::vector<Vec3> belt;
   for (const Vec3& p : circle(0, 0, 1, 12))
@@ -133,7 +133,7 @@ TEST(MutualTangent, KnowsOverlapAndContainment) {
   EXPECT_FALSE(mutual_tangent(bench.carrier, large, beside, HullSide::right, HullSide::left));
 }
 
-TEST(FacingArcs, FaceEachOtherAndRunAlike) {
+TEST(FacingArcs, FaceEachOtherInTheSameDirection) {
   Bench bench(geodesics::grid(30, 30, [](double u, double v) { return Vec3(4 * u - 1, 4 * v - 2, 0); }));
   const Hull a = bench.hull(circle(0, 0, 0.5, 48)), b = bench.hull(circle(1.8, 0, 0.5, 48));
   const auto left = mutual_tangent(bench.carrier, a, b, HullSide::right, HullSide::right);

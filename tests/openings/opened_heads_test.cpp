@@ -74,7 +74,7 @@ Vec3 motion(const cli::Face& face, size_t vertex) {
                     now[3 * vertex + 2] - rest[3 * vertex + 2]);
 }
 
-TEST(OpenedHeads, MoveLikeTheOnesThatWereNeverClosed) {
+TEST(OpenedHeads, MoveLikeHeadsThatWereOpen) {
   const anatomy::GenericAnatomy anatomy = anatomy::load_generic();
   const TriangleMesh& open = anatomy.head_object("skin")->mesh;
   const ClosedHead closed = closed_head(anatomy, false);

@@ -214,7 +214,7 @@ TEST(Openings, PartsOnlyWhatIsClosed) {
   EXPECT_EQ(names(open(closed.skin, closed.landmarks).opened), (std::vector<std::string>{"mouth"}));
 }
 
-TEST(Openings, CutsBothSidesAlike) {
+TEST(Openings, CutsBothSidesSymmetrically) {
   const ClosedHead closed = closed_head(generic());
   const Case c = open(closed.skin, closed.landmarks);
   EXPECT_EQ(c.opened.parted[1].vertices, c.opened.parted[2].vertices);
@@ -303,7 +303,7 @@ TEST(Openings, RewritesOnlyTheFacesThatWereCut) {
   EXPECT_TRUE(open({metres, again.meshes[0].triangles}, closed.landmarks).opened.parted.empty());
 }
 
-TEST(Openings, KnowsItsWords) {
+TEST(Openings, RejectsUnknownOptionValues) {
   openings::OpeningOptions options;
   options.add = {"ears"};
   EXPECT_THROW(openings::check(options), Error);

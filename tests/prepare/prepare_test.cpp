@@ -159,7 +159,7 @@ TEST(Prepare, TouchingLipsStayTwo) {
   EXPECT_NE(touching.vertex_map[0][30], touching.vertex_map[1][40]);
 }
 
-TEST(Prepare, SaysThatAFileHoldsASecondHead) {
+TEST(Prepare, ReportsASecondHead) {
   formats::Scene scene = scene_in(Mat4::Identity());
   const auto says = [&](const char* what = "another head ('twin')") {
     for (const std::string& warning :
@@ -199,7 +199,7 @@ TEST(Prepare, RefusesLandmarksWhoseSidesAreExchanged) {
   }
 }
 
-TEST(Prepare, ANameThatIsNearlyALandmarksIsSaid) {
+TEST(Prepare, SuggestsTheNearestLandmarkName) {
   formats::LandmarkFile given = landmarks_in(Mat4::Identity(), 1.0, "");
   given.points["nasionn"] = given.points["nasion"];
   const PreparedHead head = prepare(scene_in(Mat4::Identity()), given, reference(), {});
@@ -233,7 +233,7 @@ TEST(Prepare, UnitsThatDoNotFitTheHeadAreSaidOrRefused) {
   }
 }
 
-TEST(Prepare, SaysWhatIsWrong) {
+TEST(Prepare, ReportsInvalidInput) {
   const Mat4 to_file = Mat4::Identity();
   const formats::Scene scene = scene_in(to_file);
   auto file = landmarks_in(to_file, 1.0, "");

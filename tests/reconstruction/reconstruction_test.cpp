@@ -131,7 +131,7 @@ TEST(Reconstruction, GivenLandmarksAreHeld) {
     }
 }
 
-TEST(Reconstruction, RefusesWhatIsNoSkull) {
+TEST(Reconstruction, RejectsShapesThatAreNoSkull) {
   EXPECT_THROW(reconstruct(generic(), joined(generic().head)), Error);
   TriangleMesh cube;
   for (int i = 0; i < 8; ++i)

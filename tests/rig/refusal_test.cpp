@@ -45,7 +45,7 @@ Json& accessor_of(Json& root, const Json& index) {
 
 #define EXPECT_SAYS(message, part) EXPECT_NE((message).find(part), std::string::npos) << (message)
 
-TEST(Refusal, NothingIsWrongWithTheUnchangedFile) {
+TEST(Refusal, TheUnchangedFileIsAccepted) {
   EXPECT_EQ(refusal([](Json&) {}), "");
 }
 
@@ -114,7 +114,7 @@ TEST(Refusal, WrongAccessors) {
   EXPECT_SAYS(refusal([&](Json& root) { level(root)["prisms"] = "none"; }), path + "prisms");
 }
 
-TEST(Refusal, NumbersThatAreFiniteAndAbsurd) {
+TEST(Refusal, ExtremeButFiniteNumbers) {
   const auto scaled = [](double factor) {
     return [factor](Json& root) {
       for (Json& value : extension(root, "FASCIA_tissue")["inputToMetres"])
@@ -152,6 +152,21 @@ TEST(Refusal, ValuesOutOfRange) {
               "twice");
 }
 
+TEST(Refusal, ConstantsMissingOrOutOfRange) {
+  const auto mechanics = [](Json& root) -> Json& { return extension(root, "FASCIA_tissue")["mechanics"]; };
+  EXPECT_SAYS(refusal([&](Json& root) { mechanics(root).erase("friction"); }),
+              "FASCIA_tissue/mechanics/friction: missing");
+  EXPECT_SAYS(refusal([&](Json& root) { mechanics(root)["boneStiffness"] = -1; }),
+              "FASCIA_tissue/mechanics/boneStiffness: -1 is not within 0 .. 100000");
+  EXPECT_SAYS(refusal([&](Json& root) { mechanics(root)["massDamping"] = "much"; }),
+              "FASCIA_tissue/mechanics/massDamping: not a number");
+  EXPECT_SAYS(refusal([&](Json& root) { mechanics(root).erase("lidRange"); }),
+              "FASCIA_tissue/mechanics/lidRange/before: missing");
+  EXPECT_SAYS(refusal([&](Json& root) { mechanics(root)["lipRange"]["behind"] = 1; }),
+              "FASCIA_tissue/mechanics/lipRange/behind: 1 is not within");
+  EXPECT_EQ(refusal([](Json& root) { extension(root, "FASCIA_tissue").erase("mechanics"); }), "");
+}
+
 TEST(Refusal, AChangedMeshIsFoundOut) {
   rig::GltfSource file = rig::glb_source(test::tiny_rig_file());
   file.bin[4] ^= 1;  // a bit of the first vertex
@@ -166,7 +181,7 @@ TEST(Refusal, AChangedMeshIsFoundOut) {
       "mesh 3");
 }
 
-TEST(Refusal, APlainHeadIsNoRig) {
+TEST(Refusal, AHeadWithoutRig) {
   const rig::GltfSource head = test::tiny_head();
   const std::vector<uint8_t> bytes = gltf::glb_bytes(head.json, head.bin);
   // The head's own animation names a FASCIA channel; that alone makes no rig.

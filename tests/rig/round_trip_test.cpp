@@ -26,6 +26,7 @@ class Collector {
   void number(const char* name, T value) {
     add(name, &value, sizeof value);
   }
+  void bounded(const char* name, double value, double, double) { number(name, value); }
   void hash(const char*, uint64_t) {}
   void vector(const char* name, const rig::Vec3f& value) { add(name, value.data(), 12); }
   void matrix(const char* name, const rig::Mat4f& value) { add(name, value.data(), 64); }
@@ -100,6 +101,7 @@ Collector collect(const rig::Rig& rig) {
       rig::binding_fields(all, binding, 0);
   }
   rig::actuation_fields(all, rig.actuation);
+  if (rig.tissue.mechanics) rig::mechanics_fields(all, *rig.tissue.mechanics);
   all.matrix("input", rig.input_to_metres);
   return all;
 }

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
@@ -12,6 +13,7 @@
 
 #include "gltf/read/container.h"
 #include "rig/model/extensions.h"
+#include "sim/face_model.h"
 #include "tests/rig/tiny_rig.h"
 
 namespace fascia {
@@ -122,7 +124,7 @@ TEST(Schema, EverythingWrittenIsDescribed) {
     expect_described(extensions[extension], root_schema(extension), extension);
 }
 
-TEST(Schema, EveryPropertyStandsOnItsPage) {
+TEST(Schema, EveryPropertyIsDocumentedOnItsPage) {
   for (const std::string& extension : rig::extensions) {
     const std::string page = file_text(folder(extension) / "README.md");
     for (const auto& entry : std::filesystem::directory_iterator(folder(extension) / "schema")) {
@@ -136,6 +138,50 @@ TEST(Schema, EveryPropertyStandsOnItsPage) {
         }
     }
   }
+}
+
+/// The values that the page of FASCIA_tissue gives for rigs without constants of their own, by property.
+std::map<std::string, std::vector<double>> documented_constants() {
+  std::map<std::string, std::vector<double>> values;
+  std::istringstream page(file_text(folder("FASCIA_tissue") / "README.md"));
+  bool is_within = false;
+  for (std::string line; std::getline(page, line);) {
+    if (line.starts_with("### ")) is_within = line == "### mechanics";
+    if (!is_within || !line.starts_with("| `")) continue;
+    const std::string name = line.substr(3, line.find('`', 3) - 3);
+    std::string last = line.substr(line.rfind('|', line.size() - 2) + 1);
+    while (last.find("−") != std::string::npos)
+      last.replace(last.find("−"), std::string("−").size(), "-");
+    for (std::size_t at = 0; (at = last.find_first_of("-0123456789", at)) != std::string::npos;) {
+      std::size_t length = 0;
+      values[name].push_back(std::stod(last.substr(at), &length));
+      at += length;
+    }
+  }
+  return values;
+}
+
+TEST(Schema, RigsWithoutConstantsGetTheDocumentedOnes) {
+  const sim::FaceModelOptions options = sim::face_options_of(rig::Tissue{});
+  const sim::ContactOptions& contact = options.contact;
+  const auto list = [](const sim::FacingRange& r) { return std::vector{r.before, r.behind, r.beside}; };
+  const std::map<std::string, std::vector<double>> used = {
+      {"stiffnessDamping", {options.stiffness_damping}},
+      {"massDamping", {options.mass_damping}},
+      {"activationRise", {options.dynamics.rise}},
+      {"activationDecay", {options.dynamics.decay}},
+      {"initialForceSlope", {options.initial_force_slope}},
+      {"globeStiffness", {contact.globe_stiffness}},
+      {"boneStiffness", {contact.bone_stiffness}},
+      {"facingStiffness", {contact.facing_stiffness}},
+      {"contactThickness", {contact.thickness}},
+      {"lidThickness", {contact.lid_thickness}},
+      {"friction", {contact.friction}},
+      {"stickyReach", {contact.sticky_reach}},
+      {"stickyStiffness", {contact.sticky_stiffness}},
+      {"lipRange", list(contact.lips)},
+      {"lidRange", list(contact.lids)}};
+  EXPECT_EQ(documented_constants(), used);
 }
 
 }  // namespace

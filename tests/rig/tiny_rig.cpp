@@ -229,6 +229,26 @@ void put(std::vector<uint8_t>& bin, const void* data, std::size_t size) {
   bin.insert(bin.end(), bytes, bytes + size);
 }
 
+/// The constants that a rig without any has.
+rig::TissueMechanics tiny_mechanics() {
+  rig::TissueMechanics mechanics;
+  mechanics.stiffness_damping = 0.004;
+  mechanics.mass_damping = 8.0;
+  mechanics.activation_rise = 0.03;
+  mechanics.activation_decay = 0.05;
+  mechanics.initial_force_slope = 0.45;
+  mechanics.globe_stiffness = 200.0;
+  mechanics.bone_stiffness = mechanics.facing_stiffness = 150.0;
+  mechanics.contact_thickness = 0.0004;
+  mechanics.lid_thickness = -0.0003;
+  mechanics.friction = 0.3;
+  mechanics.sticky_reach = 0.003;
+  mechanics.sticky_stiffness = 20.0;
+  mechanics.lip_range = {0.006, 0.0025, 0.0015};
+  mechanics.lid_range = {0.014, 0.004, 0.004};
+  return mechanics;
+}
+
 }  // namespace
 
 Rig tiny_rig() {
@@ -238,6 +258,7 @@ Rig tiny_rig() {
   rig.muscles = {strap("zygomaticus_major_left", 1), strap("zygomaticus_major_right", -1)};
   rig.tissue.levels = {tiny_level(rig.muscles)};
   rig.tissue.bindings = {{tiny_binding()}};
+  rig.tissue.mechanics = tiny_mechanics();
   rig.actuation = tiny_actuation();
   rig.input_to_metres.topLeftCorner<3, 3>() *= 0.01F;
   return rig;

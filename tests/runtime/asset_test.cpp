@@ -13,7 +13,7 @@ namespace {
 
 using namespace fascia::test;
 
-TEST(Asset, SaysWhatIsInTheRig) {
+TEST(Asset, DescribesTheRig) {
   const Loaded rig;
   fascia_asset_info info = {};
   info.struct_size = sizeof info;
@@ -56,7 +56,7 @@ TEST(Asset, SaysWhatIsInTheRig) {
   EXPECT_EQ(fascia_asset_find_channel(rig.asset, "jaw"), -1);
 }
 
-TEST(Asset, ASmallerStructureIsFilledAsFarAsItGoes) {
+TEST(Asset, ASmallerStructureIsFilledUpToItsSize) {
   const Loaded rig;
   fascia_asset_info info;
   std::memset(&info, 0x5A, sizeof info);

@@ -55,7 +55,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text;
 }
 
-TEST(Number, IsReadExactlyWhateverItsForm) {
+TEST(Number, IsReadExactlyInEveryNotation) {
   for (const char* text :
        {"0", "-0.25", "1e-3", "12345.6789", "1E+2", "0.1", "9007199254740993", "4.9e-324",
         "1.7976931348623157e308", "123456789012345678901234567890", "0.000000000000000000001", "-.5", "7."})
@@ -242,7 +242,7 @@ TEST(Timecodes, DroppedFramesAreCounted) {
   EXPECT_NEAR(times.seconds[1], 17982 * 1001.0 / 30000, 1e-9);
 }
 
-TEST(Values, PercentAndIntensitiesAreScaledAndSaid) {
+TEST(Values, PercentAndIntensitiesAreScaledWithAWarning) {
   const Curves percent = read("time,jawOpen,mouthSmileLeft,LeftEyeYaw\n0,0,100,0.2\n1,50,20,0.2\n");
   EXPECT_FLOAT_EQ(value(percent, "jawOpen", 1), 0.5F);
   EXPECT_FLOAT_EQ(value(percent, "LeftEyeYaw", 1), 0.2F);

@@ -87,7 +87,7 @@ TEST(FaceTest, ACrowdThroughTheHostsTasksIsEachFaceAlone) {
   EXPECT_EQ(run(2), alone);
 }
 
-TEST(FaceTest, ACrowdsFaultsAreToldApart) {
+TEST(FaceTest, CrowdsRejectInvalidArguments) {
   const Loaded rig;
   const Face face(rig.asset);
   fascia_face* twice[2] = {face.face, face.face};

@@ -78,7 +78,7 @@ TEST(Csv, ReadsLiveLinkFaceByItsHeader) {
   EXPECT_FLOAT_EQ(curve(curves, "JawLeft").at(1.0 / 60), 0.4F);
 }
 
-TEST(Csv, SaysWhereItIsWrong) {
+TEST(Csv, ReportsThePositionOfErrors) {
   EXPECT_NE(message_of("time,a\n0,1\n1,x\n").find("row 3, column a"), std::string::npos);
   EXPECT_NE(message_of("time,a\n0,nan\n").find("no column of values"), std::string::npos);
   EXPECT_NE(message_of("a,b\n1,0\n").find("time"), std::string::npos);
@@ -99,7 +99,7 @@ TEST(Json, ReadsSampledAndKeyedChannels) {
   EXPECT_FLOAT_EQ(curve(keyed, "c").at(1.5), 1.5F);
 }
 
-TEST(Json, SaysWhereItIsWrong) {
+TEST(Json, ReportsThePositionOfErrors) {
   EXPECT_NE(message_of("{").find("malformed"), std::string::npos);
   EXPECT_NE(message_of("{}").find("no channel"), std::string::npos);
   EXPECT_NE(message_of(R"({"channels":{"a":[1]}})").find("fps"), std::string::npos);

@@ -99,7 +99,7 @@ TEST(FaceTest, TimeArrivesAtThePose) {
   EXPECT_EQ(fascia_face_step(moving.face, NAN), FASCIA_ERROR_ARGUMENT);
 }
 
-TEST(FaceTest, ValuesThatAreNoNumbersDoNoHarm) {
+TEST(FaceTest, NonFiniteValuesAreIgnored) {
   const Loaded rig;
   const Face face(rig.asset);
   float* values = fascia_face_values(face.face);

@@ -59,7 +59,7 @@ TEST(Skinning, ReproducesTheVertices) {
   }
 }
 
-TEST(Skinning, RefusesWhatDoesNotFit) {
+TEST(Skinning, RejectsMismatchedInput) {
   const Loaded rig;
   const Face face(rig.asset);
   float texel[4] = {};

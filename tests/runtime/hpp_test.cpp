@@ -13,7 +13,7 @@ const std::vector<std::uint8_t>& bytes() {
   return made;
 }
 
-TEST(Hpp, OwnsAndMoves) {
+TEST(Hpp, HandlesAreOwnedAndMovable) {
   fascia::api::Asset asset = fascia::api::Asset::load(bytes());
   fascia::api::Face face(asset);
   asset = fascia::api::Asset::load(bytes());  // the face keeps its own

@@ -135,7 +135,7 @@ TEST(Gaze, TurnsEyesToAPoint) {
   EXPECT_EQ(fascia_face_look_at(face.face, nowhere, 1.0F), FASCIA_ERROR_ARGUMENT);
 }
 
-TEST(Blend, BringsAFaceToRestAndBack) {
+TEST(Blend, FadesAFaceToRestAndBack) {
   const Loaded rig;
   const Face face(rig.asset);
   const std::vector<float> rest = face.positions();

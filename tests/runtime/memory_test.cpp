@@ -50,7 +50,7 @@ namespace {
 
 using namespace fascia::test;
 
-TEST(Memory, AFrameAllocatesNothing) {
+TEST(Memory, AFrameDoesNotAllocate) {
   const Loaded rig;
   const Face face(rig.asset), second(rig.asset);
   const fascia_layer layer = {sizeof layer, FASCIA_COMBINE_SATURATE, 0.5F, 0, nullptr};
@@ -177,7 +177,7 @@ TEST(Memory, AProgramMayEndWithItsAllocatorSet) {
   EXPECT_EXIT(use_and_end(bytes), testing::ExitedWithCode(0), "");
 }
 
-TEST(Api, TheTableIsAllThereIs) {
+TEST(FunctionTable, ContainsEveryFunction) {
   const fascia_api* api = nullptr;
   ASSERT_EQ(fascia_get_api(FASCIA_VERSION_MAJOR << 16 | FASCIA_VERSION_MINOR << 8, &api), FASCIA_OK);
   EXPECT_EQ(api->struct_size, sizeof(fascia_api));

@@ -63,7 +63,7 @@ void place(fascia_face* face, double x, float scale, double angle = 0.0) {
   ASSERT_EQ(fascia_face_move_head(face, matrix, scale), FASCIA_OK) << fascia_last_message();
 }
 
-TEST_F(Moved, AnEvenPaceIsNotFelt) {
+TEST_F(Moved, ConstantVelocityCausesNoInertia) {
   fascia_face* const moving = face();
   const std::vector<float> rest = positions(moving);
   for (int k = 0; k < 30; ++k) {
@@ -96,7 +96,7 @@ TEST_F(Moved, AnAcceleratedHeadsTissueLagsAsIfPushedBackTimesTheScale) {
   }
 }
 
-TEST_F(Moved, AHeadTurnedSidewaysFeelsItInItsOwnAxes) {
+TEST_F(Moved, InertiaActsInTheAxesOfTheHead) {
   fascia_face *const moving = face(), *const pushed = face();
   for (int k = 0; k < 20; ++k) {
     const double t = static_cast<double>(frame) * k;
@@ -110,7 +110,7 @@ TEST_F(Moved, AHeadTurnedSidewaysFeelsItInItsOwnAxes) {
   EXPECT_LT(apart(positions(moving), positions(pushed)), 0.02 * apart(positions(pushed), rest));
 }
 
-TEST_F(Moved, ATeleportAndAResetMoveNothing) {
+TEST_F(Moved, ATeleportAndAResetCauseNoInertia) {
   fascia_face* const moving = face();
   const std::vector<float> rest = positions(moving);
   for (int k = 0; k < 10; ++k) {
@@ -204,7 +204,7 @@ TEST_F(Moved, CompressionIsHowMuchShorterTheSkinIs) {
   EXPECT_NEAR(measured, strongest, 0.4 * strongest);
 }
 
-TEST_F(Moved, TheWatchdogPutsADivergedFaceBackAndSaysSo) {
+TEST_F(Moved, TheWatchdogResetsADivergedFaceAndReportsIt) {
   fascia_face* const torn = face(FASCIA_SOLVER_REFERENCE);  // which goes as far as it is pushed in one step
   const std::vector<float> rest = positions(torn);
   const float storm[3] = {3e6F, 0, 0};
@@ -234,7 +234,7 @@ std::vector<double> moves(fascia_face* face, const std::vector<float>& seconds) 
   return most;
 }
 
-TEST_F(Moved, TimeLostInALongFrameIsLost) {
+TEST_F(Moved, TimeBeyondTheLongestFrameIsSkipped) {
   for (const fascia_solver solver : {FASCIA_SOLVER_OWN, FASCIA_SOLVER_REFERENCE}) {
     fascia_face *const steady = face(solver), *const paused = face(solver);
     for (fascia_face* one : {steady, paused})

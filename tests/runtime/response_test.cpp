@@ -62,7 +62,7 @@ TEST(Response, RisesThroughoutAndItsSlopeIsItsDerivative) {
   }
 }
 
-TEST(Response, RefusesWhatDoesNotRise) {
+TEST(Response, RejectsDecreasingKnots) {
   const std::vector<float> shares = {0.1F, 0.2F, 0.3F, 0.4F};
   EXPECT_THROW(Response(weights, std::vector<float>{0.1F}), Error);
   EXPECT_THROW(Response(std::vector<float>{0.1F, 0.1F, 0.5F, 0.75F}, shares), Error);

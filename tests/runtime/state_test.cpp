@@ -39,7 +39,7 @@ std::vector<float> play(const Face& face, int from, int frames) {
   return seen;
 }
 
-TEST(State, PutBackGoesOnWithTheSameBits) {
+TEST(State, RestoredStateContinuesBitIdentically) {
   const Loaded rig;
   const Face face(rig.asset), other(rig.asset);
   fascia_face_blend(face.face, 0.6F, 1.0F);
@@ -80,7 +80,7 @@ TEST(State, TheReferenceSolverHasOneToo) {
   fascia_face_release(face);
 }
 
-TEST(State, WhatDoesNotFitChangesNothing) {
+TEST(State, MismatchedBytesAreRejected) {
   const Loaded rig;
   const Face face(rig.asset), layered(rig.asset);
   play(face, 0, 15);
@@ -117,7 +117,7 @@ std::vector<uint8_t> rig_of_two_levels() {
   return fascia::rig::write(tiny_head(), rig);
 }
 
-TEST(Levels, SwitchWithoutAJump) {
+TEST(Levels, SwitchContinuously) {
   const Loaded rig(rig_of_two_levels());
   const Face face(rig.asset), fine(rig.asset);
   ASSERT_EQ(fascia_face_level(face.face), 1);

@@ -14,7 +14,7 @@ namespace {
 struct Patch {
   testing::PatchOptions options;
   rig::TissueLevel level;
-  Jaw jaw;
+  Jaw jaw = jaw_of(rig::JawJoint{});
   Patch() : level(testing::make_patch(options)) {
     testing::add_fibre(level, options, 0, 4, 1, 5, 0.3F);
     testing::add_fibre(level, options, 1, 2, 7, 3, 0.2F);

@@ -57,7 +57,7 @@ TEST(Bullet, AFullPatchUnderLargeStrainMovesAsOurs) {
     if (level.kinds[i] == rig::NodeKind::fixed_cranium && level.jaw_weights[i] > 0)
       level.kinds[i] = rig::NodeKind::fixed_mandible;
   }
-  Jaw jaw;
+  Jaw jaw = jaw_of(rig::JawJoint{});
   jaw.origin = Vec3(0, 0.05, -0.08);
   jaw.open_angle = 0.05;
   jaw.open_glide.setZero();
@@ -69,7 +69,7 @@ TEST(Bullet, AFullPatchUnderLargeStrainMovesAsOurs) {
 
 TEST(Bullet, ItsMandibleAgreesWithTheClosedForm) {
   const rig::TissueLevel level = testing::make_patch({});
-  Jaw jaw;
+  Jaw jaw = jaw_of(rig::JawJoint{});
   jaw.origin = Vec3(0, 0.01, -0.02);
   const FaceModel model(lattice_of(level), jaw);
   BulletFace face(model, 0);

@@ -45,7 +45,7 @@ rig::TissueLevel patch_before_a_ball(const PatchOptions& o, uint8_t bone) {
   return level;
 }
 
-TEST(Contact, AFieldIsNoSteeperThanItSays) {
+TEST(Contact, SteepnessBoundsTheSlopeOfAField) {
   rig::TissueLevel level = patch_before_a_ball({}, 0);
   EXPECT_LT(DistanceField(lattice_of(level), 0).steepness(), 1.8) << "a sound one";
   for (size_t i = 0; i < level.contact_field_values.size(); ++i)  // torn by a sheet of no thickness
@@ -118,10 +118,10 @@ TEST(Contact, PressedTissueStopsAtTheBone) {
   EXPECT_LT(with, 4e-4);
 }
 
-TEST(Contact, AFieldGoesWithItsBone) {
+TEST(Contact, AFieldMovesWithItsBone) {
   PatchOptions o;
   const rig::TissueLevel level = patch_before_a_ball(o, 1);  // on the mandible
-  Jaw jaw;
+  Jaw jaw = jaw_of(rig::JawJoint{});
   jaw.forward_glide = 0.004;
   jaw.forward_drop = 0.0;
   const FaceModel model(lattice_of(level), jaw);
@@ -196,7 +196,7 @@ struct TwoLips : ::testing::Test {
     jaw.forward_glide = 0.004;
     jaw.forward_drop = 0.0;
   }
-  Jaw jaw;
+  Jaw jaw = jaw_of(rig::JawJoint{});
   /// The smallest gap between the two over the lower one's middle nodes, by the upper one's height beside
   /// them.
   double smallest_gap(const std::vector<Vec3f>& x) const {

@@ -88,7 +88,7 @@ TEST(Energies, TrianglesThatLieOnEachOtherMakeNoHinge) {
   }
 }
 
-TEST(Energies, RigidMotionCostsNothing) {
+TEST(Energies, RigidMotionHasZeroEnergy) {
   const Eigen::AngleAxisd turn(1.1, Vec3(1, 2, -1).normalized());
   const Positions fan = {six[0], six[1], six[2], Vec3(.002, -.004, -.001)};
   Positions moved, moved_fan;
@@ -177,7 +177,7 @@ struct Everything {
 
 TEST(Energies, OfAWholeFaceHaveTheirGradientAndCurvature) {
   Everything all;
-  Jaw jaw;
+  Jaw jaw = jaw_of(rig::JawJoint{});
   jaw.origin = Vec3(0, 0.05, -0.08);
   const FaceModel model(lattice_of(all.level), jaw);
   ASSERT_TRUE(model.valid()) << model.fault();
@@ -227,7 +227,7 @@ TEST(Energies, RestFactorSolvesItsMatrix) {
   EXPECT_LT(error, 1e-3);
 }
 
-TEST(Lattice, FaultsAreNamed) {
+TEST(Lattice, FaultsAreReported) {
   rig::TissueLevel level = testing::make_patch({});
   EXPECT_EQ(lattice_fault(lattice_of(level)), nullptr);
   level.rest[3].x() = std::numeric_limits<float>::quiet_NaN();
@@ -240,13 +240,17 @@ TEST(Lattice, FaultsAreNamed) {
   EXPECT_FALSE(FaceModel(lattice_of(level), {}).valid());
 }
 
-TEST(ActivationForce, RisesFromNoneToTheWhole) {
-  EXPECT_EQ(formulas::activation_force(0.0), 0.0);
-  EXPECT_DOUBLE_EQ(formulas::activation_force(1.0), 1.0);
-  for (double a = 0.0; a < 1.0; a += 0.1) {
-    EXPECT_LT(formulas::activation_force(a), formulas::activation_force(a + 0.1));
-    EXPECT_NEAR(formulas::activation_force_slope(a),
-                (formulas::activation_force(a + 1e-6) - formulas::activation_force(a - 1e-6)) / 2e-6, 1e-8);
+TEST(ActivationForce, RisesFromZeroToTheMaximum) {
+  for (const double initial : {0.2, 0.45, 1.0}) {
+    const auto force = [initial](double a) { return formulas::activation_force(a, initial); };
+    EXPECT_EQ(force(0.0), 0.0);
+    EXPECT_DOUBLE_EQ(force(1.0), 1.0);
+    EXPECT_EQ(formulas::activation_force_slope(0.0, initial), initial);
+    for (double a = 0.0; a < 1.0; a += 0.1) {
+      EXPECT_LT(force(a), force(a + 0.1));
+      EXPECT_NEAR(formulas::activation_force_slope(a, initial), (force(a + 1e-6) - force(a - 1e-6)) / 2e-6,
+                  1e-8);
+    }
   }
 }
 

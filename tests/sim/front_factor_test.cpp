@@ -52,7 +52,7 @@ TEST(FrontFactor, GivesBackWhatTheMatrixMadeForAnyNumberOfColumns) {
 }
 
 /// Half of a solve is L^-1 of the right side: products of two are those of the inverse.
-TEST(FrontFactor, ItsHalvesMakeAWholeSolve) {
+TEST(FrontFactor, ForwardAndBackwardSubstitutionSolve) {
   const Grid grid(8);
   FrontFactor factor;
   ASSERT_TRUE(factor.compute(grid.lower, grid.places));
@@ -100,7 +100,7 @@ TEST(FrontFactor, TakesAnotherMatrix) {
   check(joined);
 }
 
-TEST(FrontFactor, SaysWhenTheMatrixIsNotPositive) {
+TEST(FrontFactor, ReportsIndefiniteMatrices) {
   Grid grid(5);
   grid.lower.coeffRef(30, 30) = -1.0;
   FrontFactor factor;

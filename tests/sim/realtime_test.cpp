@@ -20,7 +20,7 @@ using testing::PatchOptions;
 struct Everything : ::testing::Test {
   PatchOptions options;
   rig::TissueLevel level;
-  Jaw jaw;
+  Jaw jaw = jaw_of(rig::JawJoint{});
   Everything() {
     options.across = 12;
     options.along = 8;
@@ -260,7 +260,7 @@ TEST_F(Everything, EveryInstructionSetAndAnyNumberOfThreadsGiveTheSameBits) {
   EXPECT_EQ(one, two);
 }
 
-TEST_F(Everything, WildDrivesStayFiniteAndBadNumbersReset) {
+TEST_F(Everything, RandomActivationStaysFiniteAndInvalidNumbersReset) {
   level.fibre_strength.assign(level.fibre_strength.size(), 4.0F);
   const FaceModel reference(lattice_of(level), jaw);
   const Model model(reference);

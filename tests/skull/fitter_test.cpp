@@ -46,7 +46,7 @@ TEST(Curves, SemilandmarksAreSpacedAlongTheBone) {
   EXPECT_GT(curve_points(generic, 0.006).size(), points.size() * 3 / 2);
 }
 
-TEST(Curves, TellOfShapeBetweenTheLandmarks) {
+TEST(Curves, ImproveTheFitBetweenLandmarks) {
   const Generic generic = round_head_with_curves();
   const TriangleMesh skin = mapped(globe(skin_radii, 48, 96), cheek);
   const TriangleMesh truth = mapped(generic.cranium, cheek);
@@ -108,7 +108,7 @@ TEST(Normals, TurnTheBoneWithTheSkin) {
       << "a thin plate in space has no gradient at data";
 }
 
-TEST(Landmarks, MoreOfThemOnlyHelp) {
+TEST(Landmarks, MoreLandmarksReduceTheError) {
   const Generic generic = round_head();
   const TriangleMesh skin = mapped(globe(skin_radii), lean);
   const TriangleMesh truth = mapped(generic.cranium, lean);

@@ -100,7 +100,7 @@ TEST(SkullFit, LengthsOfTheJawsMotionScaleWithTheHead) {
   EXPECT_NEAR(motion.lateral_glide, 0.0015, 1e-4);
 }
 
-TEST(SkullFit, BoneStaysUnderTheSkinWhereNoLandmarkTells) {
+TEST(SkullFit, BoneStaysUnderTheSkinBetweenLandmarks) {
   // Dents between the landmarks, deeper than the tissue is thick.
   const Generic generic = round_head();
   const Map dented = [](const Vec3& p) {
@@ -175,7 +175,7 @@ TEST(SkullFit, TeethThatTheHeadHasAreMet) {
         1e-9);
 }
 
-TEST(SkullFit, SaysWhatIsWrong) {
+TEST(SkullFit, ReportsInvalidInput) {
   const Generic generic = round_head();
   const TriangleMesh skin = globe(skin_radii);
   const Map same = [](const Vec3& p) { return p; };

@@ -157,7 +157,7 @@ TEST_F(RoundHead, SameInputSameBytes) {
             0);
 }
 
-TEST_F(RoundHead, SaysWhatIsMissing) {
+TEST_F(RoundHead, ReportsMissingInput) {
   Inputs none = inputs;
   none.skin = nullptr;
   EXPECT_THROW(build(none), Error);
@@ -195,7 +195,7 @@ TEST(LayerDepth, KeepsWithinBoneAndSkin) {
   EXPECT_LT(free_depth("labiale_superius"), free_depth("buccale_left"));
 }
 
-TEST(ReachField, TellsTheLiningOfAnEyeSocketFromLidsAndNose) {
+TEST(ReachField, DistinguishesTheLiningOfAnEyeSocketFromLidsAndNose) {
   const Landmarks landmarks = ict_landmarks();
   const ReachField field(landmarks, generic().mechanics.smas_shape, true, 0.0096);
   for (const char* side : {"_left", "_right"}) {

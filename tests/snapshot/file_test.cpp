@@ -28,7 +28,7 @@ TEST(Packing, GivesBackEveryNumber) {
   EXPECT_TRUE(unpack("", 3, 0).empty());
 }
 
-TEST(Packing, RefusesWhatIsNotPacked) {
+TEST(Packing, RejectsInvalidData) {
   const std::string text = pack({1, 2, 3, 4, 5, 6}, 3);
   for (size_t i = 0; i < text.size(); ++i) {
     std::string damaged = text;

@@ -121,7 +121,7 @@ TEST(Mutation, TwoPercentOfAStrengthAreCaught) {
             0U);
 }
 
-TEST(Mutation, NothingChangedIsNotCaught) {
+TEST(Mutation, AnUnchangedRigPasses) {
   EXPECT_EQ(caught([](rig::Rig&) {}), 0U);
 }
 
@@ -137,7 +137,7 @@ void see(void* user, const fascia_snapshot_difference* difference) {
   EXPECT_NE(difference->region[0], 0);
 }
 
-TEST(CInterface, ChecksAndSaysWhatIsWrong) {
+TEST(CInterface, ReportsInvalidArguments) {
   const std::vector<uint8_t> rig = test::tiny_rig_file();
   const Snapshot then = record(rig, "tiny", request());
   const std::string text = to_text(then);

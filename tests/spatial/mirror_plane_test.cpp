@@ -49,7 +49,7 @@ TEST(MirrorPlane, IsFoundFromFourMillimetresBeside) {
   EXPECT_GT(fit.apart.size(), 9 * some_of(mesh).size() / 10);
 }
 
-TEST(MirrorPlane, AScarOnOneSideDrawsItNowhere) {
+TEST(MirrorPlane, IsRobustAgainstAScarOnOneSide) {
   const TriangleMesh mesh = face_like(0.004);
   const MirrorFit fit = fit_mirror_plane(SurfaceQuery(mesh), some_of(mesh), beside(), 0.01);
   expect_middle(fit.plane, 1e-4);
@@ -70,7 +70,7 @@ TEST(MirrorPlane, FollowsTheSurfaceWhereverItStands) {
   expect_middle(plane, 5e-5);
 }
 
-TEST(MirrorPlane, WhereNothingIsWithinReachItStays) {
+TEST(MirrorPlane, IsUnchangedWithoutPointsWithinReach) {
   const TriangleMesh mesh = face_like();
   MirrorPlane far;
   far.point.x() = 1.0;

@@ -159,7 +159,7 @@ TEST(SurfaceQuery, WindingNumberFallsBesideAnOpening) {
   EXPECT_FALSE(box.inside(Vec3(0.5, 0.5, 1.5)));
 }
 
-TEST(SurfaceQuery, RefusesWhatIsNoSurface) {
+TEST(SurfaceQuery, RejectsInvalidMeshes) {
   EXPECT_THROW(SurfaceQuery(TriangleMesh{}), Error);
   TriangleMesh mesh = seamed_cube();
   mesh.triangles[0][1] = 99;

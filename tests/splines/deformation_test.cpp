@@ -206,7 +206,7 @@ TEST(Crease, LiesBetweenLandmarksThatApproach) {
 }
 
 // The edge information of one vector makes a crease of the asked stretch at the asked place.
-TEST(Crease, ImposedIsFound) {
+TEST(Crease, AnImposedCreaseIsFound) {
   std::vector<DeformationLandmark> landmarks(5);
   const Vec3 places[] = {{0.1, -0.2, 0}, {-2, -2, 0}, {2, -2, 0}, {-2, 2, 0}, {2, 2, 0}};
   for (int i = 0; i < 5; ++i)

@@ -137,7 +137,7 @@ TEST(Implicit, Figure48TorusFromNormalsHasGenusOne) {
   EXPECT_NEAR(hit->z(), tube_radius, 0.005);
 }
 
-TEST(Implicit, RefusesWhatHasNoAnswer) {
+TEST(Implicit, RejectsUnderdeterminedInput) {
   const std::vector<Vec3> circle = eight_on_circle();
   EXPECT_THROW(fit_hermite(circle, std::vector<Vec3>(3, Vec3::UnitX()), plane(3)), Error);
   EXPECT_THROW(fit_hermite(circle, std::vector<Vec3>(8, Vec3::Zero()), plane(3)), Error);

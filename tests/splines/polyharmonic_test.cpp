@@ -312,7 +312,7 @@ std::string message(const Sites& sites, const SplineOptions& options) {
   return "";
 }
 
-TEST(Factorisation, SaysWhichDataAreAtFault) {
+TEST(Factorisation, NamesTheDataAtFault) {
   Sites sites;
   sites.points = random_points(10, 20);
   sites.points[8] = sites.points[2];
@@ -335,7 +335,7 @@ TEST(Factorisation, SaysWhichDataAreAtFault) {
       << message(line, options);
 }
 
-TEST(Factorisation, RefusesWhatCannotBeSolved) {
+TEST(Factorisation, RejectsSingularSystems) {
   Sites sites;
   EXPECT_THROW(Factorisation(sites, {}), Error);
   sites.points = random_points(10, 13);

@@ -171,7 +171,7 @@ TEST(Simd, CholeskyOfEverySizeOnEveryUnit) {
   }
 }
 
-TEST(Simd, CholeskyRefusesWhatIsNotPositive) {
+TEST(Simd, CholeskyReportsIndefiniteMatrices) {
   for (int n : {1, 30, 150})
     for (const Functions* functions : all())
       for (double bad : {-1.0, 0.0, std::numeric_limits<double>::quiet_NaN()}) {

@@ -81,7 +81,7 @@ TEST(Relax, WithDerivativeRowsAndUnitsOfTheUser) {
             1e-9 * coefficients.norm());
 }
 
-TEST(Relax, WhenAllSlidesNothingBreaks) {
+TEST(Relax, AllPointsMaySlide) {
   Sites sites;
   sites.points = scattered(10, 7);
   std::vector<Freedom> freedoms;
@@ -189,7 +189,7 @@ TEST(Slide, NeverPassesANeighbourAndNeverRaisesTheEnergy) {
   EXPECT_NEAR(landmarks.target[11].x(), 5, 0.5);
 }
 
-TEST(Slide, RefusesWhatDoesNotFit) {
+TEST(Slide, RejectsMismatchedInput) {
   SlidingLandmarks landmarks;
   landmarks.source = scattered(6, 11);
   landmarks.target = landmarks.source;

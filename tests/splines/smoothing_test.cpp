@@ -98,7 +98,7 @@ TEST(CrossValidation, ExactDataAskForNoSmoothingAndPureNoiseForAPlane) {
   EXPECT_LT(choose_lambda(noisy.sites, noisy.data, plate()).degrees_of_freedom, 12);
 }
 
-TEST(CrossValidation, Refuses) {
+TEST(CrossValidation, RejectsInvalidInput) {
   Noisy noisy(12, 0.1);
   noisy.sites.weights.assign(12, 1);
   noisy.sites.weights[3] = std::numeric_limits<double>::infinity();

@@ -123,7 +123,7 @@ TEST(Mirror, OnALopsidedSkinImagesLieOnIt) {
   EXPECT_EQ(boundary_loops(full->mesh, connectivity(full->mesh)).size(), 1U);
 }
 
-TEST(Mirror, WhereTheOtherSideIsMissingNothingIsMadeUp) {
+TEST(Mirror, MissingSidesAreNotInvented) {
   FaceRegion region;
   const TriangleMesh whole = vault();
   std::vector<bool> keep;

@@ -300,7 +300,7 @@ PrimitiveLook look_of_material(const std::string& colour) {
   return Appearance::read(bytes, "triangle.glb").of(0, 0);
 }
 
-TEST(Appearance, GreyIsNoColourThatAnyoneChose) {
+TEST(Appearance, WhiteAndGreyCountAsUnset) {
   EXPECT_FALSE(look_of_material("[1,1,1,1]").has_material);
   EXPECT_FALSE(look_of_material("[0.6,0.6,0.6,1]").has_material);
   EXPECT_TRUE(look_of_material("[0.6,0.4,0.3,1]").has_material);

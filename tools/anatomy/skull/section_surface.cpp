@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "builder/splines/polyharmonic.h"
+#include "geometry/smoothstep.h"
 
 namespace fascia::skull_maker {
 namespace {
@@ -101,7 +102,7 @@ struct Patches {
     double value = blended(point, own);
     if (point.x() < blend_width) {
       const double t = point.x() / blend_width;
-      const double share = 0.5 + 0.5 * t * t * (3 - 2 * t);
+      const double share = 0.5 + 0.5 * smoothstep(t);
       const double share_slope = 3 * t * (1 - t) / blend_width;
       Vec3 other;
       const double mirrored = blended({-point.x(), point.y(), point.z()}, other);
