@@ -163,8 +163,8 @@ void write_cache(const Common& common, const BakeRequest& request, Face& face,
 }  // namespace
 
 BakeFigures bake_file(const Common& common, const BakeRequest& request) {
-  const std::string format = format_of(request);
   check_output(request.output, {request.rig});
+  const std::string format = format_of(request);
   Face face(request.rig,
             {format == "glb" ? FASCIA_SPACE_MESH : FASCIA_SPACE_INPUT, request.solver, request.level});
   const std::vector<ShapeToBake> shapes = shapes_of(face, request);

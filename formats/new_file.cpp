@@ -40,10 +40,13 @@ bool write_all(int file, std::span<const uint8_t> bytes) {
 
 namespace {
 
-/// Where a symbolic link leads to.
-fs::path destination_of(const fs::path& target) {
+/// Where a symbolic link leads to, also when there is nothing yet.
+fs::path destination_of(fs::path target) {
+  constexpr int most_links = 40;  // as many as the system follows
   std::error_code status;
-  return fs::is_symlink(fs::symlink_status(target, status)) ? fs::weakly_canonical(target, status) : target;
+  for (int k = 0; k < most_links && fs::is_symlink(fs::symlink_status(target, status)); ++k)
+    target = target.parent_path() / fs::read_symlink(target, status);
+  return target;
 }
 
 /// Calls `make`, which returns a file or -1 with errno set, with names beside `target` until one is not

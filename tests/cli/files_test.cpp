@@ -69,7 +69,7 @@ TEST_F(FilesOfTheTool, NoCommandWritesOverAnythingItReads) {
         "play " + in + " --curves " + at("x.csv") + " -o ",
         "play" + rig + "--curves " + in + " -o ",
         "bake " + in + " -o ",
-        "export " + in + " -o ",
+        "export " + in + " --part skin -o ",
         "render " + in + " -o ",
         "render" + rig + "--activations " + in + " -o ",
         "render" + rig + "--curves " + in + " -o ",

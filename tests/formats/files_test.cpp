@@ -90,6 +90,16 @@ TEST_F(Files, WritesKeepLinksAndPermissions) {
   EXPECT_NO_THROW(write_text("/dev/null", "gone"));
 }
 
+TEST_F(Files, ALinkToNothingGetsItsFile) {
+  fs::create_directories(folder_ / "elsewhere");
+  fs::create_symlink("elsewhere/new.txt", folder_ / "first.txt");
+  fs::create_symlink(folder_ / "first.txt", folder_ / "second.txt");
+  write_text(folder_ / "second.txt", "1234");
+  EXPECT_TRUE(fs::is_symlink(folder_ / "second.txt"));
+  EXPECT_TRUE(fs::is_symlink(folder_ / "first.txt"));
+  EXPECT_EQ(fs::file_size(folder_ / "elsewhere" / "new.txt"), 4u);
+}
+
 TEST_F(Files, WhatIsTooLargeIsRefused) {
   write_text(folder_ / "sparse.obj", "v 0 0 0");
   fs::resize_file(folder_ / "sparse.obj", most_bytes + 1);
