@@ -395,7 +395,7 @@ TEST(BuildMuscles, OneThatFailsIsOmittedAndNamedTheOthersAreBuilt) {
   ASSERT_EQ(result.muscles.size(), 1U);
   EXPECT_EQ(result.muscles[0].name, "b");
   ASSERT_EQ(result.warnings.size(), 1U);
-  EXPECT_EQ(result.warnings[0].rfind("a was left out", 0), 0U) << result.warnings[0];
+  EXPECT_EQ(result.warnings[0].rfind("a was omitted", 0), 0U) << result.warnings[0];
   Options edited;
   edited.edits["a"].strength = 2.0;  // what the user is at work on he is told of
   EXPECT_THROW(build(head.inputs(), edited), Error);
