@@ -38,8 +38,8 @@ class Digest {
   void number(std::string_view, const T& number) {
     bytes(&number, sizeof number);
   }
-  void bounded(std::string_view name, double number_, double /*least*/, double /*most*/) {
-    number(name, number_);
+  void bounded(std::string_view name, double value, double /*least*/, double /*most*/) {
+    number(name, value);
   }
   template <class T>
   void hash(std::string_view name, const T& value) {
