@@ -25,7 +25,7 @@ fonts-dejavu-core Bitstream-Vera'
 declare -A licence=(
   [libc6]=LGPL-2.1-or-later [libstdc++6]='GPL-3.0-or-later WITH GCC-exception-3.1' [libgcc-s1]='GPL-3.0-or-later WITH GCC-exception-3.1'
   [libtbb12]=Apache-2.0 [libtbbmalloc2]=Apache-2.0 [libtbbbind-2-5]=Apache-2.0 [libembree3-3]=Apache-2.0 [libmeshoptimizer2d]=MIT [libdraco7]=Apache-2.0
-  [libepoxy0]=MIT [libegl1]=MIT [libglvnd0]=MIT [libgl1]=MIT [zlib1g]=Zlib [libbullet3.24]=Zlib [libglfw3]=Zlib [libstb0]=MIT)
+  [libepoxy0]=MIT [libegl1]=MIT [libglvnd0]=MIT [libgl1]=MIT [zlib1g]=Zlib [libbullet3.24]=Zlib [libglfw3]=Zlib [libstb0]=MIT [libtinyobjloader2rc10]=MIT)
 
 escaped() { printf '%s' "$1" | sed 's/\\/\\\\/g; s/"/\\"/g'; }
 version=$(sed -n 's/^project(fascia VERSION \([0-9.]*\).*/\1/p' "$root/CMakeLists.txt")
