@@ -33,7 +33,7 @@ class Interrupted : public Workplace {
             {"bake", at("rig.glb"), "--shapes", "arkit,muscles", "-o", at("baked.glb")},
             {"fit", at("rig.glb"), "--target", at("smile.ply"), "-o", at("found.json")},
             {"render", at("rig.glb"), "-o", at("picture.png")},
-            {"check", at("rig.glb"), "--sheet", at("sheet.png")},
+            {"check", at("built.glb"), "--sheet", at("sheet.png")},
             {"batch", at("heads.jsonl"), "-o", at("heads")}};
   }
 

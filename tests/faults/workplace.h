@@ -57,10 +57,14 @@ class Workplace : public ::testing::Test {
             {"fit " + at("rig.glb") + " --target " + at("smile.ply") + " -o ", "found.json"}};
   }
 
-  /// What draws: a picture's libraries do not bear it that memory is refused.
+  /// What draws, of the small rig and of one that can be checked: a picture's libraries do not bear it that
+  /// memory is refused.
   std::vector<Job> picture_jobs() const {
+    const Job build = build_job();
+    EXPECT_EQ(std::system((test::tool().string() + " " + build.words + at("whole.glb") + " --quiet").c_str()),
+              0);
     return {{"render " + at("rig.glb") + " --size 64 -o ", "picture.png"},
-            {"check " + at("rig.glb") + " --sheet ", "sheet.png"}};
+            {"check " + at("whole.glb") + " --sheet ", "sheet.png"}};
   }
   /// Writes a head, for a build of it, which takes seconds.
   Job build_job() const {
