@@ -25,7 +25,7 @@ void step_face(int frames) {
   rig::TissueLevel level = testing::make_patch(options);
   testing::add_fibre(level, options, 0, 4, 1, 12, 0.4F);
   testing::add_fibre(level, options, 1, 4, 20, 9, 0.4F);
-  const sim::FaceModel reference(sim::lattice_of(level), sim::Jaw{});
+  const sim::FaceModel reference(sim::lattice_of(level), sim::jaw_of(rig::JawJoint{}));
   const sim::realtime::Model model(reference);
   sim::realtime::Solver face(model, 2);
   for (int frame = 0; frame < frames; ++frame) {
