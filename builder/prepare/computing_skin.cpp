@@ -75,10 +75,15 @@ ComputingSkin computing_skin(const formats::Scene& scene, const WeldedScene& wel
 }
 
 void warn_of_collapsed(const formats::Scene& scene, const WeldedScene& welded,
-                       std::vector<std::string>& warnings) {
-  if (welded.collapsed.empty()) return;
-  const auto [mesh, vertex] = welded.collapsed.front();
-  const size_t count = welded.collapsed.size();
+                       const std::vector<Part>& vertex_part, std::vector<std::string>& warnings) {
+  std::vector<std::pair<int, int>> on_skin;
+  for (const auto& [mesh, vertex] : welded.collapsed) {
+    const int at = welded.vertex_map[static_cast<size_t>(mesh)][static_cast<size_t>(vertex)];
+    if (vertex_part[static_cast<size_t>(at)] == Part::skin) on_skin.emplace_back(mesh, vertex);
+  }
+  if (on_skin.empty()) return;
+  const auto [mesh, vertex] = on_skin.front();
+  const size_t count = on_skin.size();
   warnings.push_back((count == 1 ? "1 triangle" : std::to_string(count) + " triangles") +
                      ", the first at vertex " + std::to_string(vertex) + " of '" +
                      scene.meshes[static_cast<size_t>(mesh)].name +

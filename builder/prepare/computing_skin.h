@@ -15,9 +15,10 @@ struct ComputingSkin {
 ComputingSkin computing_skin(const formats::Scene& scene, const WeldedScene& welded,
                              const std::vector<bool>& is_skin, std::vector<std::string>& warnings);
 
-/// Warns of triangles of `welded` that are left out because two of their corners are one.
+/// Warns of triangles of the skin that `welded` left out because two of their corners are one; `vertex_part`:
+/// of each vertex of its surface.
 void warn_of_collapsed(const formats::Scene& scene, const WeldedScene& welded,
-                       std::vector<std::string>& warnings);
+                       const std::vector<Part>& vertex_part, std::vector<std::string>& warnings);
 
 /// Warns of pieces of `welded` that are too small to be a part of the head and have no part's name.
 void warn_of_specks(const formats::Scene& scene, const WeldedScene& welded, const Parts& parts,

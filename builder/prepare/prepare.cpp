@@ -58,7 +58,6 @@ PreparedHead prepare(const formats::Scene& scene, const formats::LandmarkFile& g
   const WeldedScene welded = weld_scene(scene, head.input_to_metres);
   const Parts parts = recognise_parts(scene, welded, landmarks, options);
   warn_of_other_heads(scene, welded, parts, head.warnings);
-  warn_of_collapsed(scene, welded, head.warnings);
   warn_of_specks(scene, welded, parts, head.warnings);
   head.eye_left = parts.eye_left;
   head.eye_right = parts.eye_right;
@@ -71,6 +70,7 @@ PreparedHead prepare(const formats::Scene& scene, const formats::LandmarkFile& g
     for (int v : welded.surface.triangles[t])
       vertex_part[static_cast<size_t>(v)] = part;
   }
+  warn_of_collapsed(scene, welded, vertex_part, head.warnings);
   ComputingSkin skin = computing_skin(scene, welded, is_skin, head.warnings);
   head.skin = std::move(skin.mesh);
   for (size_t m = 0; m < scene.meshes.size(); ++m) {

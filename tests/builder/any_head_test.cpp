@@ -254,7 +254,7 @@ Difference difference_in(const PosedFace::Values& pose, PosedFace& plain, PosedF
 }
 
 /// Stiffness is the tissue's, not the mesh's: with four triangles in place of each the same vertices move
-/// alike. A stiffness that went with the mesh's edges would change motions by half and more.
+/// alike.
 TEST(AnyHead, ATessellationTwiceAsFineMovesAlike) {
   Variant plain("coarse", no_change), finer("fine", halve_every_edge);
   ASSERT_GT(finer.face().face().rest(0).size(), 3 * plain.face().face().rest(0).size());
