@@ -1,6 +1,7 @@
 #include "geometry/mesh.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 
 namespace fascia {
 
@@ -30,6 +31,11 @@ Vec3 triangle_normal(const TriangleMesh& mesh, int triangle) {
 
 double triangle_area(const TriangleMesh& mesh, int triangle) {
   return area_vector(mesh, triangle).norm();
+}
+
+double triangle_height(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
+  return longest > 0.0 ? (b - a).cross(c - a).norm() / longest : 0.0;
 }
 
 std::vector<Vec3> vertex_normals(const TriangleMesh& mesh) {

@@ -46,6 +46,9 @@ Vec3 triangle_normal(const TriangleMesh& mesh, int triangle);
 /// Area of triangle `triangle`, in the square of the mesh's unit.
 double triangle_area(const TriangleMesh& mesh, int triangle);
 
+/// Height of a triangle over its longest side, in the unit of its corners; 0 where they are one point.
+double triangle_height(const Vec3& a, const Vec3& b, const Vec3& c);
+
 /// Area-weighted unit vertex normals, one per vertex; zero for vertices without area around them.
 std::vector<Vec3> vertex_normals(const TriangleMesh& mesh);
 

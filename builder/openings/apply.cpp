@@ -84,8 +84,8 @@ class MeshCutter {
     }
   }
 
-  /// Removes triangles that the welded skin lacks (without area, or back to back) and that would hold both
-  /// sides of the cut together. `skin_triangles`: sorted corners of the old skin, in order.
+  /// Removes triangles without height that the welded skin lacks and that would hold both sides of the cut
+  /// together. `skin_triangles`: sorted corners of the old skin's triangles beside the cut, in order.
   void remove_bridges(const std::vector<Triangle>& skin_triangles, const std::set<int>& beside_cut) {
     size_t kept = 0;
     for (size_t t = 0; t < scene_.triangles.size(); ++t) {
@@ -148,14 +148,8 @@ class MeshCutter {
 
   bool is_flat(const Triangle& t) const {
     constexpr double lowest = 2e-5;  // metres
-    const TriangleMesh own{
-        {head_.positions[static_cast<size_t>(t[0])], head_.positions[static_cast<size_t>(t[1])],
-         head_.positions[static_cast<size_t>(t[2])]},
-        {{0, 1, 2}}};
-    double longest = 0.0;
-    for (size_t k = 0; k < 3; ++k)
-      longest = std::max(longest, (own.vertices[k] - own.vertices[(k + 1) % 3]).norm());
-    return 2.0 * triangle_area(own, 0) <= lowest * longest;
+    const auto corner = [&](size_t k) -> const Vec3& { return head_.positions[static_cast<size_t>(t[k])]; };
+    return triangle_height(corner(0), corner(1), corner(2)) <= lowest;
   }
 
   /// Whether of the corners beside the cut some lie below it and others on it or above.
@@ -251,7 +245,8 @@ int apply(const Cut& cut, const Lining& lining, prepare::PreparedHead& head, Ope
   }
   std::vector<Triangle> skin_triangles;
   for (const Triangle& t : head.skin.triangles)
-    skin_triangles.push_back(sorted(t));
+    if (std::any_of(t.begin(), t.end(), [&](int v) { return beside_cut.count(v) > 0; }))
+      skin_triangles.push_back(sorted(t));
   std::sort(skin_triangles.begin(), skin_triangles.end());
   const Mat4 to_file = head.input_to_metres.inverse();
   std::vector<MeshCutter> cutters;

@@ -24,12 +24,8 @@ std::string told(const formats::Scene& scene, const WeldedScene& welded, std::ve
 
 double height_of(const TriangleMesh& mesh, size_t triangle) {
   const Triangle& t = mesh.triangles[triangle];
-  const auto side = [&](size_t k) {
-    return (mesh.vertices[static_cast<size_t>(t[(k + 1) % 3])] - mesh.vertices[static_cast<size_t>(t[k])])
-        .norm();
-  };
-  const double longest = std::max({side(0), side(1), side(2)});
-  return longest > 0.0 ? 2.0 * triangle_area(mesh, static_cast<int>(triangle)) / longest : 0.0;
+  const auto corner = [&](size_t k) -> const Vec3& { return mesh.vertices[static_cast<size_t>(t[k])]; };
+  return triangle_height(corner(0), corner(1), corner(2));
 }
 
 /// A corner of each of `triangles`.
