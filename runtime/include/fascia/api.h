@@ -1,6 +1,7 @@
-/* All functions of Fascia's runtime in one table, for hosts that load the library dynamically: look up
- * fascia_get_api only (dlsym, GetProcAddress) and call the other functions through the table. Each member is
- * the function of the same name with the prefix fascia_; see there. */
+/** \file
+ * All functions of Fascia's runtime in one table, for hosts that load the library dynamically: look up
+ * fascia_get_api only (dlsym, GetProcAddress) and call the other functions through the table.
+ */
 #ifndef FASCIA_API_H
 #define FASCIA_API_H
 
@@ -13,10 +14,11 @@
 extern "C" {
 #endif
 
-/* Within a major version members are only appended. */
+/** The table. Each member is the function of the same name with the prefix fascia_, and is documented there.
+ * Within a major version members are only appended. */
 typedef struct fascia_api {
-  uint32_t struct_size;     /* of the library's table: later members do not exist */
-  uint32_t library_version; /* as returned by fascia_version */
+  uint32_t struct_size;     /**< of the library's table: later members do not exist */
+  uint32_t library_version; /**< as returned by fascia_version */
   uint32_t (*version)(void);
   const char* (*result_name)(fascia_result result);
   const char* (*last_message)(void);
@@ -109,12 +111,12 @@ typedef struct fascia_api {
                                         float* by_member);
 } fascia_api;
 
-/* The library's table, for a host compiled for `version` (FASCIA_VERSION_MAJOR << 16 |
- * FASCIA_VERSION_MINOR
- * << 8): FASCIA_ERROR_VERSION if the library has another major version or a smaller minor version
- * (before 1.0 any other minor version). */
+/** Gives the library's table, a constant, to a host compiled for `version` (FASCIA_VERSION_MAJOR << 16 |
+ * FASCIA_VERSION_MINOR << 8): FASCIA_ERROR_VERSION if the library has another major version or a smaller
+ * minor version (before 1.0 any other minor version). */
 FASCIA_API fascia_result fascia_get_api(uint32_t version, const fascia_api** api);
 
+/** The type of fascia_get_api, for the symbol that dlsym or GetProcAddress returns. */
 typedef fascia_result (*fascia_get_api_function)(uint32_t version, const fascia_api** api);
 
 #ifdef __cplusplus
