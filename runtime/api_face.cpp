@@ -129,7 +129,7 @@ fascia_result fascia_face_touch(fascia_face* handle, uint32_t mesh, uint32_t ver
             "the force is null or not a finite number");
     require(vertex < with_mesh(handle, mesh).vertex_count(mesh), "the mesh has no such vertex");
     require(checked(handle).touch(mesh, vertex, bounded_force({force[0], force[1], force[2]})),
-            "there are 64 touches already");
+            "there are too many touches already: remove them with fascia_face_clear_touches");
     return FASCIA_OK;
   });
 }

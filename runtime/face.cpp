@@ -17,6 +17,8 @@ std::size_t chosen_level(const Asset& asset, int32_t level) {
   return static_cast<std::size_t>(level);
 }
 
+constexpr std::size_t most_touches = 64, most_influences = 8;  // the latter of the builder's rigs
+
 }  // namespace
 
 Eigen::Matrix3f eye_rotation(float yaw, float pitch) {
@@ -28,7 +30,8 @@ Eigen::Matrix3f eye_rotation(float yaw, float pitch) {
 Face::Face(std::shared_ptr<const Asset> asset, const fascia_face_options& options)
     : asset_(std::move(asset)), options_(options), mixer_(*asset_) {
   bones_.eye_centres = {asset_->rig().skull.eye_left.centre, asset_->rig().skull.eye_right.centre};
-  touches_.reserve(256);
+  touches_.reserve(most_touches * most_influences);
+  compression_.resize(asset_->primitives().size());
   take_level(chosen_level(*asset_, options.level));
   for (const auto& shape : asset_->shapes(level_, options.space))
     meshes_.emplace_back(*shape);
@@ -194,18 +197,19 @@ bool Face::touch(std::size_t mesh, std::size_t vertex, const sim::Vec3& force) {
 }
 
 const std::vector<Vec3f>& Face::compression(std::size_t mesh) {
+  std::vector<Vec3f>& compression = compression_[mesh];
   strain_.resize(model_->lattice().columns);
   sim::skin_strain(*model_, displacements_, strain_);
-  compression_.assign(asset_->primitives()[mesh].positions.size(), Vec3f::Zero());
+  compression.assign(asset_->primitives()[mesh].positions.size(), Vec3f::Zero());
   const rig::Binding* binding = asset_->binding(level_, mesh);
-  if (binding == nullptr) return compression_;
-  for (std::size_t v = 0; v < compression_.size(); ++v) {
+  if (binding == nullptr) return compression;
+  for (std::size_t v = 0; v < compression.size(); ++v) {
     sim::Strain sum = sim::Strain::Zero();
     for (std::size_t i = v * binding->influences; i < (v + 1) * binding->influences; ++i)
       if (binding->nodes[i] < strain_.size()) sum += binding->weights[i] * strain_[binding->nodes[i]];
-    compression_[v] = sim::strongest_compression(sum);
+    compression[v] = sim::strongest_compression(sum);
   }
-  return compression_;
+  return compression;
 }
 
 void Face::pose() {

@@ -101,7 +101,7 @@ class Face {
   sim::Vec3 face_centre_ = sim::Vec3::Zero();
   std::vector<sim::NodeForce> touches_;
   std::vector<sim::Strain> strain_;
-  std::vector<Vec3f> compression_;
+  std::vector<std::vector<Vec3f>> compression_;  ///< of each mesh, where it was asked for
   std::vector<Vec3f> displacements_, fibre_points_, nodes_;
   std::unique_ptr<sim::Sensitivity> sensitivity_;
   bool is_linearised_ = false;

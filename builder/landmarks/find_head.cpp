@@ -20,6 +20,7 @@ constexpr double plain_score = 0.25;  // above: a face, and no other surface nee
 constexpr double sure_score = 0.40;   // above: no other place needs to be tried
 /// Noses are looked for, which takes long, on so many surfaces.
 constexpr size_t surfaces_for_noses = 10;
+constexpr size_t least_samples = 50;  // of a surface that a head is looked for in
 
 struct Candidate {
   Placement placement;
@@ -73,8 +74,8 @@ Placement moved_beside(const Placement& placement, const Beside& beside) {
 /// Looks for one head in one surface.
 class Search {
  public:
-  Search(const GenericFace& face, SearchedSurface& surface, const HeadHints& hints)
-      : face_(face), surface_(surface), hints_(hints), few_(some_face_points(face, 4)) {}
+  Search(const GenericFace& face, SearchedSurface& surface, const HeadHints& hints, const ForEach& for_each)
+      : face_(face), surface_(surface), hints_(hints), for_each_(for_each), few_(some_face_points(face, 4)) {}
 
   const Candidate& best() const { return best_; }
   bool has_face(double score) const { return best_.likeness.score() >= score; }
@@ -84,9 +85,13 @@ class Search {
     try_all(guess_by_anchors(face_, hints_.given, surface_.about(all), 6), all, 6);
   }
   void by_lumps() {
+    const std::vector<Ball> lumps = round_lumps(surface_.open(), 7);
+    std::vector<std::vector<Guess>> guesses(lumps.size());
+    run_each(for_each_, lumps.size(),
+             [&](size_t k) { guesses[k] = guess_placements(face_, surface_.query(), lumps[k], 16); });
     std::vector<Candidate> candidates;
-    for (const Ball& lump : round_lumps(surface_.open(), 7))
-      add(candidates, guess_placements(face_, surface_.query(), lump, 16), lump);
+    for (size_t k = 0; k < lumps.size(); ++k)
+      add(candidates, guesses[k], lumps[k]);
     try_all(candidates, 8);
   }
   void by_eyes() {
@@ -100,28 +105,30 @@ class Search {
     for (int round = 0; round < 2 && !best_.fit.used.empty(); ++round) {
       if (has_face(sure_score)) return;
       const Candidate from = best_;
-      for (const Beside& beside : places_beside) {
-        Candidate candidate = from;
-        candidate.placement = moved_beside(from.placement, beside);
-        candidate.placement = refine_placement(face_, surface_.about(vault_of(face_, candidate.placement)),
-                                               candidate.placement, 6, 3, nullptr, hints_.given);
-        bend(candidate);
-        Candidate unrefined = from;
-        unrefined.placement = moved_beside(from.placement, beside);
-        bend(unrefined);
-      }
+      std::vector<Candidate> candidates;
+      for (const Beside& beside : places_beside)
+        for (int k = 0; k < 2; ++k) {
+          candidates.push_back(from);
+          candidates.back().placement = moved_beside(from.placement, beside);
+        }
+      std::vector<Candidate*> refined;
+      for (size_t k = 0; k < candidates.size(); k += 2)
+        refined.push_back(&candidates[k]);
+      refine(refined, 6, 3);
+      bend(candidates);
       if (best_.likeness.score() < 1.02 * from.likeness.score()) return;
     }
   }
   void by_nose() {
     const Ball all = surface_.all();
-    try_all(guess_by_nose(face_, surface_.about(all), 48), all, 8);
+    try_all(guess_by_nose(face_, surface_.about(all), 48, for_each_), all, 8);
   }
 
  private:
   const GenericFace& face_;
   SearchedSurface& surface_;
   const HeadHints& hints_;
+  const ForEach& for_each_;
   std::vector<size_t> few_;
   Candidate best_;
 
@@ -140,40 +147,83 @@ class Search {
     try_all(candidates, kept);
   }
 
-  /// Draws all of `candidates` near, bends the generic head onto the `kept` best of them.
+  /// Draws all of `candidates` near, bends the generic head onto the `kept` best of them: the best alone,
+  /// which in plain heads is the face, then several at a time.
   void try_all(std::vector<Candidate>& candidates, size_t kept) {
-    for (Candidate& candidate : candidates) {
-      const Neighbours& samples = surface_.about(candidate.about);
-      if (samples.samples().size() < 50) continue;
-      const double guessed = candidate.placement.scale;
-      candidate.placement =
-          refine_placement(face_, samples, candidate.placement, 8, 6, nullptr, hints_.given);
-      // A head shrunk to nothing fits anywhere.
-      if (std::abs(std::log(candidate.placement.scale / guessed)) > std::log(1.8)) continue;
-      candidate.distance = distance_from(face_, few_, samples, candidate.placement);
-    }
+    constexpr size_t at_a_time = 4;
+    draw_near(candidates);
     sort_and_keep(candidates, face_, kept);
-    for (Candidate& candidate : candidates) {
-      if (candidate.distance >= 1.0) continue;
-      const Neighbours& samples = surface_.about(vault_of(face_, candidate.placement));
-      if (samples.samples().size() < 50) continue;
-      candidate.placement =
-          refine_placement(face_, samples, candidate.placement, 12, 2, nullptr, hints_.given);
-      bend(candidate);
+    for (size_t first = 0, count = 1; first < candidates.size(); first += count, count = at_a_time) {
+      std::vector<Candidate> some;
+      for (size_t k = first; k < std::min(first + count, candidates.size()); ++k)
+        if (candidates[k].distance < 1.0) some.push_back(std::move(candidates[k]));
+      std::vector<Candidate*> refined;
+      for (Candidate& candidate : some)
+        refined.push_back(&candidate);
+      refine(refined, 12, 2);
+      bend(some);
       if (has_face(sure_score)) return;
     }
   }
 
-  /// Bends the generic head onto the surface, from where it stands and once more from where that brought it.
-  void bend(Candidate& candidate) {
+  /// Places every candidate on the samples about it and measures how far from them it ends.
+  void draw_near(std::vector<Candidate>& candidates) {
+    std::vector<const Neighbours*> samples;
+    for (const Candidate& candidate : candidates)
+      samples.push_back(&surface_.about(candidate.about));
+    run_each(for_each_, candidates.size(), [&](size_t k) {
+      if (samples[k]->samples().size() < least_samples) return;
+      Candidate& candidate = candidates[k];
+      const double guessed = candidate.placement.scale;
+      candidate.placement =
+          refine_placement(face_, *samples[k], candidate.placement, 8, 6, nullptr, hints_.given);
+      // A head shrunk to nothing fits anywhere.
+      if (std::abs(std::log(candidate.placement.scale / guessed)) > std::log(1.8)) return;
+      candidate.distance = distance_from(face_, few_, *samples[k], candidate.placement);
+    });
+  }
+
+  /// The samples about the head of each candidate. Which samples there are depends on which were asked for
+  /// before, so they are always asked for in this order, whatever runs side by side.
+  std::vector<const Neighbours*> samples_about(const std::vector<Candidate*>& candidates) {
+    std::vector<const Neighbours*> samples;
+    for (const Candidate* candidate : candidates)
+      samples.push_back(&surface_.about(vault_of(face_, candidate->placement)));
+    return samples;
+  }
+
+  void refine(const std::vector<Candidate*>& candidates, int rounds, int stride) {
+    const std::vector<const Neighbours*> samples = samples_about(candidates);
+    run_each(for_each_, candidates.size(), [&](size_t k) {
+      if (samples[k]->samples().size() < least_samples) return;
+      candidates[k]->placement = refine_placement(face_, *samples[k], candidates[k]->placement, rounds,
+                                                  stride, nullptr, hints_.given);
+    });
+  }
+
+  /// Bends the generic head onto the surface, from where each candidate stands and once more from where that
+  /// brought it.
+  void bend(std::vector<Candidate>& candidates) {
+    std::vector<Candidate*> left;
+    for (Candidate& candidate : candidates)
+      left.push_back(&candidate);
     for (int round = 0; round < 2; ++round) {
-      const Neighbours& samples = surface_.about(vault_of(face_, candidate.placement));
-      if (samples.samples().size() < 50) return;
-      candidate.fit = register_face(face_, samples.samples(), candidate.placement, hints_.given);
-      candidate.likeness = likeness(face_, candidate.fit, samples);
-      if (candidate.likeness.score() > best_.likeness.score() || best_.fit.used.empty()) best_ = candidate;
-      if (candidate.likeness.score() >= sure_score) return;
-      candidate.placement = similarity_of(face_, candidate.fit);
+      const std::vector<const Neighbours*> samples = samples_about(left);
+      run_each(for_each_, left.size(), [&](size_t k) {
+        if (samples[k]->samples().size() < least_samples) return;
+        left[k]->fit = register_face(face_, samples[k]->samples(), left[k]->placement, hints_.given);
+        left[k]->likeness = likeness(face_, left[k]->fit, *samples[k]);
+      });
+      std::vector<Candidate*> again;
+      for (size_t k = 0; k < left.size(); ++k) {
+        if (samples[k]->samples().size() < least_samples) continue;
+        const double score = left[k]->likeness.score();
+        if (score > best_.likeness.score() || best_.fit.used.empty()) best_ = *left[k];
+        if (score < sure_score) again.push_back(left[k]);
+      }
+      for (Candidate* candidate : again)
+        candidate->placement = similarity_of(face_, candidate->fit);
+      left = std::move(again);
     }
   }
 };
@@ -188,7 +238,7 @@ class Search {
 }  // namespace
 
 FoundHead find_head(const GenericFace& face, std::span<const TriangleMesh> surfaces, const std::string& path,
-                    const HeadHints& hints) {
+                    const HeadHints& hints, const ForEach& for_each) {
   struct Looked {
     std::unique_ptr<SearchedSurface> surface;
     std::unique_ptr<Search> search;
@@ -207,8 +257,8 @@ FoundHead find_head(const GenericFace& face, std::span<const TriangleMesh> surfa
   bool is_plain = false;
   for (size_t s = 0; s < surfaces.size() && !is_plain; ++s) {
     auto surface = std::make_unique<SearchedSurface>(surfaces[s]);
-    if (surface->open().size() < 50) continue;
-    auto search = std::make_unique<Search>(face, *surface, hints);
+    if (surface->open().size() < least_samples) continue;
+    auto search = std::make_unique<Search>(face, *surface, hints, for_each);
     looked.push_back({std::move(surface), std::move(search), s});
     if (is_told) {
       looked.back().search->by_anchors();
@@ -236,8 +286,8 @@ FoundHead find_head(const GenericFace& face, std::span<const TriangleMesh> surfa
 }
 
 FoundHead find_head(const GenericFace& face, const TriangleMesh& mesh, const std::string& path,
-                    const HeadHints& hints) {
-  return find_head(face, std::span<const TriangleMesh>(&mesh, 1), path, hints);
+                    const HeadHints& hints, const ForEach& for_each) {
+  return find_head(face, std::span<const TriangleMesh>(&mesh, 1), path, hints, for_each);
 }
 
 }  // namespace fascia::landmarks

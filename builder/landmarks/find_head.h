@@ -7,6 +7,7 @@
 
 #include "builder/landmarks/likeness.h"
 #include "builder/landmarks/registration.h"
+#include "geometry/for_each.h"
 
 namespace fascia::landmarks {
 
@@ -34,12 +35,12 @@ struct HeadHints {
 /// which two or more determine the pose. Each candidate is refined by iterative closest points, the generic
 /// head is deformed slightly onto the mesh, and the candidates are compared by Likeness::score. Throws
 /// fascia::Error if nothing resembles a face and fewer than two landmarks are given; `path` names the file in
-/// the message.
+/// the message. Candidates are tried side by side by `for_each`; the result does not depend on it.
 FoundHead find_head(const GenericFace& face, std::span<const TriangleMesh> surfaces, const std::string& path,
-                    const HeadHints& hints = {});
+                    const HeadHints& hints = {}, const ForEach& for_each = {});
 
 /// The same for one surface.
 FoundHead find_head(const GenericFace& face, const TriangleMesh& mesh, const std::string& path,
-                    const HeadHints& hints = {});
+                    const HeadHints& hints = {}, const ForEach& for_each = {});
 
 }  // namespace fascia::landmarks

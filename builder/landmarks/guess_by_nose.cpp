@@ -1,5 +1,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "builder/landmarks/placement.h"
@@ -8,6 +9,8 @@
 namespace fascia::landmarks {
 
 namespace {
+
+constexpr double nose_radius = 0.025;  // metres of the generic head
 
 /// A place that stands out of its surroundings, and which way.
 struct Protrusion {
@@ -97,38 +100,51 @@ std::vector<size_t> some_face_points(const GenericFace& face, size_t stride) {
   return some;
 }
 
-std::vector<Guess> guess_by_nose(const GenericFace& face, const Neighbours& samples, int count) {
-  const double extent = bounds(samples.samples().points).size().norm();
+namespace {
+
+/// The best guesses about what stands out of `samples` most, for one size of head.
+std::vector<Guess> guesses_of_size(const GenericFace& face, const Neighbours& samples, const Protrusion& nose,
+                                   double scale) {
   const std::vector<size_t> few = some_face_points(face, 5);
-  const Neighbours generic(face.points);
-  const double nose_radius = 0.025;
-  const Protrusion nose = protrusion_at(generic, face.nose_tip, nose_radius);
   std::vector<Guess> all;
+  for (const Protrusion& tip : protrusions(samples, nose_radius * scale, 6)) {
+    const Mat3 onto = least_rotation(nose.direction, tip.direction).toRotationMatrix();
+    std::vector<Guess> here;
+    const int turns = 24;
+    for (int turn = 0; turn < turns; ++turn)
+      for (double nod : {0.0, -0.3, 0.3}) {
+        Guess guess;
+        guess.placement.scale = scale;
+        guess.placement.rotation =
+            Eigen::AngleAxisd(2.0 * EIGEN_PI * turn / turns, tip.direction).toRotationMatrix() * onto *
+            Eigen::AngleAxisd(nod, Vec3::UnitX()).toRotationMatrix();
+        guess.placement.shift = tip.tip - scale * (guess.placement.rotation * face.nose_tip);
+        guess.cost = distance_from(face, few, samples, guess.placement);
+        here.push_back(guess);
+      }
+    const size_t kept = 3;
+    std::partial_sort(here.begin(), here.begin() + kept, here.end(),
+                      [](const Guess& a, const Guess& b) { return a.cost < b.cost; });
+    all.insert(all.end(), here.begin(), here.begin() + kept);
+  }
+  return all;
+}
+
+}  // namespace
+
+std::vector<Guess> guess_by_nose(const GenericFace& face, const Neighbours& samples, int count,
+                                 const ForEach& for_each) {
+  const double extent = bounds(samples.samples().points).size().norm();
+  const Protrusion nose = protrusion_at(Neighbours(face.points), face.nose_tip, nose_radius);
   // A face alone measures some 0.22 m from corner to corner, a head without its vault or with its neck up to
   // twice that.
-  for (double size : {0.17, 0.20, 0.24, 0.28, 0.33, 0.39, 0.46}) {
-    const double scale = extent / size;
-    for (const Protrusion& tip : protrusions(samples, nose_radius * scale, 6)) {
-      const Mat3 onto = least_rotation(nose.direction, tip.direction).toRotationMatrix();
-      std::vector<Guess> here;
-      const int turns = 24;
-      for (int turn = 0; turn < turns; ++turn)
-        for (double nod : {0.0, -0.3, 0.3}) {
-          Guess guess;
-          guess.placement.scale = scale;
-          guess.placement.rotation =
-              Eigen::AngleAxisd(2.0 * EIGEN_PI * turn / turns, tip.direction).toRotationMatrix() * onto *
-              Eigen::AngleAxisd(nod, Vec3::UnitX()).toRotationMatrix();
-          guess.placement.shift = tip.tip - scale * (guess.placement.rotation * face.nose_tip);
-          guess.cost = distance_from(face, few, samples, guess.placement);
-          here.push_back(guess);
-        }
-      const size_t kept = 3;
-      std::partial_sort(here.begin(), here.begin() + kept, here.end(),
-                        [](const Guess& a, const Guess& b) { return a.cost < b.cost; });
-      all.insert(all.end(), here.begin(), here.begin() + kept);
-    }
-  }
+  constexpr std::array sizes{0.17, 0.20, 0.24, 0.28, 0.33, 0.39, 0.46};
+  std::array<std::vector<Guess>, sizes.size()> of_size;
+  run_each(for_each, sizes.size(),
+           [&](size_t k) { of_size[k] = guesses_of_size(face, samples, nose, extent / sizes[k]); });
+  std::vector<Guess> all;
+  for (const std::vector<Guess>& some : of_size)
+    all.insert(all.end(), some.begin(), some.end());
   std::stable_sort(all.begin(), all.end(), [](const Guess& a, const Guess& b) { return a.cost < b.cost; });
   if (static_cast<int>(all.size()) > count) all.resize(static_cast<size_t>(count));
   return all;

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "builder/landmarks/generic_face.h"
+#include "geometry/for_each.h"
 
 namespace fascia::landmarks {
 
@@ -32,7 +33,8 @@ std::vector<Guess> guess_placements(const GenericFace& face, const spatial::Surf
 
 /// Places of the generic head with its nose on what stands out of `samples`, best first, at most `count`: for
 /// meshes that are a face alone or a part of a head, on which no sphere tells where the head is.
-std::vector<Guess> guess_by_nose(const GenericFace& face, const Neighbours& samples, int count);
+std::vector<Guess> guess_by_nose(const GenericFace& face, const Neighbours& samples, int count,
+                                 const ForEach& for_each = {});
 
 /// Places of the generic head with its eyes in a pair of balls of `mesh` of one size, best first, at most
 /// `count`; `extent` is the size of what `samples` were taken of.

@@ -123,8 +123,9 @@ BuildResult build_rig(const formats::Scene& scene, const formats::LandmarkFile& 
   BuildReport& report = result.report;
   Stages stages(options, report);
   openings::check(options.openings);
-  FoundLandmarks found =
-      stages.run("landmarks", [&] { return find_landmarks(scene, by_hand, anatomy, options.prepare); });
+  FoundLandmarks found = stages.run("landmarks", [&] {
+    return find_landmarks(scene, by_hand, anatomy, options.prepare, false, options.for_each);
+  });
   prepare::PreparedHead& head = found.head;
   const SkinLandmarks& all_landmarks = found.landmarks;
   // One stage of three parts: the head's place tells units and parts, which tell where the landmarks are.

@@ -12,6 +12,7 @@
 #include "builder/spatial/mirror_plane.h"
 #include "formats/landmark_file.h"
 #include "formats/scene.h"
+#include "geometry/for_each.h"
 
 namespace fascia::rigging {
 
@@ -30,10 +31,11 @@ struct FoundLandmarks {
 
 /// Finds the head in `scene`, prepares it and places all skin landmarks: the given ones as they are, the rest
 /// found, or, where all that `anatomy` marks as required are given, carried over through them. `with_regions`
-/// asks for the regions of the skin as well. Throws fascia::Error when there is no face, and as `prepare`
-/// does.
+/// asks for the regions of the skin as well; `for_each` is how places of a head are tried side by side, the
+/// result does not depend on it. Throws fascia::Error when there is no face, and as `prepare` does.
 FoundLandmarks find_landmarks(const formats::Scene& scene, const formats::LandmarkFile& given,
                               const anatomy::GenericAnatomy& anatomy,
-                              const prepare::PrepareOptions& options = {}, bool with_regions = false);
+                              const prepare::PrepareOptions& options = {}, bool with_regions = false,
+                              const ForEach& for_each = {});
 
 }  // namespace fascia::rigging

@@ -66,10 +66,11 @@ struct LocatedHead {
 /// say that its face stands elsewhere, by those. What the caller knows (two places and more) comes first.
 landmarks::FoundHead find_head(const formats::Scene& scene, const landmarks::GenericFace& generic,
                                const anatomy::GenericAnatomy& anatomy, const prepare::PrepareOptions& options,
-                               const landmarks::HeadHints& hints) {
+                               const landmarks::HeadHints& hints, const ForEach& for_each) {
   const std::string path = scene.path.string();
   const auto by_surface = [&] {
-    return landmarks::find_head(generic, prepare::search_surfaces(scene, options.skin), path, hints);
+    return landmarks::find_head(generic, prepare::search_surfaces(scene, options.skin), path, hints,
+                                for_each);
   };
   const auto places = hints.given.size() < 2 ? places_by_shapes(scene, anatomy) : std::nullopt;
   if (!places) return by_surface();
@@ -81,11 +82,12 @@ landmarks::FoundHead find_head(const formats::Scene& scene, const landmarks::Gen
   }
   if (found && !found->is_doubtful && places->agree(found->placement())) return *found;
   return landmarks::find_head(generic, prepare::joined_meshes(scene, places->mesh), path,
-                              {places->anchors, hints.up});
+                              {places->anchors, hints.up}, for_each);
 }
 
 LocatedHead locate_head(const formats::Scene& scene, const formats::LandmarkFile& given,
-                        const anatomy::GenericAnatomy& anatomy, const prepare::PrepareOptions& options) {
+                        const anatomy::GenericAnatomy& anatomy, const prepare::PrepareOptions& options,
+                        const ForEach& for_each) {
   LocatedHead located;
   located.landmarks = given;
   if (has_all_required(given, anatomy)) return located;
@@ -93,7 +95,7 @@ LocatedHead locate_head(const formats::Scene& scene, const formats::LandmarkFile
   located.landmarks.units = prepare::head_units;
   located.generic = landmarks::generic_face(anatomy);
   located.found = find_head(scene, *located.generic, anatomy, options,
-                            {anchors_of(located.landmarks, anatomy), declared_up(options.up)});
+                            {anchors_of(located.landmarks, anatomy), declared_up(options.up)}, for_each);
   for (const auto& [name, p] : landmarks::rough_landmarks(*located.generic, anatomy, *located.found))
     located.landmarks.points.emplace(name, p);
   return located;
@@ -221,13 +223,13 @@ double now() {
 
 FoundLandmarks find_landmarks(const formats::Scene& file, const formats::LandmarkFile& given,
                               const anatomy::GenericAnatomy& anatomy, const prepare::PrepareOptions& options,
-                              bool with_regions) {
+                              bool with_regions, const ForEach& for_each) {
   FoundLandmarks result;
   const double started = now();
   const prepare::Repaired repaired = prepare::repair(file, options.skin);
   const formats::Scene& scene = repaired.scene ? *repaired.scene : file;
   result.warnings = repaired.warnings;
-  const LocatedHead located = locate_head(scene, given, anatomy, options);
+  const LocatedHead located = locate_head(scene, given, anatomy, options, for_each);
   if (located.found) {
     result.likeness = located.found->likeness.score();
     result.is_inside_out = located.found->is_inside_out;

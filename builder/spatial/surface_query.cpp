@@ -1,6 +1,7 @@
 #include "builder/spatial/surface_query.h"
 
 #include <embree3/rtcore.h>
+#include <tbb/task_arena.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -111,8 +112,7 @@ void SurfaceQuery::State::build_scene() {
   const Bounds box = bounds(mesh.vertices);
   origin = box.centre();
   size = 0.5 * box.size().maxCoeff();
-  // One thread: the build takes milliseconds, and a library should not start a thread pool of its own.
-  device = made_by_embree(nullptr, rtcNewDevice("threads=1,set_affinity=0"));
+  device = made_by_embree(nullptr, rtcNewDevice("set_affinity=0"));
   scene = made_by_embree(device, rtcNewScene(device));
   rtcSetSceneFlags(scene, RTCSceneFlags(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
   const std::unique_ptr<RTCGeometryTy, decltype(&rtcReleaseGeometry)> geometry(
@@ -186,7 +186,9 @@ SurfaceQuery::SurfaceQuery(TriangleMesh mesh) {
   check(mesh);
   auto state = std::make_shared<State>();
   state->mesh = std::move(mesh);
-  state->build_scene();
+  // By this thread alone, so that the tree is the same however many there are. (Embree's own "threads=1"
+  // would hold all of the process to one thread for as long as the device lives.)
+  tbb::task_arena(1).execute([&] { state->build_scene(); });
   state_ = std::move(state);
 }
 

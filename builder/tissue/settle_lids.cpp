@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
+#include <optional>
 
 #include "builder/tissue/actuators.h"
 #include "builder/tissue/lids.h"
@@ -186,6 +188,21 @@ void share_with_image(Eye& left, Eye& right) {
   right.spread();
 }
 
+/// A level's model and its solver, which the next round's pose starts from.
+struct Solved {
+  Solved(const rig::TissueLevel& level, const TissueInputs& inputs, const sim::FaceModelOptions& options)
+      : model(sim::lattice_of(level), sim::jaw_of(inputs.jaw), options), channels(inputs.channels.size()) {
+    if (model.valid()) fast.emplace(model);
+  }
+  bool is_valid() const { return fast && fast->valid(); }
+  sim::realtime::Solver& start() { return face.emplace(*fast, channels); }
+
+  sim::FaceModel model;
+  size_t channels;
+  std::optional<sim::realtime::Model> fast;
+  std::optional<sim::realtime::Solver> face;
+};
+
 }  // namespace
 
 void settle_lids(const TissueInputs& inputs, const FaceRegion& region, const Columns& c,
@@ -201,16 +218,23 @@ void settle_lids(const TissueInputs& inputs, const FaceRegion& region, const Col
   }
   const auto n = static_cast<size_t>(c.count());
   const std::vector<float> angles = level.carrier_angle;
+  // A slit is told to a hundredth of a millimetre; iterations beyond that would only add to the time of a
+  // build.
+  sim::PoseOptions pose;
+  pose.solver.tolerance = 1e-5;
+  pose.newton.iterations = 0;
+  std::unique_ptr<Solved> last;
   for (int round = 0; round < rounds && !eyes.empty(); ++round) {
-    const sim::FaceModel model(sim::lattice_of(level), sim::jaw_of(inputs.jaw), solver);
-    if (!model.valid()) return;
-    const sim::realtime::Model fast(model);
-    if (!fast.valid()) return;
-    sim::realtime::Solver face(fast, inputs.channels.size());
+    auto solved = std::make_unique<Solved>(level, inputs, solver);
+    if (!solved->is_valid()) return;
+    sim::realtime::Solver& face = solved->start();
+    if (last) face.continue_from(*last->face);
+    pose.from_last_pose = last != nullptr;
     std::vector<rig::Vec3f> nodes(level.rest.size());
     sim::Controls controls;
     controls.activations = inputs.blink;
-    face.static_pose(controls, {}, nodes);
+    face.static_pose(controls, pose, nodes);
+    last = std::move(solved);
     if (!std::all_of(nodes.begin(), nodes.end(), [](const rig::Vec3f& p) { return p.allFinite(); })) return;
     const std::vector<Vec3> places = posed_region(region, skin, level, nodes);
     bool any = false;

@@ -40,6 +40,9 @@ class Solver final : public sim::Solver {
   void reset(const Controls& controls = {}) override;
   MinimiseResult settle(const Controls& controls, const PoseOptions& options);
   MinimiseResult settle(const Controls& controls) override { return settle(controls, pose_options_); }
+  /// The next static pose `from_last_pose` starts from the last one of `other`, the solver of a model that
+  /// differs in constants alone: the nodes are the same.
+  void continue_from(const Solver& other);
   void positions(std::span<Vec3f> out) const;
   void displacements(std::span<Vec3f> out) const override;
   double longest_frame() const override {

@@ -57,6 +57,10 @@ MinimiseResult Solver::static_pose(const Controls& controls, const PoseOptions& 
                         });
 }
 
+void Solver::continue_from(const Solver& other) {
+  if (other.pose_offset_.size() >= model_->places()) pose_offset_ = other.pose_offset_;
+}
+
 MinimiseResult Solver::pose_at_once(const Controls& controls, const PoseOptions& options,
                                     std::span<Vec3f> positions) {
   std::unique_ptr<Workspace> work = model_->borrow();

@@ -343,7 +343,7 @@ FASCIA_API fascia_result fascia_face_move_head(fascia_face* face, const float ma
 
 /** Applies a force in newtons, in the rig's axes, to a vertex of a mesh until all touches are cleared. A
  * force of more than 1000 N counts as 1000 N in its direction. FASCIA_ERROR_ARGUMENT if there are too many:
- * at least 32 fit (64 if the rig's vertices follow 4 nodes instead of 8). */
+ * at least 64 fit in rigs that `fascia build` makes. */
 FASCIA_API fascia_result fascia_face_touch(fascia_face* face, uint32_t mesh, uint32_t vertex,
                                            const float force[3]);
 /** Removes the forces of fascia_face_touch. */
@@ -373,7 +373,7 @@ FASCIA_API fascia_result fascia_face_tangents(fascia_face* face, uint32_t mesh, 
 /** Compression of the skin at each vertex of a mesh, for wrinkle shaders: the direction of the largest
  * compressive strain at rest, in the rig's axes, times the strain (0.2: one fifth shorter). Zero without
  * compression and on other parts. The sign is arbitrary; wrinkles are perpendicular to it. Computed on
- * request, into one list for all meshes: valid until the next call of this function with the face. */
+ * request; the list stays in place until the face is released, a later call for the same mesh updates it. */
 FASCIA_API fascia_result fascia_face_compression(fascia_face* face, uint32_t mesh,
                                                  fascia_vectors* compression);
 
