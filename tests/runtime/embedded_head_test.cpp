@@ -50,4 +50,23 @@ TEST(EmbeddedHeadRuntime, SkinningReproducesTheVerticesOfEveryMesh) {
   EXPECT_GT(moved, 5e-3);
 }
 
+TEST(EmbeddedHeadRuntime, CompressionOfOneMeshStaysInPlaceWhileOthersAreAskedFor) {
+  const std::vector<uint8_t> bytes = embedded_rig();
+  if (bytes.empty()) GTEST_SKIP() << "FASCIA_EMBEDDED_RIG is not there";
+  const Loaded rig(bytes);
+  const Face face(rig.asset);
+  ASSERT_EQ(fascia_face_set(face.face, "arkit:mouthPucker", 0.6F), FASCIA_OK);
+  ASSERT_EQ(fascia_face_pose(face.face), FASCIA_OK);
+  fascia_vectors first = {};
+  first.struct_size = sizeof first;
+  fascia_vectors other = first, again = first;
+  ASSERT_EQ(fascia_face_compression(face.face, 1, &first), FASCIA_OK);
+  const std::vector<float> before(first.data, first.data + std::size_t{3} * first.count);
+  ASSERT_EQ(fascia_face_compression(face.face, 0, &other), FASCIA_OK);
+  EXPECT_NE(first.data, other.data);
+  EXPECT_EQ(before, std::vector<float>(first.data, first.data + std::size_t{3} * first.count));
+  ASSERT_EQ(fascia_face_compression(face.face, 1, &again), FASCIA_OK);
+  EXPECT_EQ(first.data, again.data);
+}
+
 }  // namespace
