@@ -6,6 +6,7 @@
 
 #include "anatomy/checks.h"
 #include "check/head.h"
+#include "geometry/for_each.h"
 
 namespace fascia::check {
 
@@ -25,6 +26,8 @@ struct Row {
 struct Options {
   bool is_quick = false;     ///< the poses marked quick alone, without mirror images and crossings
   double rest_motion = 0.0;  ///< metres: deviation of the player's rest from the file's
+  ForEach for_each;  ///< how some poses are played side by side, if the player may be called so; the rows are
+                     ///< the same
 };
 
 /// Plays the poses of `checks` on `head` and measures each: lids, mouth, landmarks, mirror images, triangles,

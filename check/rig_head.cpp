@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 
 #include "geometry/error.h"
 #include "rig/read/read.h"
@@ -22,6 +23,8 @@ std::optional<Eye> eye_of(const rig::Eye& eye) {
 
 }  // namespace
 
+using FaceHandle = std::unique_ptr<fascia_face, decltype(&fascia_face_release)>;
+
 struct RigHead::State {
   /// Where the vertices of a Part come from.
   struct Source {
@@ -32,13 +35,42 @@ struct RigHead::State {
   std::string name;
   rig::RigFile file;
   std::unique_ptr<fascia_asset, decltype(&fascia_asset_release)> asset{nullptr, fascia_asset_release};
-  std::unique_ptr<fascia_face, decltype(&fascia_face_release)> face{nullptr, fascia_face_release};
+  FaceHandle face{nullptr, fascia_face_release};  ///< at rest
   int32_t level = -1;
   Head head;
   std::vector<Source> sources;
+  std::mutex mutex;
+  std::vector<FaceHandle> idle;  ///< faces that no pose is played on
 
   void require(fascia_result result) const {
     if (result != FASCIA_OK) throw Error(name + ": " + fascia_last_message());
+  }
+
+  FaceHandle new_face(fascia_space space) const {
+    fascia_face_options options = fascia_default_face_options();
+    options.space = space;
+    options.level = level;
+    fascia_face* made = nullptr;
+    require(fascia_face_create(asset.get(), &options, &made));
+    return {made, fascia_face_release};
+  }
+
+  /// A face that no other thread uses.
+  FaceHandle take_face() {
+    {
+      const std::lock_guard lock(mutex);
+      if (!idle.empty()) {
+        FaceHandle taken = std::move(idle.back());
+        idle.pop_back();
+        return taken;
+      }
+    }
+    return new_face(FASCIA_SPACE_METRES);
+  }
+
+  void give_back(FaceHandle taken) {
+    const std::lock_guard lock(mutex);
+    idle.push_back(std::move(taken));
   }
 
   std::vector<Vec3> positions(fascia_face* from, uint32_t mesh) const {
@@ -119,12 +151,7 @@ RigHead::RigHead(std::span<const uint8_t> bytes, const std::string& name, const 
     if (levels[i].name == level) state.level = static_cast<int32_t>(i);
   if (!level.empty() && (levels.empty() || levels[static_cast<size_t>(state.level)].name != level))
     throw Error(name + ": the rig has no level '" + level + "'; 'fascia info' lists those it has");
-  fascia_face_options options = fascia_default_face_options();
-  options.space = FASCIA_SPACE_METRES;
-  options.level = state.level;
-  fascia_face* face = nullptr;
-  state.require(fascia_face_create(asset, &options, &face));
-  state.face.reset(face);
+  state.face = state.new_face(FASCIA_SPACE_METRES);
   auto info = sized<fascia_asset_info>();
   state.require(fascia_asset_get_info(asset, &info));
   for (uint32_t m = 0; m < info.mesh_count; ++m)
@@ -143,37 +170,34 @@ const Head& RigHead::head() const {
 Player RigHead::player() {
   return [this](const Weights& weights) -> std::optional<Shape> {
     State& state = *state_;
-    state.require(fascia_face_clear(state.face.get()));
+    FaceHandle face = state.take_face();
+    state.require(fascia_face_clear(face.get()));
     for (const auto& [name, value] : weights) {
       const fascia_result result =
-          fascia_face_set(state.face.get(), ("arkit:" + name).c_str(), static_cast<float>(value));
+          fascia_face_set(face.get(), ("arkit:" + name).c_str(), static_cast<float>(value));
       if (result == FASCIA_ERROR_NAME) return std::nullopt;
       state.require(result);
     }
-    state.require(fascia_face_pose(state.face.get()));
+    state.require(fascia_face_pose(face.get()));
     Shape shape;
     uint32_t mesh = UINT32_MAX;
     std::vector<Vec3> whole;
     for (const State::Source& source : state.sources) {
-      if (source.mesh != mesh) whole = state.positions(state.face.get(), mesh = source.mesh);
+      if (source.mesh != mesh) whole = state.positions(face.get(), mesh = source.mesh);
       std::vector<Vec3>& vertices = shape.emplace_back();
       vertices.reserve(source.vertices.size());
       for (const uint32_t v : source.vertices)
         vertices.push_back(whole[v]);
     }
+    state.give_back(std::move(face));
     return shape;
   };
 }
 
 double RigHead::rest_motion() const {
   const State& state = *state_;
-  fascia_face_options options = fascia_default_face_options();
-  options.space = FASCIA_SPACE_MESH;
-  options.level = state.level;
-  fascia_face* made = nullptr;
-  state.require(fascia_face_create(state.asset.get(), &options, &made));
-  const std::unique_ptr<fascia_face, decltype(&fascia_face_release)> face{made, fascia_face_release};
-  state.require(fascia_face_pose(made));
+  const FaceHandle face = state.new_face(FASCIA_SPACE_MESH);
+  state.require(fascia_face_pose(face.get()));
   double most = 0.0;
   for (size_t p = 0; p < state.file.primitives.size(); ++p) {
     const rig::Primitive& primitive = state.file.primitives[p];
@@ -181,7 +205,7 @@ double RigHead::rest_motion() const {
     for (const rig::Binding& binding : state.file.rig.tissue.bindings[static_cast<size_t>(state.level)])
       if (binding.mesh == primitive.mesh && binding.primitive == primitive.primitive)
         scale = std::cbrt(std::abs(static_cast<double>(binding.to_rig.topLeftCorner<3, 3>().determinant())));
-    const std::vector<Vec3> now = state.positions(made, static_cast<uint32_t>(p));
+    const std::vector<Vec3> now = state.positions(face.get(), static_cast<uint32_t>(p));
     for (size_t v = 0; v < now.size() && v < primitive.positions.size(); ++v)
       most = std::max(most, scale * (now[v] - primitive.positions[v].cast<double>()).norm());
   }

@@ -22,7 +22,8 @@ class RigHead {
 
   const Head& head() const;
 
-  /// Poses the face statically with the rig's set `arkit`. The player must not outlive this.
+  /// Poses the face statically with the rig's set `arkit`. The player must not outlive this; it may be called
+  /// from several threads at once.
   Player player();
 
   /// Largest distance, metres, between the file's own vertex positions and those of the posed face with every

@@ -1,5 +1,3 @@
-#include <tbb/parallel_for.h>
-
 #include <chrono>
 #include <map>
 #include <memory>
@@ -214,9 +212,7 @@ rigging::BuildReport build_file(const Common& common, const BuildRequest& reques
   if (request.smas_galea) options.smas.reach.galea = request.smas_galea;
   if (request.smas_neck_mm) options.smas.reach.neck = 1e-3 * *request.smas_neck_mm;
   options.progress = [&](const std::string& stage) { progress.begin(stage); };
-  options.for_each = [](size_t count, const std::function<void(size_t)>& part) {
-    tbb::parallel_for(size_t{0}, count, part);
-  };
+  options.for_each = on_all_threads();
   rigging::BuildResult result = rigging::build_rig(scene, landmarks, anatomy, options);
   if (!request.anatomy.empty()) result.report.corrected = anatomy::corrected_files(request.anatomy);
   progress.begin("writing");

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <mutex>
 #include <nlohmann/json.hpp>
 
 #include "anatomy/checks.h"
@@ -76,10 +77,15 @@ void run(const Common& common, const CheckRequest& request) {
     options.rest_motion = rig.rest_motion();
     Progress poses(common, "pose", checks.poses.size());
     const check::Player player = rig.player();
+    std::mutex mutex;
+    options.for_each = on_all_threads();
     rows = check::run(
         rig.head(),
         [&](const auto& weights) {
-          poses.step();
+          {
+            const std::lock_guard lock(mutex);
+            poses.step();
+          }
           return player(weights);
         },
         checks, options);
@@ -113,6 +119,7 @@ std::vector<std::string> quick_check(const std::vector<uint8_t>& rig, const std:
                                      const anatomy::Checks& checks) {
   check::Options options;
   options.is_quick = true;
+  options.for_each = on_all_threads();
   std::vector<std::string> warnings;
   std::vector<check::Row> rows;
   try {

@@ -1,5 +1,7 @@
 #include "cli/common.h"
 
+#include <tbb/parallel_for.h>
+
 #include <unistd.h>
 
 #include <cstdio>
@@ -37,6 +39,12 @@ void Common::report(const nlohmann::ordered_json& object) const {
   // Names and paths need not be UTF-8; JSON has to be.
   std::cout << object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << std::endl;
   if (!std::cout) throw Error("standard output cannot be written: it is closed or its disk is full");
+}
+
+ForEach on_all_threads() {
+  return [](size_t count, const std::function<void(size_t)>& part) {
+    tbb::parallel_for(size_t{0}, count, part);
+  };
 }
 
 void check_output(const std::filesystem::path& path, const std::vector<std::filesystem::path>& inputs) {

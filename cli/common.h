@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/options.h"
+#include "geometry/for_each.h"
 
 namespace fascia::cli {
 
@@ -27,6 +28,9 @@ struct Common {
   /// The command's JSON object, on stdout, when --json asks for it.
   void report(const nlohmann::ordered_json& object) const;
 };
+
+/// Runs independent parts on the threads that the tool may use.
+ForEach on_all_threads();
 
 /// Each adds a command to the tool: its options and what it does.
 void add_build(const Command& tool, Common& common);
