@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
+#include <tbb/global_control.h>
 #include <unistd.h>
 
 #include <Eigen/Geometry>
@@ -195,6 +196,19 @@ TEST(Triangle, WeightsOfTheClosestPlaceAreNeverNegative) {
 TEST(Triangle, OctantHasAnEighthOfTheSphere) {
   EXPECT_NEAR(solid_angle(Vec3::Zero(), Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()), std::numbers::pi / 2,
               1e-14);
+}
+
+TEST(SurfaceQuery, LeavesTheNumberOfThreadsOfTheProcessAsItIs) {
+  const auto threads = [] {
+    return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  };
+  const size_t before = threads();
+  if (before < 2) GTEST_SKIP() << "one thread is all there is";
+  {
+    const SurfaceQuery query(seamed_cube());
+    EXPECT_EQ(threads(), before);
+  }
+  EXPECT_EQ(threads(), before);
 }
 
 }  // namespace
