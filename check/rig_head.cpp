@@ -35,7 +35,7 @@ struct RigHead::State {
   std::string name;
   rig::RigFile file;
   std::unique_ptr<fascia_asset, decltype(&fascia_asset_release)> asset{nullptr, fascia_asset_release};
-  FaceHandle face{nullptr, fascia_face_release};  ///< at rest
+  FaceHandle face{nullptr, fascia_face_release};  ///< at rest, while the parts are made
   int32_t level = -1;
   Head head;
   std::vector<Source> sources;
@@ -159,6 +159,7 @@ RigHead::RigHead(std::span<const uint8_t> bytes, const std::string& name, const 
   for (const rig::Landmark& landmark : state.file.rig.skull.landmarks)
     state.head.landmarks[landmark.name] = landmark.skin.cast<double>();
   state.head.eyes = {eye_of(state.file.rig.skull.eye_left), eye_of(state.file.rig.skull.eye_right)};
+  state.give_back(std::move(state.face));
 }
 
 RigHead::~RigHead() = default;

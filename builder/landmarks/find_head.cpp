@@ -219,10 +219,10 @@ class Search {
         if (samples[k]->samples().size() < least_samples) continue;
         const double score = left[k]->likeness.score();
         if (score > best_.likeness.score() || best_.fit.used.empty()) best_ = *left[k];
-        if (score < sure_score) again.push_back(left[k]);
+        if (score >= sure_score) continue;
+        left[k]->placement = similarity_of(face_, left[k]->fit);
+        again.push_back(left[k]);
       }
-      for (Candidate* candidate : again)
-        candidate->placement = similarity_of(face_, candidate->fit);
       left = std::move(again);
     }
   }

@@ -188,17 +188,16 @@ void share_with_image(Eye& left, Eye& right) {
   right.spread();
 }
 
-/// A level's model and its solver, which the next round's pose starts from.
+/// A level's model and, if that is valid, its solver, which the next round's pose starts from.
 struct Solved {
   Solved(const rig::TissueLevel& level, const TissueInputs& inputs, const sim::FaceModelOptions& options)
-      : model(sim::lattice_of(level), sim::jaw_of(inputs.jaw), options), channels(inputs.channels.size()) {
-    if (model.valid()) fast.emplace(model);
+      : model(sim::lattice_of(level), sim::jaw_of(inputs.jaw), options) {
+    if (!model.valid()) return;
+    fast.emplace(model);
+    if (fast->valid()) face.emplace(*fast, inputs.channels.size());
   }
-  bool is_valid() const { return fast && fast->valid(); }
-  sim::realtime::Solver& start() { return face.emplace(*fast, channels); }
 
   sim::FaceModel model;
-  size_t channels;
   std::optional<sim::realtime::Model> fast;
   std::optional<sim::realtime::Solver> face;
 };
@@ -226,14 +225,13 @@ void settle_lids(const TissueInputs& inputs, const FaceRegion& region, const Col
   std::unique_ptr<Solved> last;
   for (int round = 0; round < rounds && !eyes.empty(); ++round) {
     auto solved = std::make_unique<Solved>(level, inputs, solver);
-    if (!solved->is_valid()) return;
-    sim::realtime::Solver& face = solved->start();
-    if (last) face.continue_from(*last->face);
+    if (!solved->face) return;
+    if (last) solved->face->continue_from(*last->face);
     pose.from_last_pose = last != nullptr;
     std::vector<rig::Vec3f> nodes(level.rest.size());
     sim::Controls controls;
     controls.activations = inputs.blink;
-    face.static_pose(controls, pose, nodes);
+    solved->face->static_pose(controls, pose, nodes);
     last = std::move(solved);
     if (!std::all_of(nodes.begin(), nodes.end(), [](const rig::Vec3f& p) { return p.allFinite(); })) return;
     const std::vector<Vec3> places = posed_region(region, skin, level, nodes);
