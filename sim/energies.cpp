@@ -9,6 +9,9 @@ namespace fascia::sim {
 namespace {
 
 constexpr double tiny_area = 1e-16;  // square metres: an edge of 10 nanometres
+// Metres, of a triangle over a hinge's edge: what is narrower than a quarter of the skin's thickness does not
+// bend as a plate.
+constexpr double least_height = 4e-4;
 
 struct HingeFrame {
   Vec3 edge, normal_a, normal_b;  // normals scaled by twice the areas
@@ -80,11 +83,14 @@ double hinge_angle(const std::array<uint32_t, 4>& nodes, const Vec3* x) {
 
 Hinge make_hinge(std::array<uint32_t, 4> nodes, double rigidity, const Vec3* rest) {
   const HingeFrame f = hinge_frame(nodes, rest);
-  const double twice_a = std::sqrt(f.area_a), twice_b = std::sqrt(f.area_b),
-               areas = 0.5 * (twice_a + twice_b);
+  const double twice_a = std::sqrt(f.area_a), twice_b = std::sqrt(f.area_b);
   Hinge hinge;
   hinge.nodes = nodes;
-  hinge.stiffness = rigidity * f.length * f.length / std::max(areas, tiny_area);
+  // Towards a sliver the weights grow without bound, and with them the stiffness of its nodes.
+  const double least = std::max(f.length * least_height, tiny_area);
+  const double areas = std::max(0.5 * (twice_a + twice_b), least);
+  const double narrow = std::min(1.0, std::min(twice_a, twice_b) / least);
+  hinge.stiffness = rigidity * f.length * f.length / areas * narrow * narrow;
   // Unit vectors from the edge to the corners, as weights of the four places.
   const Vec3 unit = f.edge / f.length;
   const double over_a = f.length / twice_a, over_b = f.length / twice_b;

@@ -80,7 +80,7 @@ void settle_on_lid_edges(const TissueInputs& inputs, const FaceRegion& region, R
 
 /// A triangle without height has no strain to measure: such are taken out, with what only they hold.
 void drop_slivers(RemeshResult& remeshed) {
-  constexpr double lowest = 2e-5;  // metres, where edges are some 0.5 mm and longer
+  constexpr double lowest = 1e-4;  // metres, where edges are some 0.5 mm and longer
   std::vector<int> map;
   TriangleMesh sound = without_slivers(remeshed.mesh, lowest, &map);
   std::vector<SurfacePoint> source(sound.vertices.size());

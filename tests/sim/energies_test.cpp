@@ -88,6 +88,27 @@ TEST(Energies, TrianglesThatLieOnEachOtherMakeNoHinge) {
   }
 }
 
+/// Newton per metre with which a hinge over the edge of 1 mm holds the corner of a triangle of `height`
+/// metres.
+double corner_stiffness(double height) {
+  const Positions rest = {Vec3(0, 0, 0), Vec3(.001, 0, 0), Vec3(.0005, height, 0), Vec3(.0005, -.001, 0)};
+  const Hinge hinge = make_hinge({0, 1, 2, 3}, 1e-4, rest.data());
+  Positions moved = rest, gradient(4, Vec3::Zero());
+  const double way = 1e-7;
+  moved[2].z() += way;
+  hinge_energy(hinge, moved.data(), gradient.data());
+  return gradient[2].z() / way;
+}
+
+TEST(Energies, AHingeOverASliverStaysAsSoftAsOverALowTriangle) {
+  // Of a plate: rigidity |edge|^2 / (areas height^2), areas of heights h and 1 mm.
+  const auto plate = [](double h) { return 1e-4 * 1e-6 / (0.5e-3 * (h + 1e-3) * h * h); };
+  for (const double height : {1e-3, 7e-4, 4.1e-4})
+    EXPECT_NEAR(corner_stiffness(height) / plate(height), 1.0, 1e-6) << height;
+  for (const double height : {2e-4, 5e-5, 1e-6, 1e-9})
+    EXPECT_LT(corner_stiffness(height), 1.5 * plate(4e-4)) << height;
+}
+
 TEST(Energies, RigidMotionHasZeroEnergy) {
   const Eigen::AngleAxisd turn(1.1, Vec3(1, 2, -1).normalized());
   const Positions fan = {six[0], six[1], six[2], Vec3(.002, -.004, -.001)};
