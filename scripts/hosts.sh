@@ -88,7 +88,9 @@ run_wgsl() {
 run_blender_addon() {
   FASCIA_LIBRARY=$PWD/build/lib/libfascia.so blender -b --factory-startup --python hosts/blender/test.py -- "$rig" \
     "$PWD/$out/blender.png"
-  grep '^blender:' "$out/blender.log"  # Blender has the last word otherwise
+  local verdict  # repeated as the last line, which Blender would have otherwise
+  verdict=$(grep '^blender:' "$out/blender.log")
+  echo "$verdict"
 }
 run_godot3_headers() {
   hosts/godot3/headers.sh "$out/godot3"

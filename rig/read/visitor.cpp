@@ -1,6 +1,9 @@
 #include "rig/read/visitor.h"
 
 #include <charconv>
+#include <iomanip>
+#include <locale>
+#include <sstream>
 
 namespace fascia::rig {
 
@@ -14,11 +17,10 @@ void Reader::hash(const char* name, uint64_t& value) {
 }
 
 void Reader::fail_bounds(const char* name, double value, double least, double most) const {
-  const auto text_of = [](double number) {
-    char digits[32];
-    return std::string(digits, std::to_chars(digits, digits + sizeof digits, number).ptr);
-  };
-  fail(name, text_of(value) + " is not within " + text_of(least) + " .. " + text_of(most));
+  std::ostringstream text;  // to_chars of a double is not in every library the runtime is built with
+  text.imbue(std::locale::classic());
+  text << std::setprecision(9) << value << " is not within " << least << " .. " << most;
+  fail(name, text.str());
 }
 
 void Reader::numbers(const char* name, float* to, std::size_t count) {
