@@ -10,7 +10,7 @@ wanted=("${@:2}")
 out=build/hosts
 mkdir -p "$out"
 # A whole face and a stream of its landmarks, for the way from landmarks to muscles.
-head=build/tests/samples/embedded.glb stream=samples/capture/stream.csv
+head=$PWD/build/tests/samples/embedded.glb stream=$PWD/samples/capture/stream.csv
 export LD_LIBRARY_PATH=$PWD/build/lib FASCIA=$PWD/build/bin/fascia
 [ -f "$head" ] || build/bin/make_capture build/bin/fascia build/tests/samples
 failed=()

@@ -89,7 +89,9 @@ export class Browser {
         rest = rest.subarray(end + 1);
       }
     });
-    for (const stream of [to, from]) stream.on('error', this.fail);
+    // The pipe may break a moment before the browser's end is known, which says more.
+    for (const stream of [to, from])
+      stream.on('error', ({message}) => setTimeout(() => this.fail(new Error(`chromium ended its pipe: ${message}`)), 500));
   }
 
   take({id, method, params, result, error}) {
