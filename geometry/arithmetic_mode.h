@@ -1,6 +1,6 @@
 #pragma once
 
-#if defined(__SSE2__)
+#if defined(__SSE2__) && !defined(__EMSCRIPTEN__)
 #include <xmmintrin.h>
 #else
 #include <cfenv>
@@ -14,7 +14,7 @@ namespace fascia {
 /// depend on them.
 class ArithmeticMode {
  public:
-#if defined(__SSE2__)
+#if defined(__SSE2__) && !defined(__EMSCRIPTEN__)
   ArithmeticMode() : host_(_mm_getcsr()) {
     _mm_setcsr(usual);
 #if defined(__GNUC__)

@@ -68,8 +68,10 @@ run_unity() {  # against stand-ins of the engine's types
 }
 run_web() {
   scripts/web.sh
-  /usr/bin/python3 tests/bindings/native_poses.py "$rig" >"$out/poses.json"
-  node tests/bindings/web_test.mjs build/web/npm "$rig" "$out/poses.json"
+  for each in "$rig" "$head"; do
+    /usr/bin/python3 tests/bindings/native_poses.py "$each" >"$out/poses.json"
+    node tests/bindings/web_test.mjs build/web/npm "$each" "$out/poses.json"
+  done
 }
 run_web_types() {
   (cd bindings/web/types && npm install --no-audit --no-fund --silent && npx tsc --noEmit -p .)

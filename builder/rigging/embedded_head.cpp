@@ -22,6 +22,12 @@ Pr 0.5
 newmtl sclera
 Kd 0.90 0.87 0.84
 Pr 0.3
+newmtl iris
+Kd 0.33 0.43 0.49
+Pr 0.2
+newmtl pupil
+Kd 0.02 0.02 0.02
+Pr 0.2
 newmtl enamel
 Kd 0.90 0.87 0.78
 Pr 0.3
@@ -40,12 +46,12 @@ size_t vertices_in(const std::string& obj) {
   return count;
 }
 
-/// `obj` with a material named at the head of each of its objects.
-std::string with_material(const std::string& obj, const std::string& object, const std::string& material) {
-  const std::string line = "o " + object + "\n";
-  const size_t at = obj.find(line);
-  return at == std::string::npos ? obj
-                                 : std::string(obj).insert(at + line.size(), "usemtl " + material + "\n");
+/// `obj` with a material named after each of the lines `start`, such as "o skin" or "g iris".
+std::string with_material(std::string obj, const std::string& start, const std::string& material) {
+  const std::string line = start + "\n", use = "usemtl " + material + "\n";
+  for (size_t at = obj.find(line); at != std::string::npos; at = obj.find(line, at + line.size()))
+    obj.insert(at + line.size(), use);
+  return obj;
 }
 
 std::string object_text(const std::string& name, const TriangleMesh& mesh, size_t first) {
@@ -99,18 +105,18 @@ void write_embedded_head(const anatomy::GenericAnatomy& anatomy, const std::file
                          const std::filesystem::path& landmarks) {
   // The head as it is in the data, quads and texture coordinates too; the skull's teeth, gums, tongue and
   // lashes with it.
-  std::string text = with_material(anatomy.head_source, "skin", "skin");
-  for (const char* eye : {"eye_left", "eye_right"})
-    text = with_material(text, eye, "sclera");
+  std::string text = with_material(anatomy.head_source, "o skin", "skin");
+  for (const char* region : {"sclera", "iris", "pupil"})
+    text = with_material(text, std::string("g ") + region, region);
   text = "mtllib " + head.stem().string() + ".mtl\n" + text;
   size_t count = vertices_in(text);
   for (const char* name : {"teeth_upper", "teeth_lower"})
     if (const anatomy::MeshObject* teeth = anatomy.skull_object(name)) {
-      text += with_material(object_text(name, teeth->mesh, count + 1), name, "enamel");
+      text += with_material(object_text(name, teeth->mesh, count + 1), std::string("o ") + name, "enamel");
       count += teeth->mesh.vertices.size();
     }
   const std::string parts = moved_on(std::string(anatomy::embedded_file("head_parts.obj")), count);
-  text += with_material(with_material(parts, "mouth_interior", "mucosa"), "lashes", "lashes");
+  text += with_material(with_material(parts, "o mouth_interior", "mucosa"), "o lashes", "lashes");
   formats::write_text(head, text);
   std::filesystem::path library = head;
   formats::write_text(library.replace_extension(".mtl"), materials);

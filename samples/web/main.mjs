@@ -47,6 +47,7 @@ async function show(bytes) {
   camera.far = size * 50;
   camera.updateProjectionMatrix();
   element('set').replaceChildren(...Object.keys(face.asset.sets).map((name) => new Option(name)), new Option('channels'));
+  if (face.asset.sets.arkit) element('set').value = 'arkit';  // what most people know
   element('level').replaceChildren(...face.asset.levels.map(({name}) => new Option(name)));
   element('level').selectedIndex = face.face.level;
   listSliders();

@@ -90,7 +90,9 @@ async function replayTheCapture(browser) {
 }
 
 /** The bytes of a file as an expression of the page. */
-const bytesOf = (path) => `Uint8Array.from(atob('${readFileSync(path).toString('base64')}'), (c) => c.charCodeAt(0))`;
+function bytesOf(path) {
+  return `Uint8Array.from(atob('${readFileSync(path).toString('base64')}'), (c) => c.charCodeAt(0))`;
+}
 
 async function dropARig(browser) {
   await browser.ask(`(() => {

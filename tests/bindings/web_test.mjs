@@ -25,19 +25,25 @@ function compare(found, base64, worst) {
 }
 
 const apart = {numbers: 0, others: 0, metres: 0};
+let face = null, posed = '';
 for (const {level, values, frames, mesh, positions} of expected.poses) {
-  const face = asset.createFace({level, space: 'metres'});
-  for (const [name, value] of Object.entries(values)) face.set(name, value);
-  if (frames === 0) face.pose();
-  for (let i = 0; i < frames; ++i) face.step(1 / 60);
+  const pose = JSON.stringify([level, values, frames]);
+  if (pose !== posed) {  // the meshes of one pose follow each other
+    posed = pose;
+    face?.dispose();
+    face = asset.createFace({level, space: 'metres'});
+    for (const [name, value] of Object.entries(values)) face.set(name, value);
+    if (frames === 0) face.pose();
+    for (let i = 0; i < frames; ++i) face.step(1 / 60);
+  }
   compare(face.positions(mesh), positions, apart);
-  face.dispose();
 }
+face.dispose();
 assert.ok(apart.numbers > 0);
 assert.equal(apart.others, 0, `${apart.others} of ${apart.numbers} numbers have other bits, up to ${apart.metres} m apart`);
 
 // Time, states, and faults.
-const face = asset.createFace({level: 0});
+face = asset.createFace({level: 0});
 const muscle = asset.channels.findIndex(({group}) => group === 'muscle');
 const rest = face.positions(0).slice();
 face.values[muscle] = 0.8;
