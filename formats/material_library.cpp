@@ -67,11 +67,28 @@ double bounded(double value, double otherwise) {
 /// What an OBJ's lines say of materials.
 struct ObjMaterials {
   std::vector<std::string> libraries;
-  std::map<int, std::string> by_vertex;  ///< material of the first face that names a vertex (counted from 0)
+  std::vector<std::string> of_mesh;  ///< material of the mesh's face that is looked for; empty if it has none
 };
 
-ObjMaterials scan(std::string_view obj) {
+/// `v` lines of a face that the file itself has (vertices appended to it come last), ascending.
+std::vector<int> face_of(const SceneMesh& mesh) {
+  std::vector<int> lines;
+  for (const std::vector<int>& polygon : mesh.polygons) {
+    std::vector<int> here;
+    for (const int v : polygon)
+      here.push_back(mesh.source_vertices[static_cast<size_t>(v)]);
+    std::sort(here.begin(), here.end());
+    if (lines.empty() || here.back() < lines.back()) lines = std::move(here);
+  }
+  return lines;
+}
+
+ObjMaterials scan(std::string_view obj, const std::vector<SceneMesh>& meshes) {
   ObjMaterials found;
+  found.of_mesh.resize(meshes.size());
+  std::map<std::vector<int>, size_t> wanted;
+  for (size_t m = 0; m < meshes.size(); ++m)
+    wanted.try_emplace(face_of(meshes[m]), m);
   std::string current;
   int vertices = 0;
   for (size_t at = 0; at < obj.size();) {
@@ -85,11 +102,17 @@ ObjMaterials scan(std::string_view obj) {
     if (begins("mtllib")) found.libraries.push_back(argument_of(line));
     if (begins("usemtl")) current = argument_of(line);
     if (begins("v")) ++vertices;
-    if (!begins("f") || current.empty()) continue;
+    if (!begins("f") || current.empty() || wanted.empty()) continue;
     std::istringstream words{std::string(line.substr(1))};
+    std::vector<int> face;
     for (std::string word; words >> word;) {
       const int index = std::atoi(word.c_str());
-      found.by_vertex.try_emplace(index < 0 ? vertices + index : index - 1, current);
+      face.push_back(index < 0 ? vertices + index : index - 1);
+    }
+    std::sort(face.begin(), face.end());
+    if (const auto mesh = wanted.find(face); mesh != wanted.end()) {
+      found.of_mesh[mesh->second] = current;
+      wanted.erase(mesh);
     }
   }
   return found;
@@ -119,8 +142,8 @@ MaterialLibrary read_materials(const Scene& scene, const ReadOptions& options) {
   MaterialLibrary library;
   library.of_mesh.assign(scene.meshes.size(), -1);
   if (scene.kind != FileKind::obj) return library;
-  const ObjMaterials found =
-      scan(std::string_view(reinterpret_cast<const char*>(scene.bytes.data()), scene.bytes.size()));
+  const ObjMaterials found = scan(
+      std::string_view(reinterpret_cast<const char*>(scene.bytes.data()), scene.bytes.size()), scene.meshes);
   std::map<std::string, int> by_name;
   PictureReader pictures(scene, options, library.warnings);
   for (const std::string& name : found.libraries) {
@@ -142,11 +165,7 @@ MaterialLibrary read_materials(const Scene& scene, const ReadOptions& options) {
     }
   }
   for (size_t m = 0; m < scene.meshes.size(); ++m) {
-    const std::vector<int>& vertices = scene.meshes[m].source_vertices;
-    if (vertices.empty()) continue;
-    const auto name = found.by_vertex.find(vertices.front());
-    if (name == found.by_vertex.end()) continue;
-    const auto material = by_name.find(name->second);
+    const auto material = by_name.find(found.of_mesh[m]);
     if (material != by_name.end()) library.of_mesh[m] = material->second;
   }
   return library;

@@ -8,7 +8,7 @@ build=${1:-build/runtime}
 rig=tests/data/released/rig-1.0.glb
 
 cmake -S . -B "$build" -DCMAKE_BUILD_TYPE=Release -DFASCIA_BUILD_BUILDER=OFF -DFASCIA_BUILD_TESTS=ON -DFASCIA_BUILD_SAMPLES=ON "$@"
-cmake --build "$build" --config Release --parallel
+cmake --build "$build" --config Release --parallel "$(getconf _NPROCESSORS_ONLN || echo 2)"  # a bare --parallel starts all of them at once
 rm -rf "$build/installed"
 cmake --install "$build" --config Release --prefix "$build/installed"
 

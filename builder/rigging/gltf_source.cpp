@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <cmath>
+#include <unordered_map>
 
 #include "formats/material_library.h"
 #include "geometry/json.h"
@@ -55,13 +56,39 @@ std::vector<Eigen::Vector4d> texture_tangents(const formats::SceneMesh& mesh,
   return tangents;
 }
 
-gltf::Json primitive_of(gltf::Appendix& data, const formats::SceneMesh& mesh, int material,
-                        bool has_normal_map) {
+/// Unit normals of each mesh's vertices, smooth where the surface is one: copies of a `v` line, at seams of
+/// textures, of groups or of materials, have the normal of all triangles about it.
+std::vector<std::vector<Vec3>> smooth_normals(const formats::Scene& scene) {
+  std::unordered_map<int, Vec3> by_line;
+  std::vector<std::vector<Vec3>> normals;
+  for (const formats::SceneMesh& mesh : scene.meshes) {
+    normals.emplace_back(mesh.positions.size(), Vec3::Zero());
+    for (const Triangle& t : mesh.triangles) {
+      const auto place = [&](int k) {
+        return mesh.positions[static_cast<size_t>(t[static_cast<size_t>(k)])];
+      };
+      const Vec3 area = (place(1) - place(0)).cross(place(2) - place(0));
+      for (const int corner : t)
+        normals.back()[static_cast<size_t>(corner)] += area;
+    }
+    for (size_t v = 0; v < mesh.source_vertices.size(); ++v)
+      by_line.try_emplace(mesh.source_vertices[v], Vec3::Zero()).first->second += normals.back()[v];
+  }
+  for (size_t m = 0; m < normals.size(); ++m)
+    for (size_t v = 0; v < normals[m].size(); ++v) {
+      Vec3& normal = normals[m][v];
+      const std::vector<int>& lines = scene.meshes[m].source_vertices;
+      if (v < lines.size()) normal = by_line.at(lines[v]);
+      normal = normal.stableNormalized();
+      if (!(normal.squaredNorm() > 0.5)) normal = Vec3::UnitZ();
+    }
+  return normals;
+}
+
+gltf::Json primitive_of(gltf::Appendix& data, const formats::SceneMesh& mesh,
+                        const std::vector<Vec3>& normals, int material, bool has_normal_map) {
   gltf::Json attributes;
   attributes["POSITION"] = add<Vec3, 3>(data, mesh.positions, true);
-  std::vector<Vec3> normals = vertex_normals({mesh.positions, mesh.triangles});
-  for (Vec3& n : normals)
-    if (n.squaredNorm() == 0) n = Vec3::UnitZ();
   attributes["NORMAL"] = add<Vec3, 3>(data, normals, false);
   if (has_normal_map && mesh.uvs.size() == mesh.positions.size())
     attributes["TANGENT"] = add<Eigen::Vector4d, 4>(data, texture_tangents(mesh, normals), false);
@@ -165,11 +192,12 @@ rig::GltfSource gltf_source(const formats::Scene& scene, const Mat4& input_to_me
   const formats::MaterialLibrary library = formats::read_materials(scene);
   if (warnings) warnings->insert(warnings->end(), library.warnings.begin(), library.warnings.end());
   add_materials(json, data, library);
+  const std::vector<std::vector<Vec3>> normals = smooth_normals(scene);
   for (size_t m = 0; m < scene.meshes.size(); ++m) {
     const formats::SceneMesh& mesh = scene.meshes[m];
     const int look = m < library.of_mesh.size() ? library.of_mesh[m] : -1;
     const bool has_normal_map = look >= 0 && library.materials[static_cast<size_t>(look)].normal_map;
-    const gltf::Json primitive = primitive_of(data, mesh, look, has_normal_map);
+    const gltf::Json primitive = primitive_of(data, mesh, normals[m], look, has_normal_map);
     json["meshes"].push_back({{"name", mesh.name}, {"primitives", gltf::Json::array({primitive})}});
     json["nodes"].push_back({{"name", mesh.name}, {"mesh", json["meshes"].size() - 1}});
     json["nodes"][0]["children"].push_back(json["nodes"].size() - 1);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "formats/files.h"
@@ -49,6 +50,31 @@ class MadeFile : public testing::Test {
 
 const std::string upright = "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n", mirrored = "vt 1 0\nvt 0 0\nvt 0 1\nvt 1 1\n",
                   turned = "vt 0 1\nvt 0 0\nvt 1 0\nvt 1 1\n";
+
+TEST_F(MadeFile, NormalsAreSmoothAcrossSeamsOfGroupsAndTextures) {
+  // A roof: two squares that meet at a right angle along the edge 2 3, each a group with its own texture.
+  formats::write_text(folder_ / "head.obj",
+                      "v 0 0 0\nv 1 0 1\nv 1 1 1\nv 0 1 0\nv 2 0 0\nv 2 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+                      "o roof\ng left\nf 1/1 2/2 3/3 4/4\ng right\nf 2/1 5/2 6/3 3/4\n");
+  const rig::GltfSource source = gltf_source(formats::read(folder_ / "head.obj"), Mat4::Identity());
+  json_ = nlohmann::json::parse(source.json);
+  bin_ = source.bin;
+  ASSERT_EQ(json_["meshes"].size(), 2u);
+  std::map<float, std::vector<Eigen::Vector3f>> at_the_ridge;  // by y
+  for (const nlohmann::json& mesh : json_["meshes"]) {
+    const nlohmann::json& attributes = mesh["primitives"][0]["attributes"];
+    const std::vector<float> places = numbers(attributes["POSITION"]),
+                             normals = numbers(attributes["NORMAL"]);
+    for (size_t v = 0; v < places.size(); v += 3)
+      if (places[v] == 1.0F) at_the_ridge[places[v + 1]].emplace_back(normals.data() + v);
+  }
+  ASSERT_EQ(at_the_ridge.size(), 2u);
+  for (const auto& [y, normals] : at_the_ridge) {
+    ASSERT_EQ(normals.size(), 2u);
+    EXPECT_LT((normals[0] - normals[1]).norm(), 1e-6F);
+    EXPECT_GT(normals[0].z(), 0.9F);
+  }
+}
 
 TEST_F(MadeFile, TangentsOfANormalMapFollowItsTexture) {
   for (const auto& [corners, expected] : {std::pair{upright, std::array{1.0F, 0.0F, 0.0F, 1.0F}},

@@ -52,6 +52,15 @@ TEST_F(Materials, ComeWithTheirPicturesForTheMeshesThatUseThem) {
   EXPECT_FALSE(found.materials[0].has_alpha);
 }
 
+TEST_F(Materials, OfNeighboursThatShareVerticesStayTheirOwn) {
+  put("head.obj",
+      "mtllib looks.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 2 1 0\n"
+      "o eye\ng iris\nusemtl blue\nf 1 2 3\ng sclera\nusemtl white\nf 2 4 3\nf 2 5 4\n");
+  put("looks.mtl", "newmtl blue\nKd 0 0 1\nnewmtl white\nKd 1 1 1\n");
+  const MaterialLibrary found = library();
+  EXPECT_EQ(found.of_mesh, (std::vector<int>{0, 1}));
+}
+
 TEST_F(Materials, OfOtherKindsAndOutsideTheFolderAreLeftOutWithAWarning) {
   put("head.obj", two_objects);
   put("looks.mtl", "newmtl rosy\nmap_Kd skin.tga\nnewmtl enamel\nmap_Kd ../outside.png\n");
