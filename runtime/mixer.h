@@ -41,6 +41,8 @@ class Mixer {
   /// Makes layer `index` (1 .. most_layers - 1) or changes how it joins. `mask` #channels, or empty for all
   /// channels alike. Allocates when the layer is new.
   void set_layer(uint32_t index, Combine combine, float weight, std::span<const float> mask);
+  /// Removes a layer other than 0 and what curves have added to it.
+  void remove_layer(uint32_t index) { layers_[index].reset(); }
   bool has_layer(uint32_t index) const { return index < most_layers && layers_[index] != nullptr; }
 
   std::vector<float>& values(uint32_t layer = 0) { return layers_[layer]->values; }
