@@ -114,16 +114,28 @@ TEST(Layers, AreRemoved) {
   fascia_face_layer_values(face.face, 1)[jaw] = 0.8F;
   ASSERT_EQ(fascia_face_step(face.face, 0.01F), FASCIA_OK);
   EXPECT_FLOAT_EQ(fascia_face_effective_values(face.face)[jaw], 0.5F);
+  const std::string csv = "time,jawOpen,eyeYawLeft\n0,0.6,0.2\n1,0.6,0.2\n";  // which go with the layer
+  fascia_curves* curves = nullptr;
+  ASSERT_EQ(fascia_curves_load(csv.data(), csv.size(), &curves), FASCIA_OK);
+  ASSERT_EQ(fascia_curves_apply_to_layer(curves, 0.0, 1.0F, face.face, 1), FASCIA_OK);
+  fascia_curves_release(curves);
+  float* const values = fascia_face_layer_values(face.face, 1);
   ASSERT_EQ(fascia_face_layer_remove(face.face, 1), FASCIA_OK) << fascia_last_message();
   EXPECT_EQ(fascia_face_layer_values(face.face, 1), nullptr);
   ASSERT_EQ(fascia_face_step(face.face, 0.01F), FASCIA_OK);
   EXPECT_FLOAT_EQ(fascia_face_effective_values(face.face)[jaw], 0.2F);
   ASSERT_EQ(fascia_face_save(face.face, nullptr, 0, &removed), FASCIA_OK);
   EXPECT_EQ(removed, without);
-  // Made again it is at rest, and its mask is the new one.
+  // Its values keep their place. Made again it is at rest, and its mask is the new one.
+  values[jaw] = 0.7F;
   layer = layer_of(FASCIA_COMBINE_ADD);
   ASSERT_EQ(fascia_face_set_layer(face.face, 1, &layer), FASCIA_OK);
-  EXPECT_EQ(fascia_face_layer_values(face.face, 1)[jaw], 0.0F);
+  EXPECT_EQ(fascia_face_layer_values(face.face, 1), values);
+  ASSERT_EQ(fascia_face_step(face.face, 0.01F), FASCIA_OK);
+  EXPECT_FLOAT_EQ(fascia_face_effective_values(face.face)[jaw], 0.2F);
+  values[jaw] = 0.1F;
+  ASSERT_EQ(fascia_face_step(face.face, 0.01F), FASCIA_OK);
+  EXPECT_FLOAT_EQ(fascia_face_effective_values(face.face)[jaw], 0.3F);
   EXPECT_EQ(fascia_face_layer_remove(face.face, 0), FASCIA_ERROR_ARGUMENT);
   EXPECT_EQ(fascia_face_layer_remove(face.face, 2), FASCIA_ERROR_ARGUMENT);
   EXPECT_EQ(fascia_face_layer_remove(face.face, 8), FASCIA_ERROR_ARGUMENT);

@@ -71,7 +71,7 @@ class Face {
   }
   /// Sets every channel of a layer to rest and every member to 0. Throws Error if there is no such layer.
   void layer_clear(std::uint32_t layer) { check(fascia_face_layer_clear(handle(), layer)); }
-  /// Removes a layer (1 to 7), whose values are no longer valid. Throws Error if there is no such layer.
+  /// Removes a layer (1 to 7): see fascia_face_layer_remove. Throws Error if there is no such layer.
   void layer_remove(std::uint32_t layer) { check(fascia_face_layer_remove(handle(), layer)); }
   /// Adds the curves' values at `seconds`, times `weight`, to the input of the next pose or step: see
   /// fascia_curves_apply. Throws Error if there is no such layer.

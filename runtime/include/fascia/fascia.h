@@ -268,8 +268,8 @@ FASCIA_API fascia_result fascia_face_layer_set_member(fascia_face* face, uint32_
                                                       uint32_t member, float value);
 /** Clears a layer, as fascia_face_clear; FASCIA_ERROR_ARGUMENT if there is no such layer. */
 FASCIA_API fascia_result fascia_face_layer_clear(fascia_face* face, uint32_t layer);
-/** Removes a layer (1 to 7), with its mask, from the next pose or step on; the pointer that
- * fascia_face_layer_values gave is no longer valid. FASCIA_ERROR_ARGUMENT if there is no such layer. */
+/** Removes a layer (1 to 7) from the next pose or step on. Its values keep their place and have no effect;
+ * fascia_face_set_layer makes the layer again, at rest. FASCIA_ERROR_ARGUMENT if there is no such layer. */
 FASCIA_API fascia_result fascia_face_layer_remove(fascia_face* face, uint32_t layer);
 
 /** Rotates both eyes toward a point in metres in the head's frame (the rig's axes), each about its own centre
