@@ -58,11 +58,11 @@ run_tutorial() {
   echo "tutorial: $(ls "$out/tutorial" | wc -l) figures"
 }
 run_csharp() {
-  mcs -unsafe -warnaserror -out:"$out/test.exe" bindings/csharp/Fascia.cs tests/bindings/CsharpTest.cs
+  mcs -unsafe -warnaserror -out:"$out/test.exe" bindings/csharp/*.cs tests/bindings/CsharpTest.cs
   mono "$out/test.exe" "$rig" "$head" "$stream"
 }
 run_unity() {  # against stand-ins of the engine's types
-  mcs -unsafe -warnaserror -target:library -out:"$out/unity.dll" hosts/unity/stand_ins/UnityEngine.cs bindings/csharp/Fascia.cs \
+  mcs -unsafe -warnaserror -target:library -out:"$out/unity.dll" hosts/unity/stand_ins/UnityEngine.cs bindings/csharp/*.cs \
     hosts/unity/Runtime/FaceBehaviour.cs
   echo "unity: the component compiles; the engine is not here"
 }
