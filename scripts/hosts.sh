@@ -73,7 +73,8 @@ run_web() {
 }
 run_web_types() {
   (cd bindings/web/types && npm install --no-audit --no-fund --silent && npx tsc --noEmit -p .)
-  echo "web types: TypeScript takes them"
+  node tests/bindings/three_test.mjs bindings/web/types/node_modules
+  echo "web types: TypeScript takes them, and three.js the attributes"
 }
 run_browser() { node tests/bindings/browser_test.mjs; }
 run_web_page() {
@@ -122,7 +123,7 @@ part tutorial /usr/bin/python3 -- run_tutorial
 part csharp mcs mono -- run_csharp
 part unity mcs -- run_unity
 part 1200 web emcc node -- run_web
-part web_types npm -- run_web_types
+part web_types npm node -- run_web_types
 part browser node chromium -- run_browser
 part web_page emcc node npm chromium -- run_web_page
 part wgsl node chromium -- run_wgsl
