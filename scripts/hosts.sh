@@ -99,7 +99,7 @@ run_godot3_headers() {
 }
 run_godot3() {
   run_godot3_headers
-  HOME=$(mktemp -d) FASCIA_RIG="$rig" godot3-server --path hosts/godot3/project -s test.gd
+  HOME=$(mktemp -d) FASCIA_RIG="$rig" FASCIA_HEAD=$(realpath "$head") godot3-server --path hosts/godot3/project -s test.gd
 }
 run_godot3_scene() {  # the scene in a window, on a display in memory
   run_godot3_headers
@@ -108,6 +108,10 @@ run_godot3_scene() {  # the scene in a window, on a display in memory
     godot3-runner --path hosts/godot3/project --video-driver GLES2 --audio-driver Dummy
   [ "$(wc -c <"$out/godot3.png")" -gt 20000 ] || { echo "the picture is empty"; exit 1; }
   echo "godot scene: the head smiles in $out/godot3.png"
+}
+run_godot4_syntax() {  # against stand-ins of godot-cpp's types
+  g++ -std=c++20 -fsyntax-only -Wall -Wextra -Werror -Ihosts/godot4/stand_ins -Iruntime/include hosts/godot4/fascia_godot.cpp
+  echo "godot 4: only the syntax was checked; godot-cpp and the engine are not here"
 }
 run_unreal_syntax() {  # against stand-ins of the engine's types
   g++ -std=c++20 -fsyntax-only -Wall -Ihosts/unreal/stand_ins -Ihosts/unreal/Fascia/Source/Fascia/Public -Iruntime/include \
@@ -129,6 +133,7 @@ part web_page emcc node npm chromium -- run_web_page
 part wgsl node chromium -- run_wgsl
 part godot3 godot3-server cc -- run_godot3
 part godot3_scene godot3-runner xvfb-run cc -- run_godot3_scene
+part godot4 g++ -- run_godot4_syntax
 part unreal g++ -- run_unreal_syntax
 part blender blender -- run_blender_addon
 [ ${#failed[@]} -eq 0 ] || { echo "hosts: failed: ${failed[*]}" >&2; exit 1; }
