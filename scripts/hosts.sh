@@ -91,6 +91,10 @@ run_blender_addon() {
     "$PWD/$out/blender.png"
   local verdict  # repeated as the last line, which Blender would have otherwise
   verdict=$(grep '^blender:' "$out/blender.log")
+  if command -v xvfb-run >/dev/null; then  # the panel, which is drawn in a window only
+    FASCIA_LIBRARY=$PWD/build/lib/libfascia.so xvfb-run -a blender --factory-startup --python tests/bindings/blender_panel.py -- "$rig"
+    verdict+=", $(grep '^blender panel:' "$out/blender.log")"
+  fi
   echo "$verdict"
 }
 run_godot3_headers() {
