@@ -145,6 +145,15 @@ fascia_result fascia_asset_find_member(const fascia_asset* handle, const char* n
   });
 }
 
+fascia_result fascia_asset_texcoords(const fascia_asset* handle, uint32_t mesh, fascia_vectors* texcoords) {
+  return guarded([&] {
+    const Asset& asset = checked(handle);
+    check_index(mesh, asset.primitives().size(), "mesh");
+    hand_out_vectors(asset.primitives()[mesh].texture, texcoords);
+    return FASCIA_OK;
+  });
+}
+
 fascia_result fascia_asset_surface(const fascia_asset* handle, const char* name, fascia_surface* surface) {
   return guarded([&] {
     require(name != nullptr, "the name is null");

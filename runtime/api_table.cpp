@@ -87,6 +87,9 @@ const fascia_api table = {
     .fit_push = fascia_fit_push,
     .fit_reset = fascia_fit_reset,
     .face_member_gradient = fascia_face_member_gradient,
+    .asset_texcoords = fascia_asset_texcoords,
+    .face_layer_set_member = fascia_face_layer_set_member,
+    .face_layer_remove = fascia_face_layer_remove,
 };
 
 }  // namespace

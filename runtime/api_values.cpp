@@ -2,6 +2,18 @@
 
 using namespace fascia::runtime;
 
+namespace {
+
+void set_member(Face& face, uint32_t layer, uint32_t set, uint32_t member, float value) {
+  const auto& sets = face.asset().set_members;
+  check_index(set, sets.size(), "set");
+  check_index(member, sets[set].size(), "member");
+  require(std::isfinite(value), "the value is not a finite number");
+  face.mixer().set(layer, {Target::Kind::member, face.asset().first_member(set) + member}, value);
+}
+
+}  // namespace
+
 extern "C" {
 
 float* fascia_face_values(fascia_face* face) {
@@ -44,12 +56,7 @@ fascia_result fascia_face_clear(fascia_face* handle) {
 
 fascia_result fascia_face_set_member(fascia_face* handle, uint32_t set, uint32_t member, float value) {
   return guarded([&] {
-    Face& face = checked(handle);
-    const auto& sets = face.asset().set_members;
-    check_index(set, sets.size(), "set");
-    check_index(member, sets[set].size(), "member");
-    require(std::isfinite(value), "the value is not a finite number");
-    face.mixer().set(0, {Target::Kind::member, face.asset().first_member(set) + member}, value);
+    set_member(checked(handle), 0, set, member, value);
     return FASCIA_OK;
   });
 }
@@ -84,6 +91,22 @@ fascia_result fascia_face_layer_set(fascia_face* handle, uint32_t layer, const c
     for_each_named(face, name, [&](const Driven& driven) {
       face.mixer().set(layer, driven.target, driven.share * value);
     });
+    return FASCIA_OK;
+  });
+}
+
+fascia_result fascia_face_layer_set_member(fascia_face* handle, uint32_t layer, uint32_t set, uint32_t member,
+                                           float value) {
+  return guarded([&] {
+    set_member(with_layer(handle, layer), layer, set, member, value);
+    return FASCIA_OK;
+  });
+}
+
+fascia_result fascia_face_layer_remove(fascia_face* face, uint32_t layer) {
+  return guarded([&] {
+    require(layer != 0, "layer 0 is the face's own and cannot be removed");
+    with_layer(face, layer).mixer().remove_layer(layer);
     return FASCIA_OK;
   });
 }

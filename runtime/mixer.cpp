@@ -50,10 +50,20 @@ Mixer::Mixer(const Asset& asset)
 void Mixer::set_layer(uint32_t index, Combine combine, float weight, std::span<const float> mask) {
   if (!layers_[index]) layers_[index] = std::make_unique<Layer>(*asset_);
   Layer& layer = *layers_[index];
+  if (!layer.is_there) clear(index);  // what was written to its values since
+  layer.is_there = true;
   layer.combine = combine;
   layer.weight = weight;
   std::fill(layer.mask.begin(), layer.mask.end(), 1.0F);
   std::copy(mask.begin(), mask.end(), layer.mask.begin());
+}
+
+void Mixer::remove_layer(uint32_t index) {
+  Layer& layer = *layers_[index];
+  clear(index);
+  for (auto* list : {&layer.taken, &layer.taken_weight, &layer.curve_channels, &layer.curve_members})
+    std::fill(list->begin(), list->end(), 0.0F);
+  layer.is_there = false;
 }
 
 void Mixer::set(uint32_t layer, const Target& target, float value) {
@@ -147,7 +157,7 @@ void Mixer::gather(double seconds) {
   sum_up(*layers_[0], effective_);
   clamp(effective_);
   for (uint32_t i = 1; i < most_layers; ++i) {
-    if (!layers_[i]) continue;
+    if (!has_layer(i)) continue;
     sum_up(*layers_[i], scratch_);
     clamp(scratch_);
     join(*layers_[i]);

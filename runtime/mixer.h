@@ -27,6 +27,7 @@ struct Layer {
   Combine combine = Combine::add;
   float weight = 1.0F;
   std::vector<float> mask;  ///< by channel 0..1
+  bool is_there = true;     ///< false: removed; its memory stays for those who hold a pointer to its values
 };
 
 /// What moves a face: layers of values, the gaze, and the share of all that is let through. Gathered once a
@@ -39,9 +40,13 @@ class Mixer {
   explicit Mixer(const Asset& asset);
 
   /// Makes layer `index` (1 .. most_layers - 1) or changes how it joins. `mask` #channels, or empty for all
-  /// channels alike. Allocates when the layer is new.
+  /// channels alike. Allocates when the face never had the layer.
   void set_layer(uint32_t index, Combine combine, float weight, std::span<const float> mask);
-  bool has_layer(uint32_t index) const { return index < most_layers && layers_[index] != nullptr; }
+  /// Removes a layer other than 0 with all that was put into it.
+  void remove_layer(uint32_t index);
+  bool has_layer(uint32_t index) const {
+    return index < most_layers && layers_[index] != nullptr && layers_[index]->is_there;
+  }
 
   std::vector<float>& values(uint32_t layer = 0) { return layers_[layer]->values; }
   void set(uint32_t layer, const Target& target, float value);

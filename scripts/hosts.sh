@@ -58,11 +58,11 @@ run_tutorial() {
   echo "tutorial: $(ls "$out/tutorial" | wc -l) figures"
 }
 run_csharp() {
-  mcs -unsafe -warnaserror -out:"$out/test.exe" bindings/csharp/Fascia.cs tests/bindings/CsharpTest.cs
+  mcs -unsafe -warnaserror -out:"$out/test.exe" bindings/csharp/*.cs tests/bindings/CsharpTest.cs
   mono "$out/test.exe" "$rig" "$head" "$stream"
 }
 run_unity() {  # against stand-ins of the engine's types
-  mcs -unsafe -warnaserror -target:library -out:"$out/unity.dll" hosts/unity/stand_ins/UnityEngine.cs bindings/csharp/Fascia.cs \
+  mcs -unsafe -warnaserror -target:library -out:"$out/unity.dll" hosts/unity/stand_ins/UnityEngine.cs bindings/csharp/*.cs \
     hosts/unity/Runtime/FaceBehaviour.cs
   echo "unity: the component compiles; the engine is not here"
 }
@@ -75,7 +75,8 @@ run_web() {
 }
 run_web_types() {
   (cd bindings/web/types && npm install --no-audit --no-fund --silent && npx tsc --noEmit -p .)
-  echo "web types: TypeScript takes them"
+  node tests/bindings/three_test.mjs bindings/web/types/node_modules
+  echo "web types: TypeScript takes them, and three.js the attributes"
 }
 run_browser() { node tests/bindings/browser_test.mjs; }
 run_web_page() {
@@ -92,6 +93,10 @@ run_blender_addon() {
     "$PWD/$out/blender.png"
   local verdict  # repeated as the last line, which Blender would have otherwise
   verdict=$(grep '^blender:' "$out/blender.log")
+  if command -v xvfb-run >/dev/null; then  # the panel, which is drawn in a window only
+    FASCIA_LIBRARY=$PWD/build/lib/libfascia.so xvfb-run -a blender --factory-startup --python tests/bindings/blender_panel.py -- "$rig"
+    verdict+=", $(grep '^blender panel:' "$out/blender.log")"
+  fi
   echo "$verdict"
 }
 run_godot3_headers() {
@@ -100,7 +105,7 @@ run_godot3_headers() {
 }
 run_godot3() {
   run_godot3_headers
-  HOME=$(mktemp -d) FASCIA_RIG="$rig" godot3-server --path hosts/godot3/project -s test.gd
+  HOME=$(mktemp -d) FASCIA_RIG="$rig" FASCIA_HEAD=$(realpath "$head") godot3-server --path hosts/godot3/project -s test.gd
 }
 run_godot3_scene() {  # the scene in a window, on a display in memory
   run_godot3_headers
@@ -109,6 +114,10 @@ run_godot3_scene() {  # the scene in a window, on a display in memory
     godot3-runner --path hosts/godot3/project --video-driver GLES2 --audio-driver Dummy
   [ "$(wc -c <"$out/godot3.png")" -gt 20000 ] || { echo "the picture is empty"; exit 1; }
   echo "godot scene: the head smiles in $out/godot3.png"
+}
+run_godot4_syntax() {  # against stand-ins of godot-cpp's types
+  g++ -std=c++20 -fsyntax-only -Wall -Wextra -Werror -Ihosts/godot4/stand_ins -Iruntime/include hosts/godot4/fascia_godot.cpp
+  echo "godot 4: only the syntax was checked; godot-cpp and the engine are not here"
 }
 run_unreal_syntax() {  # against stand-ins of the engine's types
   g++ -std=c++20 -fsyntax-only -Wall -Ihosts/unreal/stand_ins -Ihosts/unreal/Fascia/Source/Fascia/Public -Iruntime/include \
@@ -124,12 +133,13 @@ part tutorial /usr/bin/python3 -- run_tutorial
 part csharp mcs mono -- run_csharp
 part unity mcs -- run_unity
 part 1200 web emcc node -- run_web
-part web_types npm -- run_web_types
+part web_types npm node -- run_web_types
 part browser node chromium -- run_browser
 part web_page emcc node npm chromium -- run_web_page
 part wgsl node chromium -- run_wgsl
 part godot3 godot3-server cc -- run_godot3
 part godot3_scene godot3-runner xvfb-run cc -- run_godot3_scene
+part godot4 g++ -- run_godot4_syntax
 part unreal g++ -- run_unreal_syntax
 part blender blender -- run_blender_addon
 [ ${#failed[@]} -eq 0 ] || { echo "hosts: failed: ${failed[*]}" >&2; exit 1; }

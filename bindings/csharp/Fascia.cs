@@ -22,7 +22,7 @@ namespace Fascia
     public enum Space { Mesh = 0, Input = 1, Metres = 2 }
     public enum Combine { Add = 0, Max = 1, Saturate = 2, Override = 3 }
 
-    internal static class Native
+    internal static partial class Native
     {
         const string Library = "fascia";
 
@@ -45,6 +45,12 @@ namespace Fascia
             public IntPtr Names, Groups, Units, Minimum, Maximum, Rest;
         }
         [StructLayout(LayoutKind.Sequential)]
+        public struct SetInfo
+        {
+            public uint StructSize, MemberCount;
+            public IntPtr Name, Members;
+        }
+        [StructLayout(LayoutKind.Sequential)]
         public struct FaceOptions
         {
             public uint StructSize;
@@ -60,35 +66,6 @@ namespace Fascia
             public IntPtr Mask;
         }
 
-        [StructLayout(LayoutKind.Sequential)]
-        public struct FitLandmarks
-        {
-            public uint StructSize, Count;
-            public IntPtr Set, Names, Places;
-        }
-        [StructLayout(LayoutKind.Sequential)]
-        public unsafe struct FitOptions
-        {
-            public uint StructSize;
-            public int Level, Iterations, FindsScale;
-            public float Ridge, Sparsity, Smoothness;
-            public fixed float Focal[2], Centre[2];
-        }
-        [StructLayout(LayoutKind.Sequential)]
-        public struct FitInfo
-        {
-            public uint StructSize, PointCount, Dimensions, LandmarkCount;
-            public IntPtr Names;
-        }
-        [StructLayout(LayoutKind.Sequential)]
-        public unsafe struct FitResult
-        {
-            public uint StructSize, Seen;
-            public float Residual, Scale;
-            public fixed float Head[16];
-            public IntPtr Values, Landmarks;
-        }
-
         [DllImport(Library)] public static extern uint fascia_version();
         [DllImport(Library)] public static extern IntPtr fascia_last_message();
         [DllImport(Library)] public static extern unsafe int fascia_asset_load(byte* bytes, UIntPtr size, out IntPtr asset);
@@ -96,6 +73,8 @@ namespace Fascia
         [DllImport(Library)] public static extern int fascia_asset_get_info(IntPtr asset, ref AssetInfo info);
         [DllImport(Library)] public static extern int fascia_asset_get_mesh(IntPtr asset, uint mesh, ref MeshInfo info);
         [DllImport(Library)] public static extern int fascia_asset_get_channels(IntPtr asset, ref Channels channels);
+        [DllImport(Library)] public static extern int fascia_asset_get_set(IntPtr asset, uint set, ref SetInfo info);
+        [DllImport(Library)] public static extern unsafe int fascia_asset_find_member(IntPtr asset, byte* name, out uint set, out uint member);
         [DllImport(Library)] public static extern int fascia_face_create(IntPtr asset, ref FaceOptions options, out IntPtr face);
         [DllImport(Library)] public static extern void fascia_face_release(IntPtr face);
         [DllImport(Library)] public static extern IntPtr fascia_face_values(IntPtr face);
@@ -109,6 +88,10 @@ namespace Fascia
         [DllImport(Library)] public static extern int fascia_face_set_level(IntPtr face, int level, float seconds);
         [DllImport(Library)] public static extern int fascia_face_set_layer(IntPtr face, uint index, ref Layer layer);
         [DllImport(Library)] public static extern IntPtr fascia_face_layer_values(IntPtr face, uint layer);
+        [DllImport(Library)] public static extern unsafe int fascia_face_layer_set(IntPtr face, uint layer, byte* name, float value);
+        [DllImport(Library)] public static extern int fascia_face_layer_set_member(IntPtr face, uint layer, uint set, uint member, float value);
+        [DllImport(Library)] public static extern int fascia_face_layer_clear(IntPtr face, uint layer);
+        [DllImport(Library)] public static extern int fascia_face_layer_remove(IntPtr face, uint layer);
         [DllImport(Library)] public static extern unsafe int fascia_face_look_at(IntPtr face, float* point, float weight);
         [DllImport(Library)] public static extern int fascia_face_blend(IntPtr face, float share, float seconds);
         [DllImport(Library)] public static extern unsafe int fascia_face_move_head(IntPtr face, float* matrix, float scale);
@@ -119,14 +102,6 @@ namespace Fascia
         [DllImport(Library)] public static extern unsafe int fascia_curves_load(byte* bytes, UIntPtr size, out IntPtr curves);
         [DllImport(Library)] public static extern void fascia_curves_release(IntPtr curves);
         [DllImport(Library)] public static extern int fascia_curves_apply_to_layer(IntPtr curves, double seconds, float weight, IntPtr face, uint layer);
-
-        [DllImport(Library)] public static extern FitOptions fascia_default_fit_options();
-        [DllImport(Library)] public static extern int fascia_fit_create(IntPtr asset, ref FitLandmarks landmarks, ref FitOptions options, out IntPtr fit);
-        [DllImport(Library)] public static extern void fascia_fit_release(IntPtr fit);
-        [DllImport(Library)] public static extern int fascia_fit_get_info(IntPtr fit, ref FitInfo info);
-        [DllImport(Library)] public static extern unsafe int fascia_fit_set_neutral(IntPtr fit, float* points, float* weights);
-        [DllImport(Library)] public static extern unsafe int fascia_fit_push(IntPtr fit, float* points, float* weights, ref FitResult result);
-        [DllImport(Library)] public static extern int fascia_fit_reset(IntPtr fit);
 
         public static string Text(IntPtr text)
         {
@@ -150,6 +125,13 @@ namespace Fascia
         public float Minimum, Maximum, Rest;
     }
 
+    /// A vocabulary: its name ("arkit") and those of its members ("jawOpen"), by the indices that Face.SetMember takes.
+    public struct Set
+    {
+        public string Name;
+        public string[] Members;
+    }
+
     public struct Mesh
     {
         public string Name, Part;
@@ -163,6 +145,7 @@ namespace Fascia
         internal IntPtr Handle;
         public Channel[] Channels { get; private set; }
         public Mesh[] Meshes { get; private set; }
+        public Set[] Sets { get; private set; }
         public int LevelCount { get; private set; }
 
         Asset(IntPtr handle) { Handle = handle; }
@@ -179,6 +162,8 @@ namespace Fascia
             Native.Check(Native.fascia_asset_get_info(handle, ref info));
             asset.LevelCount = (int)info.LevelCount;
             asset.ReadChannels();
+            asset.Sets = new Set[info.SetCount];
+            for (uint i = 0; i < info.SetCount; ++i) asset.Sets[i] = asset.ReadSet(i);
             asset.Meshes = new Mesh[info.MeshCount];
             for (uint i = 0; i < info.MeshCount; ++i) asset.Meshes[i] = asset.ReadMesh(i);
             return asset;
@@ -194,6 +179,25 @@ namespace Fascia
                     Name = Native.Text(((IntPtr*)list.Names)[i]), Group = Native.Text(((IntPtr*)list.Groups)[i]),
                     Unit = Native.Text(((IntPtr*)list.Units)[i]), Minimum = ((float*)list.Minimum)[i],
                     Maximum = ((float*)list.Maximum)[i], Rest = ((float*)list.Rest)[i] };
+        }
+
+        unsafe Set ReadSet(uint index)
+        {
+            var info = new Native.SetInfo { StructSize = Native.Size<Native.SetInfo>() };
+            Native.Check(Native.fascia_asset_get_set(Handle, index, ref info));
+            var members = new string[info.MemberCount];
+            for (int i = 0; i < members.Length; ++i) members[i] = Native.Text(((IntPtr*)info.Members)[i]);
+            return new Set { Name = Native.Text(info.Name), Members = members };
+        }
+
+        /// Indices of a member by its name, with its set's ("arkit:jawOpen") or without. FasciaException if no set has it.
+        public unsafe void FindMember(string name, out int set, out int member)
+        {
+            uint foundSet, foundMember;
+            fixed (byte* text = Encoding.UTF8.GetBytes(name + "\0"))
+                Native.Check(Native.fascia_asset_find_member(Handle, text, out foundSet, out foundMember));
+            set = (int)foundSet;
+            member = (int)foundMember;
         }
 
         Mesh ReadMesh(uint index)
@@ -240,13 +244,19 @@ namespace Fascia
         public float* Values => (float*)Native.fascia_face_values(handle);
         public float* EffectiveValues => (float*)Native.fascia_face_effective_values(handle);
 
+        /// `text` with a zero behind it, in the face's own array where it fits.
+        byte[] Named(string text)
+        {
+            int count = Encoding.UTF8.GetByteCount(text);
+            byte[] bytes = count < name.Length ? name : new byte[count + 1];
+            bytes[Encoding.UTF8.GetBytes(text, 0, text.Length, bytes, 0)] = 0;
+            return bytes;
+        }
         public void Set(string channel, float value)
         {
-            int count = Encoding.UTF8.GetByteCount(channel);
-            byte[] text = count < name.Length ? name : new byte[count + 1];
-            text[Encoding.UTF8.GetBytes(channel, 0, channel.Length, text, 0)] = 0;
-            fixed (byte* data = text) Native.Check(Native.fascia_face_set(handle, data, value));
+            fixed (byte* data = Named(channel)) Native.Check(Native.fascia_face_set(handle, data, value));
         }
+        /// By the indices of Asset.Sets and its members, which Asset.FindMember gives.
         public void SetMember(int set, int member, float value)
         {
             Native.Check(Native.fascia_face_set_member(handle, (uint)set, (uint)member, value));
@@ -266,7 +276,18 @@ namespace Fascia
                 Native.Check(Native.fascia_face_set_layer(handle, (uint)index, ref layer));
             }
         }
+        /// A layer's own values, as Values; null if there is no such layer.
         public float* LayerValues(int layer) { return (float*)Native.fascia_face_layer_values(handle, (uint)layer); }
+        public void LayerSet(int layer, string channel, float value)
+        {
+            fixed (byte* data = Named(channel)) Native.Check(Native.fascia_face_layer_set(handle, (uint)layer, data, value));
+        }
+        public void LayerSetMember(int layer, int set, int member, float value)
+        {
+            Native.Check(Native.fascia_face_layer_set_member(handle, (uint)layer, (uint)set, (uint)member, value));
+        }
+        public void LayerClear(int layer) { Native.Check(Native.fascia_face_layer_clear(handle, (uint)layer)); }
+        public void LayerRemove(int layer) { Native.Check(Native.fascia_face_layer_remove(handle, (uint)layer)); }
         public void LookAt(float x, float y, float z, float weight = 1)
         {
             float* point = stackalloc float[3];
@@ -316,66 +337,5 @@ namespace Fascia
         {
             fixed (byte* data = state) Native.Check(Native.fascia_face_restore(handle, data, (UIntPtr)state.Length));
         }
-    }
-
-    /// From a stream of landmarks to muscles. `set` is a detector's mark-up, "ibug68" or "mediapipe478". For one thread at a time.
-    public sealed unsafe class Fit : IDisposable
-    {
-        IntPtr handle;
-        Native.FitResult result;
-        readonly float[] head = new float[16];
-        public int PointCount { get; private set; }
-        public int Dimensions { get; private set; }
-        public int LandmarkCount { get; private set; }
-
-        public Fit(Asset asset, string set = "ibug68", int level = 0)
-        {
-            var options = Native.fascia_default_fit_options();
-            options.Level = level;
-            byte[] name = Encoding.UTF8.GetBytes(set + "\0");
-            fixed (byte* text = name)
-            {
-                var landmarks = new Native.FitLandmarks { StructSize = Native.Size<Native.FitLandmarks>(), Set = (IntPtr)text };
-                Native.Check(Native.fascia_fit_create(asset.Handle, ref landmarks, ref options, out handle));
-            }
-            var info = new Native.FitInfo { StructSize = Native.Size<Native.FitInfo>() };
-            Native.Check(Native.fascia_fit_get_info(handle, ref info));
-            PointCount = (int)info.PointCount;
-            Dimensions = (int)info.Dimensions;
-            LandmarkCount = (int)info.LandmarkCount;
-            result.StructSize = Native.Size<Native.FitResult>();
-        }
-        ~Fit() { Native.fascia_fit_release(handle); }
-        public void Dispose() { Native.fascia_fit_release(handle); handle = IntPtr.Zero; GC.SuppressFinalize(this); }
-
-        void CheckSizes(float[] points, float[] weights)
-        {
-            if (points.Length != PointCount * Dimensions || (weights != null && weights.Length != PointCount))
-                throw new ArgumentException("a frame has " + PointCount + " points of " + Dimensions + " numbers");
-        }
-        /// A frame of the same face at rest.
-        public void SetNeutral(float[] points, float[] weights = null)
-        {
-            CheckSizes(points, weights);
-            fixed (float* data = points, seen = weights) Native.Check(Native.fascia_fit_set_neutral(handle, data, seen));
-        }
-        /// The next frame, NaN where a point is not seen. How many landmarks counted.
-        public int Push(float[] points, float[] weights = null)
-        {
-            CheckSizes(points, weights);
-            fixed (float* data = points, seen = weights) Native.Check(Native.fascia_fit_push(handle, data, seen, ref result));
-            fixed (float* matrix = result.Head)
-                for (int i = 0; i < 16; ++i) head[i] = matrix[i];
-            return (int)result.Seen;
-        }
-        public void Reset() { Native.Check(Native.fascia_fit_reset(handle)); }
-
-        /// What the last frame told: metres left between points and face; the head as a matrix, column-major; a value a channel and
-        /// three numbers a landmark in the library's memory, until the next frame.
-        public float Residual => result.Residual;
-        public float Scale => result.Scale;
-        public float[] Head => head;
-        public float* Values => (float*)result.Values;
-        public float* Landmarks => (float*)result.Landmarks;
     }
 }

@@ -1,11 +1,14 @@
 // The Python module fascia._runtime: the classes of fascia.hpp, with arrays that are views of the runtime's
 // memory.
-#include <pybind11/numpy.h>
-#include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
-#include "fascia/fascia.hpp"
+#include <algorithm>
+#include <array>
+#include <optional>
+
 #include "fit.h"
+#include "research.h"
+#include "views.h"
 
 namespace py = pybind11;
 using fascia::api::Asset;
@@ -13,21 +16,11 @@ using fascia::api::check;
 using fascia::api::Curves;
 using fascia::api::Face;
 using fascia::api::sized;
+using fascia::python::Floats;
+using fascia::python::matrix_of;
+using fascia::python::view;
 
 namespace {
-
-/// An array of `rows` x `columns` (or `rows`, when columns is 0) that is a view of memory which `owner`
-/// keeps.
-template <class T>
-py::array_t<T> view(const T* data, py::ssize_t rows, py::ssize_t columns, const py::handle& owner,
-                    bool is_writable = false) {
-  std::vector<py::ssize_t> shape{rows};
-  if (columns > 0) shape.push_back(columns);
-  if (data == nullptr) return py::array_t<T>(shape);
-  py::array_t<T> array(shape, data, owner);
-  if (!is_writable) array.attr("flags").attr("writeable") = false;
-  return array;
-}
 
 std::span<const std::uint8_t> bytes_of(const py::bytes& bytes) {
   char* data = nullptr;
@@ -84,32 +77,6 @@ py::list meshes_of(const py::object& self) {
   return meshes;
 }
 
-py::dict lattice_of(const py::object& self, std::uint32_t level) {
-  auto lattice = sized<fascia_lattice>();
-  check(fascia_asset_lattice(self.cast<const Asset&>().handle(), level, &lattice));
-  py::dict result;
-  result["rest"] = view(lattice.rest, lattice.node_count, 3, self);
-  result["masses"] = view(lattice.masses, lattice.node_count, 0, self);
-  result["kinds"] = view(lattice.kinds, lattice.node_count, 0, self);
-  result["triangles"] = view(lattice.triangles, lattice.triangle_count, 3, self);
-  result["springs"] = view(lattice.springs, lattice.spring_count, 2, self);
-  return result;
-}
-
-py::dict fibres_of(const py::object& self, std::uint32_t level) {
-  auto fibres = sized<fascia_fibres>();
-  check(fascia_asset_fibres(self.cast<const Asset&>().handle(), level, &fibres));
-  py::dict result;
-  py::list muscles;
-  for (std::uint32_t f = 0; f < fibres.fibre_count; ++f)
-    muscles.append(fibres.muscles[f]);
-  result["muscles"] = muscles;
-  result["offsets"] = view(fibres.offsets, fibres.fibre_count + 1, 0, self);
-  result["channels"] = view(fibres.channels, fibres.fibre_count, 0, self);
-  result["points"] = view(fibres.points, fibres.point_count, 3, self);
-  return result;
-}
-
 std::unique_ptr<Face> make_face(const Asset& asset, int level, const std::string& space,
                                 const std::string& solver, int iterations) {
   fascia_face_options options = fascia_default_face_options();
@@ -142,59 +109,39 @@ py::array_t<float> vectors_of(const py::object& self, std::uint32_t mesh, Functi
   return view(vectors.data, vectors.count, vectors.stride / 4, self);
 }
 
-py::array_t<float> nodes_of(const py::object& self) {
-  auto vectors = sized<fascia_vectors>();
-  check(fascia_face_nodes(self.cast<Face&>().handle(), &vectors));
-  return py::array_t<float>({static_cast<py::ssize_t>(vectors.count), py::ssize_t{3}}, vectors.data);
+void set_layer(Face& face, std::uint32_t index, const std::string& combine, float weight,
+               const std::optional<Floats>& mask) {
+  constexpr std::array<const char*, 4> names = {"add", "max", "saturate", "override"};
+  const auto found = std::find(names.begin(), names.end(), combine);
+  if (found == names.end())
+    throw py::value_error("combine must be \"add\", \"max\", \"saturate\" or \"override\"");
+  std::span<const float> weights;
+  if (mask) weights = {mask->data(), static_cast<std::size_t>(mask->size())};
+  if (mask && weights.size() != face.values().size())
+    throw py::value_error("the mask must have one weight for each channel");
+  face.set_layer(index, static_cast<fascia_combine>(found - names.begin()), weight, weights);
 }
 
-py::dict energies_of(const Face& face) {
-  auto energies = sized<fascia_energies>();
-  check(fascia_face_energies(face.handle(), &energies));
-  py::dict result;
-  result["total"] = energies.total;
-  result["springs"] = energies.springs;
-  result["membranes"] = energies.membranes;
-  result["bending"] = energies.bending;
-  result["volume"] = energies.volume;
-  result["tethers"] = energies.tethers;
-  result["fibres"] = energies.fibres;
-  result["others"] = energies.others;
-  return result;
+py::array_t<float> layer_values(const py::object& self, std::uint32_t layer) {
+  const auto values = self.cast<Face&>().layer_values(layer);
+  if (values.empty())
+    throw fascia::api::Error(FASCIA_ERROR_ARGUMENT, "the face has no layer " + std::to_string(layer));
+  return view(values.data(), static_cast<py::ssize_t>(values.size()), 0, self, true);
 }
 
-py::array_t<float> fibre_forces_of(const Face& face) {
-  auto fibres = sized<fascia_fibres>();
-  check(fascia_asset_fibres(face.asset().handle(), static_cast<std::uint32_t>(face.level()), &fibres));
-  py::array_t<float> forces(static_cast<py::ssize_t>(fibres.fibre_count));
-  check(fascia_face_fibre_forces(face.handle(), forces.mutable_data(), fibres.fibre_count));
-  return forces;
+void move_head(Face& face, const Floats& matrix, float inertia_scale) {
+  if (matrix.ndim() != 2 || matrix.shape(0) != 4 || matrix.shape(1) != 4)
+    throw py::value_error("the matrix must be 4 x 4");
+  fascia::api::Matrix4 by_columns;
+  for (py::ssize_t row = 0; row < 4; ++row)
+    for (py::ssize_t column = 0; column < 4; ++column)
+      by_columns[static_cast<std::size_t>(4 * column + row)] = matrix.at(row, column);
+  face.move_head(by_columns, inertia_scale);
 }
 
-py::array_t<float> gradient_of(
-    Face& face,
-    const std::map<std::uint32_t, py::array_t<float, py::array::c_style | py::array::forcecast>>& slopes) {
-  const std::uint32_t meshes = face.asset().info().mesh_count;
-  std::vector<const float*> lists(meshes, nullptr);
-  for (const auto& [mesh, list] : slopes) {
-    if (mesh >= meshes) throw py::index_error("there is no mesh " + std::to_string(mesh));
-    if (list.ndim() != 2 || list.shape(1) != 3 ||
-        list.shape(0) != static_cast<py::ssize_t>(face.asset().mesh(mesh).vertex_count))
-      throw py::value_error("the slopes of a mesh must be an array of vertex_count x 3");
-    lists[mesh] = list.data();
-  }
-  py::array_t<float> gradient(static_cast<py::ssize_t>(face.values().size()));
-  float* const to = gradient.mutable_data();
-  {
-    py::gil_scoped_release released;
-    check(fascia_face_gradient(face.handle(), lists.data(), to));
-  }
-  return gradient;
-}
-
-void add_asset(py::module_& module) {
-  py::class_<Asset>(module, "Asset", "A loaded rig: immutable, for any thread.")
-      .def_static(
+py::class_<Asset> add_asset(py::module_& module) {
+  py::class_<Asset> made(module, "Asset", "A loaded rig: immutable, for any thread.");
+  made.def_static(
           "from_bytes", [](const py::bytes& bytes) { return Asset::load(bytes_of(bytes)); }, py::arg("bytes"),
           "Loads a rig from the bytes of a .glb file.")
       .def_property_readonly("channels", channels_of,
@@ -212,19 +159,25 @@ void add_asset(py::module_& module) {
           },
           "Names of the levels of detail, coarse to fine.")
       .def_property_readonly(
-          "input_to_metres",
-          [](const Asset& asset) {
-            const fascia_asset_info info = asset.info();
-            py::array_t<float> matrix({4, 4});
-            for (py::ssize_t row = 0; row < 4; ++row)
-              for (py::ssize_t column = 0; column < 4; ++column)
-                matrix.mutable_at(row, column) = info.input_to_metres[4 * column + row];
-            return matrix;
-          },
+          "input_to_metres", [](const Asset& asset) { return matrix_of(asset.info().input_to_metres); },
           "4 x 4: from the file's axes and units to metres.")
-      .def("lattice", lattice_of, py::arg("level"), "The tissue's nodes and elements of a level at rest.")
-      .def("fibres", fibres_of, py::arg("level"),
-           "The muscles' fibres of a level as polylines at rest, metres.");
+      .def(
+          "find_member",
+          [](const Asset& asset, const std::string& name) {
+            const Asset::Member found = asset.find_member(name);
+            return std::make_pair(found.set, found.member);
+          },
+          py::arg("name"), "Indices of a member (\"arkit:jawOpen\"): its set's, and its own in that set.")
+      .def(
+          "texcoords",
+          [](const py::object& self, std::uint32_t mesh) {
+            const auto list = self.cast<const Asset&>().texcoords(mesh);
+            const float* const data = list.empty() ? nullptr : list.front().data();
+            return view(data, static_cast<py::ssize_t>(list.size()), 2, self);
+          },
+          py::arg("mesh") = 0,
+          "Texture coordinates, a row for each vertex: a view; none if the file has none.");
+  return made;
 }
 
 void add_curves(py::module_& module) {
@@ -251,9 +204,9 @@ void add_curves(py::module_& module) {
           "duration", [](const Curves& curves) { return curves.info().duration; }, "Seconds.");
 }
 
-void add_face(py::module_& module) {
-  py::class_<Face>(module, "Face", "One head. For one thread at a time.")
-      .def(py::init(&make_face), py::arg("asset"), py::arg("level") = -1, py::arg("space") = "input",
+py::class_<Face> add_face(py::module_& module) {
+  py::class_<Face> made(module, "Face", "One head. For one thread at a time.");
+  made.def(py::init(&make_face), py::arg("asset"), py::arg("level") = -1, py::arg("space") = "input",
            py::arg("solver") = "own", py::arg("iterations") = 0)
       .def_property_readonly(
           "values",
@@ -271,8 +224,22 @@ void add_face(py::module_& module) {
           "What the last pose or step used: a view.")
       .def("set", &Face::set, py::arg("name"), py::arg("value"),
            "Sets a channel or a member (\"arkit:jawOpen\").")
+      .def("set_member", &Face::set_member, py::arg("set"), py::arg("member"), py::arg("value"),
+           "Sets a member by the indices that Asset.find_member gives.")
       .def("get", &Face::get, py::arg("name"))
       .def("clear", &Face::clear)
+      .def(
+          "set_layer", set_layer, py::arg("index"), py::arg("combine") = "add", py::arg("weight") = 1.0F,
+          py::arg("mask") = py::none(),
+          "Adds layer 1 to 7, or changes how it is combined with those below: \"add\", \"max\", \"saturate\" "
+          "or \"override\". The mask has a weight for each channel.")
+      .def("layer_values", layer_values, py::arg("layer"),
+           "A layer's own values: a view, to read and write, without effect once the layer is removed.")
+      .def("layer_set", &Face::layer_set, py::arg("layer"), py::arg("name"), py::arg("value"))
+      .def("layer_set_member", &Face::layer_set_member, py::arg("layer"), py::arg("set"), py::arg("member"),
+           py::arg("value"))
+      .def("layer_clear", &Face::layer_clear, py::arg("layer"))
+      .def("layer_remove", &Face::layer_remove, py::arg("layer"))
       .def("apply", &Face::apply, py::arg("curves"), py::arg("seconds"), py::arg("weight") = 1.0F,
            py::arg("layer") = 0)
       .def("pose", &Face::pose, py::call_guard<py::gil_scoped_release>(),
@@ -280,6 +247,13 @@ void add_face(py::module_& module) {
       .def("step", &Face::step, py::arg("seconds"), py::call_guard<py::gil_scoped_release>(),
            "Lets time pass; False when the simulation had to be put back to rest.")
       .def("reset", &Face::reset)
+      .def("move_head", move_head, py::arg("matrix"), py::arg("inertia_scale") = 1.0F,
+           "Sets the pose of the head in the world before a step: 4 x 4, a rigid transform in metres.")
+      .def("touch", &Face::touch, py::arg("mesh"), py::arg("vertex"), py::arg("force"),
+           "Applies a force, newtons in the rig's axes, until touches are cleared.")
+      .def("clear_touches", &Face::clear_touches)
+      .def("set_acceleration", &Face::set_acceleration, py::arg("acceleration"),
+           "Inertial acceleration of the tissue in the head's frame, m/s^2; zeros for none.")
       .def("look_at", &Face::look_at, py::arg("point"), py::arg("weight") = 1.0F)
       .def("blend", &Face::blend, py::arg("share"), py::arg("seconds"))
       .def("set_level", &Face::set_level, py::arg("level"), py::arg("seconds") = 0.25F)
@@ -297,17 +271,21 @@ void add_face(py::module_& module) {
           },
           py::arg("mesh") = 0)
       .def(
+          "tangents",
+          [](const py::object& self, std::uint32_t mesh) {
+            return vectors_of(self, mesh, fascia_face_tangents);
+          },
+          py::arg("mesh") = 0,
+          "Unit tangents and their handedness, 4 numbers each; none if the mesh has none.")
+      .def(
+          "jaw", [](const Face& face) { return matrix_of(face.jaw().data()); },
+          "Pose of the mandible: 4 x 4, a rigid transform in metres, a copy.")
+      .def(
           "compression",
           [](const py::object& self, std::uint32_t mesh) {
             return vectors_of(self, mesh, fascia_face_compression);
           },
           py::arg("mesh") = 0)
-      .def("nodes", nodes_of, "Places of the level's nodes, metres: a copy.")
-      .def("energies", energies_of, "Potential energy by what holds it, joules.")
-      .def("fibre_forces", fibre_forces_of, "Tension of each fibre, newtons.")
-      .def("gradient", gradient_of, py::arg("slopes"),
-           "A loss's derivative by every channel at a static pose, from its derivatives by positions: {mesh: "
-           "array of vertex_count x 3}.")
       .def(
           "save",
           [](Face& face) {
@@ -318,6 +296,7 @@ void add_face(py::module_& module) {
       .def(
           "restore", [](Face& face, const py::bytes& state) { face.restore(bytes_of(state)); },
           py::arg("state"));
+  return made;
 }
 
 }  // namespace
@@ -330,8 +309,9 @@ PYBIND11_MODULE(_runtime, module) {
     return std::to_string(version >> 16) + "." + std::to_string(version >> 8 & 255) + "." +
            std::to_string(version & 255);
   });
-  add_asset(module);
+  auto asset = add_asset(module);
   add_curves(module);
-  add_face(module);
+  auto face = add_face(module);
+  fascia::python::add_research(asset, face);
   fascia::python::add_fit(module);
 }

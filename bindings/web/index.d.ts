@@ -87,6 +87,11 @@ export interface Face {
   positions(mesh: number): Float32Array;
   normals(mesh: number): Float32Array;
   compression(mesh: number): Float32Array;
+  /**
+   * 4 numbers a vertex: the unit tangent for normal maps and the handedness, 1 or -1. Empty where the file gives the
+   * mesh neither tangents nor texture coordinates.
+   */
+  tangents(mesh: number): Float32Array;
   /** All that the next steps depend on; put back, the motion goes on with the same bits. */
   save(): Uint8Array;
   restore(state: Uint8Array): void;

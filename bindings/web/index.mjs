@@ -228,11 +228,17 @@ class Face {
   positions(mesh) { return this.vectors(mesh, 0); }
   normals(mesh) { return this.vectors(mesh, 1); }
   compression(mesh) { return this.vectors(mesh, 2); }
+  /** Empty where the file gives the mesh neither tangents nor texture coordinates. */
+  tangents(mesh) {
+    const count = this.exports.web_face_tangent_count(this.handle, mesh);
+    if (count < 0) this.fascia.fail();
+    return count === 0 ? new Float32Array(0) : this.vectors(mesh, 3, 4);
+  }
   /** @private */
-  vectors(mesh, kind) {
+  vectors(mesh, kind, width = 3) {
     const at = this.exports.web_face_vectors(this.handle, mesh, kind);
     if (at === 0) this.fascia.fail();
-    return this.fascia.floats(at, 3 * this.asset.meshes[mesh].vertexCount);
+    return this.fascia.floats(at, width * this.asset.meshes[mesh].vertexCount);
   }
 
   save() {

@@ -71,6 +71,12 @@ EXPORT uint32_t web_face_vectors(fascia_face* face, uint32_t mesh, uint32_t kind
   return result == FASCIA_OK ? NUMBER(vectors.data) : 0;
 }
 
+/* How many tangents a mesh has: one for each vertex or 0; -1 on a failure. */
+EXPORT int32_t web_face_tangent_count(fascia_face* face, uint32_t mesh) {
+  fascia_vectors vectors = {.struct_size = sizeof vectors};
+  return fascia_face_tangents(face, mesh, &vectors) == FASCIA_OK ? (int32_t)vectors.count : -1;
+}
+
 EXPORT int32_t web_face_set_layer(fascia_face* face, uint32_t index, uint32_t combine, float weight,
                                   const float* mask) {
   const fascia_layer layer = {sizeof layer, (fascia_combine)combine, weight, 0, mask};

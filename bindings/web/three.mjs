@@ -35,10 +35,13 @@ export class FasciaFace {
       const geometry = object.geometry.clone();  // two nodes may show one mesh, and two faces one file
       for (const name of ['position', 'normal'])
         geometry.setAttribute(name, new BufferAttribute(new Float32Array(3 * count), 3).setUsage(DynamicDrawUsage));
+      const hasTangents = geometry.attributes.tangent != null && this.face.tangents(index).length > 0;
+      if (hasTangents)
+        geometry.setAttribute('tangent', new BufferAttribute(new Float32Array(4 * count), 4).setUsage(DynamicDrawUsage));
       geometry.morphAttributes = {};  // the rig moves the head in their place
       object.geometry = geometry;
       object.frustumCulled = false;
-      this.parts.push({index, object});
+      this.parts.push({index, object, hasTangents});
     });
     this.write();
   }
@@ -79,11 +82,14 @@ export class FasciaFace {
 
   /** @private */
   write() {
-    for (const {index, object} of this.parts) {
-      const {position, normal} = object.geometry.attributes;
+    for (const {index, object, hasTangents} of this.parts) {
+      const {position, normal, tangent} = object.geometry.attributes;
       position.array.set(this.face.positions(index));
       normal.array.set(this.face.normals(index));
       position.needsUpdate = normal.needsUpdate = true;
+      if (!hasTangents) continue;
+      tangent.array.set(this.face.tangents(index));
+      tangent.needsUpdate = true;
     }
   }
 

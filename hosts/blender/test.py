@@ -39,29 +39,99 @@ def places():
     return np.concatenate(lists)
 
 
+class Layout:
+    """Takes what Blender's layout takes: a structure of its own with that property, and the parameters it knows."""
+
+    def __init__(self):
+        self.shown = []
+
+    def known(self, function, keywords):
+        parameters = bpy.types.UILayout.bl_rna.functions[function].parameters
+        assert all(keyword in parameters for keyword in keywords), (function, keywords)
+
+    def label(self, **keywords):
+        self.known("label", keywords)
+
+    def column(self, **keywords):
+        self.known("column", keywords)
+        return self
+
+    def operator(self, name, **keywords):
+        self.known("operator", keywords)
+        module, function = name.split(".")
+        getattr(getattr(bpy.ops, module), function).get_rna_type()  # raises where there is none
+
+    def prop(self, data, path, **keywords):
+        self.known("prop", keywords)
+        if not isinstance(data, bpy.types.bpy_struct):
+            raise TypeError(f"UILayout.prop(): error with argument 1, \"data\" - {type(data).__name__}")
+        self.shown.append((keywords["text"], data.path_resolve(path)))
+
+
+class Panel:
+    draw = fascia_blender.FASCIA_PT_panel.draw
+
+    def __init__(self):
+        self.layout = Layout()
+
+
+# The panel: a slider with a range for each channel and member.
+bpy.context.view_layer.objects.active = empty
+panel = Panel()
+panel.draw(bpy.context)
+shown = dict(panel.layout.shown)
+assert len(shown) == len(head.asset.channels) + sum(map(len, head.asset.sets.values())), len(shown)
+for channel in head.asset.channels:
+    assert shown[channel["name"]] == channel["rest"], channel
+    described = empty.id_properties_ui("fascia:" + channel["name"]).as_dict()
+    assert (described["min"], described["max"]) == (channel["minimum"], channel["maximum"]), described
+described = empty.id_properties_ui("fascia:arkit:mouthSmileLeft").as_dict()
+assert (described["min"], described["max"], described["default"]) == (0.0, 1.0, 0.0), described
+
 rest = places()
-channels = empty["fascia_channels"]
-channels["arkit:mouthSmileLeft"] = 0.0
-empty.keyframe_insert('["fascia_channels"]["arkit:mouthSmileLeft"]', frame=1)
-channels["arkit:mouthSmileLeft"] = 1.0
-empty.keyframe_insert('["fascia_channels"]["arkit:mouthSmileLeft"]', frame=10)
+left, right = "fascia:arkit:mouthSmileLeft", "fascia:arkit:mouthSmileRight"
+empty[left] = 0.0
+empty.keyframe_insert(f'["{left}"]', frame=1)
+empty[left] = 1.0
+empty.keyframe_insert(f'["{left}"]', frame=10)
 motion = []
 for frame in range(1, 13):
     scene.frame_set(frame)
     motion.append(float(np.linalg.norm(places() - rest, axis=1).max()))
 assert motion[0] < 1e-6 and motion[-1] > 5 * motion[1] and motion[-1] > 0.01 * np.ptp(rest), motion
 
-# A driver: the right side follows the left.
-driver = empty.driver_add('["fascia_channels"]["arkit:mouthSmileRight"]').driver
+# A driver: the right side follows the left, and the face moves with it.
+half = rest[:, 0] < np.median(rest[:, 0])  # the subject's right
+scene.frame_set(1)
+scene.frame_set(10)
+before = np.linalg.norm(places() - rest, axis=1)[half].max()
+driver = empty.driver_add(f'["{right}"]').driver
 variable = driver.variables.new()
-variable.targets[0].id, variable.targets[0].data_path = empty, '["fascia_channels"]["arkit:mouthSmileLeft"]'
+variable.targets[0].id, variable.targets[0].data_path = empty, f'["{left}"]'
 driver.expression = variable.name
 scene.frame_set(1)
 scene.frame_set(10)
-assert abs(channels["arkit:mouthSmileRight"] - 1.0) < 1e-6
+assert abs(empty[right] - 1.0) < 1e-6
+driven = np.linalg.norm(places() - rest, axis=1)[half].max()
+assert driven > 2 * before and driven > 0.01 * np.ptp(rest), (before, driven)
+
+# Whole numbers count as numbers.
+empty.driver_remove(f'["{right}"]')
+for value in (0, 1, 1.0):
+    empty[right] = value
+    bpy.ops.fascia.pose()
+    reached = np.linalg.norm(places() - rest, axis=1)[half].max()
+    assert (reached > 2 * before) == (value == 1), (value, reached)
+empty[right] = 0.0
+
+# The rig is written as it was read.
+folder = tempfile.mkdtemp()
+written = os.path.join(folder, "rig.glb")
+assert bpy.ops.fascia.export_rig(filepath=written) == {"FINISHED"}
+with open(rig, "rb") as first, open(written, "rb") as second:
+    assert first.read() == second.read()
 
 # Saved and loaded: the rig is in the file.
-folder = tempfile.mkdtemp()
 names = [skin.name for skin in skins]
 bpy.ops.wm.save_as_mainfile(filepath=os.path.join(folder, "head.blend"))
 bpy.ops.wm.open_mainfile(filepath=os.path.join(folder, "head.blend"))

@@ -180,6 +180,27 @@ METHOD(normals) {
   return result == FASCIA_OK ? vectors_of(&vectors) : outcome(result);
 }
 
+/* texcoords(mesh: int) -> PoolVector2Array, empty if the file has none */
+METHOD(texcoords) {
+  NEEDS(1);
+  fascia_vectors vectors = {.struct_size = sizeof vectors};
+  godot_pool_vector2_array array;
+  godot_variant answer;
+  const uint32_t mesh = (uint32_t)api->godot_variant_as_int(arguments[0]);
+  const fascia_result result = fascia_asset_texcoords(data->asset, mesh, &vectors);
+  if (result != FASCIA_OK) return outcome(result);
+  api->godot_pool_vector2_array_new(&array);
+  api->godot_pool_vector2_array_resize(&array, (godot_int)vectors.count);
+  godot_pool_vector2_array_write_access* access = api->godot_pool_vector2_array_write(&array);
+  godot_vector2* to = api->godot_pool_vector2_array_write_access_ptr(access);
+  for (uint32_t v = 0; v < vectors.count; ++v)
+    api->godot_vector2_new(&to[v], vectors.data[2 * v], vectors.data[2 * v + 1]);
+  api->godot_pool_vector2_array_write_access_destroy(access);
+  api->godot_variant_new_pool_vector2_array(&answer, &array);
+  api->godot_pool_vector2_array_destroy(&array);
+  return answer;
+}
+
 /* triangles(mesh: int) -> PoolIntArray, wound as Godot wants them: clockwise seen from outside */
 METHOD(triangles) {
   NEEDS(1);
@@ -224,10 +245,18 @@ void godot_nativescript_init(void* handle) {
   static const struct {
     const char* name;
     godot_variant (*run)(godot_object*, void*, void*, int, godot_variant**);
-  } methods[] = {
-      {"load", load},           {"set_value", set_value}, {"clear", clear},           {"step", step},
-      {"pose", pose},           {"reset", reset},         {"mesh_count", mesh_count}, {"part", part},
-      {"positions", positions}, {"normals", normals},     {"triangles", triangles}};
+  } methods[] = {{"load", load},
+                 {"set_value", set_value},
+                 {"clear", clear},
+                 {"step", step},
+                 {"pose", pose},
+                 {"reset", reset},
+                 {"mesh_count", mesh_count},
+                 {"part", part},
+                 {"positions", positions},
+                 {"normals", normals},
+                 {"triangles", triangles},
+                 {"texcoords", texcoords}};
   const godot_instance_create_func create = {make, NULL, NULL};
   const godot_instance_destroy_func release = {destroy, NULL, NULL};
   const godot_method_attributes attributes = {GODOT_METHOD_RPC_MODE_DISABLED};

@@ -7,6 +7,7 @@
 #include <godot_cpp/godot.hpp>
 #include <godot_cpp/variant/packed_byte_array.hpp>
 #include <godot_cpp/variant/packed_int32_array.hpp>
+#include <godot_cpp/variant/packed_vector2_array.hpp>
 #include <godot_cpp/variant/packed_vector3_array.hpp>
 #include <godot_cpp/variant/utility_functions.hpp>
 
@@ -60,6 +61,19 @@ class FasciaFace : public godot::RefCounted {
   godot::String part(int mesh) const { return godot::String::utf8(shape(mesh).part); }
   godot::PackedVector3Array positions(int mesh) { return vectors(mesh, fascia_face_positions); }
   godot::PackedVector3Array normals(int mesh) { return vectors(mesh, fascia_face_normals); }
+  /// Empty if the file has none; with the origin at the top left of an image, as Godot's.
+  godot::PackedVector2Array texcoords(int mesh) const {
+    godot::PackedVector2Array result;
+    fascia_vectors list = {};
+    list.struct_size = sizeof list;
+    if (asset_ == nullptr || !passes(fascia_asset_texcoords(asset_, static_cast<uint32_t>(mesh), &list)))
+      return result;
+    result.resize(list.count);
+    godot::Vector2* to = result.ptrw();
+    for (uint32_t v = 0; v < list.count; ++v)
+      to[v] = godot::Vector2(list.data[2 * v], list.data[2 * v + 1]);
+    return result;
+  }
   /// Wound as Godot wants them: clockwise seen from outside.
   godot::PackedInt32Array triangles(int mesh) const {
     const fascia_mesh_info info = shape(mesh);
@@ -90,6 +104,7 @@ class FasciaFace : public godot::RefCounted {
     ClassDB::bind_method(D_METHOD("part", "mesh"), &FasciaFace::part);
     ClassDB::bind_method(D_METHOD("positions", "mesh"), &FasciaFace::positions);
     ClassDB::bind_method(D_METHOD("normals", "mesh"), &FasciaFace::normals);
+    ClassDB::bind_method(D_METHOD("texcoords", "mesh"), &FasciaFace::texcoords);
     ClassDB::bind_method(D_METHOD("triangles", "mesh"), &FasciaFace::triangles);
   }
 

@@ -164,7 +164,7 @@ int run(const std::vector<std::string>& words) {
       faces[i].apply(curves, time - duration * static_cast<double>(static_cast<long>(time / duration)));
     }
     const auto before = Clock::now();
-    fascia_faces_step(handles.data(), static_cast<uint32_t>(handles.size()), 1.0F / 60.0F, &tasks);
+    fascia::api::faces_step(handles, 1.0F / 60.0F, &tasks);
     milliseconds.push_back(std::chrono::duration<double, std::milli>(Clock::now() - before).count());
   }
   if (!svg.empty()) draw(svg, milliseconds);

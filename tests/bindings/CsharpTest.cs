@@ -50,6 +50,56 @@ static class CsharpTest
         }
     }
 
+    /// Members' indices: every one is found by its name, and drives by either what it drives.
+    static unsafe void CheckMembers(Fascia.Asset asset)
+    {
+        int set, member;
+        Expect(asset.Sets.Length > 0 && Array.Exists(asset.Sets, entry => entry.Name == "arkit"), "the set arkit");
+        for (int s = 0; s < asset.Sets.Length; ++s)
+            for (int m = 0; m < asset.Sets[s].Members.Length; ++m)
+            {
+                asset.FindMember(asset.Sets[s].Name + ":" + asset.Sets[s].Members[m], out set, out member);
+                Expect(set == s && member == m, asset.Sets[s].Members[m] + " is found");
+            }
+        try
+        {
+            asset.FindMember("nobody's:jawOpen", out set, out member);
+            Expect(false, "an unknown member is refused");
+        }
+        catch (Fascia.FasciaException) { }
+        asset.FindMember("arkit:jawOpen", out set, out member);
+        int jaw = Array.FindIndex(asset.Channels, channel => channel.Name == "jaw_open");
+        using (var face = new Fascia.Face(asset))
+        {
+            face.Set("arkit:jawOpen", 0.5f);
+            face.Step(1f / 60);
+            float byName = face.EffectiveValues[jaw];
+            Expect(byName > 0, "the jaw opens by name");
+            face.Clear();
+            face.SetMember(set, member, 0.5f);
+            face.Step(1f / 60);
+            Expect(face.EffectiveValues[jaw] == byName, "the jaw opens by index");
+            face.Clear();
+            face.SetLayer(1, Fascia.Combine.Add);
+            face.LayerSetMember(1, set, member, 0.5f);
+            face.Step(1f / 60);
+            Expect(face.EffectiveValues[jaw] == byName, "the jaw opens by a layer");
+            face.LayerClear(1);
+            face.LayerSet(1, "jaw_open", 0.25f);
+            face.Step(1f / 60);
+            Expect(face.EffectiveValues[jaw] == 0.25f && face.LayerValues(1)[jaw] == 0.25f, "a layer's channel by name");
+            face.LayerRemove(1);
+            face.Step(1f / 60);
+            Expect(face.EffectiveValues[jaw] == 0 && face.LayerValues(1) == null, "the layer is removed");
+            try
+            {
+                face.SetMember(set, 999, 1);
+                Expect(false, "a member that is not there is refused");
+            }
+            catch (Fascia.FasciaException) { }
+        }
+    }
+
     static unsafe int Main(string[] arguments)
     {
         if (arguments.Length > 2) Follow(arguments[1], arguments[2]);
@@ -78,6 +128,7 @@ static class CsharpTest
             for (int i = 0; i < rest.Length; ++i) most = Math.Max(most, Math.Abs(posed[i] - rest[i]));
             Expect(most > 1e-4f && most < 0.1f, "the pose moves");
             Expect(Math.Abs(normals[0] * normals[0] + normals[1] * normals[1] + normals[2] * normals[2] - 1) < 1e-3, "unit normals");
+            CheckMembers(asset);
             face.SetLayer(1, Fascia.Combine.Max, 0.5f);
             face.LayerValues(1)[muscle] = 1;
             face.LookAt(0, 1.6f, 1);

@@ -56,6 +56,16 @@ face.step(1 / 60);
 assert.deepEqual(face.positions(0), after);
 assert.notDeepEqual(after, rest);
 assert.equal(face.normals(0).length, rest.length);
+for (let mesh = 0; mesh < asset.meshes.length; ++mesh) {
+  const tangents = face.tangents(mesh).slice(), normals = face.normals(mesh);
+  assert.ok(tangents.length === 0 || tangents.length === 4 * asset.meshes[mesh].vertexCount);
+  for (let v = 0; v < tangents.length / 4; ++v) {
+    const [x, y, z, hand] = tangents.subarray(4 * v, 4 * v + 4);
+    assert.ok(Math.abs(Math.hypot(x, y, z) - 1) < 1e-4 && Math.abs(hand) === 1);
+    assert.ok(Math.abs(x * normals[3 * v] + y * normals[3 * v + 1] + z * normals[3 * v + 2]) < 1e-4);
+  }
+}
+assert.throws(() => face.tangents(asset.meshes.length), FasciaError);
 const curves = fascia.loadCurves(`time,${asset.channels[muscle].name}\n0,0\n1,1\n`);
 assert.equal(curves.duration, 1);
 face.clear();

@@ -24,7 +24,7 @@ inline void call_asset(Input& input, const fascia_asset* asset) {
       "zygomaticus_major_left", "jaw_open", "arkit:jawOpen", "cranium", "smas", ""};
   const char* const name = names[input.byte() % 6];
   uint32_t set = 0, member = 0;
-  switch (input.byte() % 9) {
+  switch (input.byte() % 10) {
     case 0: {
       auto info = sized<fascia_asset_info>(input);
       fascia_asset_get_info(asset, &info);
@@ -62,6 +62,11 @@ inline void call_asset(Input& input, const fascia_asset* asset) {
     case 7: {
       auto fibres = sized<fascia_fibres>(input);
       fascia_asset_fibres(asset, input.index(), &fibres);
+      break;
+    }
+    case 8: {
+      auto texcoords = sized<fascia_vectors>(input);
+      fascia_asset_texcoords(asset, input.index(), &texcoords);
       break;
     }
     default: {

@@ -39,7 +39,7 @@ void call_layers(Input& input, fascia_face* face) {
   float values[16];
   for (float& value : values)
     value = input.value();
-  switch (input.byte() % 6) {
+  switch (input.byte() % 8) {
     case 0: {
       const fascia_layer layer = {input.byte() % 16 ? static_cast<uint32_t>(sizeof layer) : input.byte(),
                                   static_cast<fascia_combine>(input.index()), input.value(), 0,
@@ -57,6 +57,12 @@ void call_layers(Input& input, fascia_face* face) {
       if (float* const own = fascia_face_layer_values(face, input.index())) own[input.byte() % 4] = values[0];
       break;
     case 4:
+      fascia_face_layer_set_member(face, input.index(), input.index(), input.index(), input.value());
+      break;
+    case 5:
+      fascia_face_layer_remove(face, input.index());
+      break;
+    case 6:
       fascia_face_look_at(face, input.byte() % 4 ? values : nullptr, input.value());
       break;
     default:

@@ -75,6 +75,72 @@ TEST(Layers, TakeNamesAndCurves) {
   fascia_curves_release(curves);
 }
 
+TEST(Layers, TakeMembersByIndex) {
+  const Loaded rig;
+  const Face face(rig.asset);
+  const fascia_layer layer = layer_of(FASCIA_COMBINE_MAX);
+  ASSERT_EQ(fascia_face_set_layer(face.face, 3, &layer), FASCIA_OK);
+  uint32_t set = 9, member = 9;
+  ASSERT_EQ(fascia_asset_find_member(rig.asset, "arkit:mouthSmileLeft", &set, &member), FASCIA_OK);
+  ASSERT_EQ(fascia_face_layer_set_member(face.face, 3, set, member, 0.5F), FASCIA_OK)
+      << fascia_last_message();
+  ASSERT_EQ(fascia_face_step(face.face, 0.01F), FASCIA_OK);
+  EXPECT_FLOAT_EQ(fascia_face_effective_values(face.face)[smile_left], 0.45F);
+  float own = 1.0F;  // layer 0 has none of it
+  ASSERT_EQ(fascia_face_get(face.face, "arkit:mouthSmileLeft", &own), FASCIA_OK);
+  EXPECT_EQ(own, 0.0F);
+  // Layer 0 is the face itself.
+  ASSERT_EQ(fascia_face_layer_set_member(face.face, 0, set, member, 0.25F), FASCIA_OK);
+  ASSERT_EQ(fascia_face_get(face.face, "arkit:mouthSmileLeft", &own), FASCIA_OK);
+  EXPECT_EQ(own, 0.25F);
+  EXPECT_EQ(fascia_face_layer_set_member(face.face, 2, set, member, 0.5F), FASCIA_ERROR_ARGUMENT);
+  EXPECT_EQ(fascia_face_layer_set_member(face.face, 8, set, member, 0.5F), FASCIA_ERROR_ARGUMENT);
+  EXPECT_EQ(fascia_face_layer_set_member(face.face, 3, 2, 0, 0.5F), FASCIA_ERROR_ARGUMENT);
+  EXPECT_EQ(fascia_face_layer_set_member(face.face, 3, 1, 1, 0.5F), FASCIA_ERROR_ARGUMENT);
+  EXPECT_EQ(fascia_face_layer_set_member(face.face, 3, set, member, NAN), FASCIA_ERROR_ARGUMENT);
+}
+
+TEST(Layers, AreRemoved) {
+  const Loaded rig;
+  const Face face(rig.asset);
+  const float mask[5] = {0, 0, 0.5F, 0, 0};
+  fascia_layer layer = layer_of(FASCIA_COMBINE_OVERRIDE, 1.0F, mask);
+  size_t without = 0, with = 0, removed = 0;
+  ASSERT_EQ(fascia_face_save(face.face, nullptr, 0, &without), FASCIA_OK);
+  ASSERT_EQ(fascia_face_set_layer(face.face, 1, &layer), FASCIA_OK);
+  ASSERT_EQ(fascia_face_save(face.face, nullptr, 0, &with), FASCIA_OK);
+  EXPECT_GT(with, without);
+  fascia_face_values(face.face)[jaw] = 0.2F;
+  fascia_face_layer_values(face.face, 1)[jaw] = 0.8F;
+  ASSERT_EQ(fascia_face_step(face.face, 0.01F), FASCIA_OK);
+  EXPECT_FLOAT_EQ(fascia_face_effective_values(face.face)[jaw], 0.5F);
+  const std::string csv = "time,jawOpen,eyeYawLeft\n0,0.6,0.2\n1,0.6,0.2\n";  // which go with the layer
+  fascia_curves* curves = nullptr;
+  ASSERT_EQ(fascia_curves_load(csv.data(), csv.size(), &curves), FASCIA_OK);
+  ASSERT_EQ(fascia_curves_apply_to_layer(curves, 0.0, 1.0F, face.face, 1), FASCIA_OK);
+  fascia_curves_release(curves);
+  float* const values = fascia_face_layer_values(face.face, 1);
+  ASSERT_EQ(fascia_face_layer_remove(face.face, 1), FASCIA_OK) << fascia_last_message();
+  EXPECT_EQ(fascia_face_layer_values(face.face, 1), nullptr);
+  ASSERT_EQ(fascia_face_step(face.face, 0.01F), FASCIA_OK);
+  EXPECT_FLOAT_EQ(fascia_face_effective_values(face.face)[jaw], 0.2F);
+  ASSERT_EQ(fascia_face_save(face.face, nullptr, 0, &removed), FASCIA_OK);
+  EXPECT_EQ(removed, without);
+  // Its values keep their place. Made again it is at rest, and its mask is the new one.
+  values[jaw] = 0.7F;
+  layer = layer_of(FASCIA_COMBINE_ADD);
+  ASSERT_EQ(fascia_face_set_layer(face.face, 1, &layer), FASCIA_OK);
+  EXPECT_EQ(fascia_face_layer_values(face.face, 1), values);
+  ASSERT_EQ(fascia_face_step(face.face, 0.01F), FASCIA_OK);
+  EXPECT_FLOAT_EQ(fascia_face_effective_values(face.face)[jaw], 0.2F);
+  values[jaw] = 0.1F;
+  ASSERT_EQ(fascia_face_step(face.face, 0.01F), FASCIA_OK);
+  EXPECT_FLOAT_EQ(fascia_face_effective_values(face.face)[jaw], 0.3F);
+  EXPECT_EQ(fascia_face_layer_remove(face.face, 0), FASCIA_ERROR_ARGUMENT);
+  EXPECT_EQ(fascia_face_layer_remove(face.face, 2), FASCIA_ERROR_ARGUMENT);
+  EXPECT_EQ(fascia_face_layer_remove(face.face, 8), FASCIA_ERROR_ARGUMENT);
+}
+
 TEST(Layers, WrongOnesAreRefused) {
   const Loaded rig;
   const Face face(rig.asset);
@@ -90,6 +156,16 @@ TEST(Layers, WrongOnesAreRefused) {
   EXPECT_EQ(fascia_face_set_layer(face.face, 1, &layer), FASCIA_ERROR_ARGUMENT);
   EXPECT_EQ(fascia_face_layer_values(face.face, 1), nullptr);
   EXPECT_EQ(fascia_face_layer_set(face.face, 1, "jaw_open", 1.0F), FASCIA_ERROR_ARGUMENT);
+}
+
+TEST(Channels, AreNamedByTheirNumbersToo) {
+  const Loaded rig;
+  const Face face(rig.asset);
+  EXPECT_EQ(fascia_asset_find_channel(rig.asset, "#2"), static_cast<int32_t>(jaw));
+  ASSERT_EQ(fascia_face_set(face.face, "#2", 0.5F), FASCIA_OK);
+  EXPECT_EQ(fascia_face_values(face.face)[jaw], 0.5F);
+  for (const char* const name : {"#5", "#", "#-1", "#2x", "# 2"})
+    EXPECT_EQ(fascia_face_set(face.face, name, 0.5F), FASCIA_ERROR_NAME) << name;
 }
 
 TEST(Members, AreSetByIndexAsByName) {

@@ -75,6 +75,7 @@ TEST(Memory, AFrameDoesNotAllocate) {
     bad += fascia_face_set(face.face, "ARKit:mouthSmileLeft", time) != FASCIA_OK;
     bad += fascia_face_layer_set(face.face, 1, "zygomaticus_major_left", time) != FASCIA_OK;
     bad += fascia_face_set_member(face.face, 0, 2, 0.3F) != FASCIA_OK;
+    bad += fascia_face_layer_set_member(face.face, 1, 0, 2, 0.3F) != FASCIA_OK;
     bad += fascia_curves_apply(curves, static_cast<double>(time), 1.0F, face.face) != FASCIA_OK;
     bad += fascia_curves_apply_to_layer(curves, static_cast<double>(time), 1.0F, face.face, 1) != FASCIA_OK;
     bad += fascia_face_look_at(face.face, point, 1.0F) != FASCIA_OK;

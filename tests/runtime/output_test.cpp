@@ -69,6 +69,26 @@ TEST(Written, IsWhatTheFaceShowsAtEveryStride) {
   expect_same_at_strides(face.face, fascia_face_tangents, fascia_face_write_tangents, 16);
 }
 
+TEST(TextureCoordinates, AreTheFiles) {
+  const Loaded rig(rig_with_texture());
+  fascia_vectors texcoords = {};
+  texcoords.struct_size = sizeof texcoords;
+  ASSERT_EQ(fascia_asset_texcoords(rig.asset, 0, &texcoords), FASCIA_OK) << fascia_last_message();
+  ASSERT_EQ(texcoords.count, side * side);
+  ASSERT_EQ(texcoords.stride, 2 * sizeof(float));
+  for (uint32_t v = 0; v < texcoords.count; ++v) {
+    EXPECT_EQ(texcoords.data[2 * v], static_cast<float>(v % side) / static_cast<float>(side - 1)) << v;
+    EXPECT_EQ(texcoords.data[2 * v + 1], static_cast<float>(v / side) / static_cast<float>(side - 1)) << v;
+  }
+  EXPECT_EQ(fascia_asset_texcoords(rig.asset, 1, &texcoords), FASCIA_ERROR_ARGUMENT);
+  EXPECT_EQ(fascia_asset_texcoords(rig.asset, 0, nullptr), FASCIA_ERROR_ARGUMENT);
+  EXPECT_EQ(fascia_asset_texcoords(nullptr, 0, &texcoords), FASCIA_ERROR_ARGUMENT);
+  const Loaded plain;
+  ASSERT_EQ(fascia_asset_texcoords(plain.asset, 0, &texcoords), FASCIA_OK);
+  EXPECT_EQ(texcoords.count, 0U);
+  EXPECT_EQ(texcoords.data, nullptr);
+}
+
 /// Normals and tangents are unit vectors at right angles, before and after the skin has moved.
 TEST(Written, NormalsAndTangentsAreAFrame) {
   const Loaded rig(rig_with_texture());

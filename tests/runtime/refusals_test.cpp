@@ -207,6 +207,7 @@ TEST_F(Refusals, WhatAFaceIsAsked) {
     count(fascia_face_set(face, "zygomaticus_major_left", 0.6F));
     count(fascia_face_set_layer(face, 1, &layer));
     count(fascia_face_layer_set(face, 1, "jaw_open", 0.4F));
+    count(fascia_face_layer_set_member(face, 1, 0, 1, 0.2F));
     count(fascia_face_touch(face, 0, 100, force));
     count(fascia_face_pose(face));
     count(fascia_face_energies(face, &energies));
@@ -225,6 +226,7 @@ TEST_F(Refusals, WhatAFaceIsAsked) {
     count(fascia_faces_step(&face, 1, 1.0F / 60.0F, nullptr));
     count(fascia_face_set_level(face, 0, 0.1F));
     count(fascia_face_save(face, nullptr, 0, &size));
+    count(fascia_face_layer_remove(face, 1));
     host.refuse_no_more();
     all = host.made - made;
     EXPECT_GE(refusals, refused >= 0 ? 1 : 0) << refused << " of " << all;

@@ -72,6 +72,17 @@ static void rewind_a_frame(fascia_face* face) {
   free(rest);
 }
 
+/* The members at the end of the table. */
+static void use_a_layer(const fascia_asset* asset, fascia_face* face) {
+  fascia_vectors texcoords = {sizeof texcoords, 0, 0, 0, NULL};
+  const fascia_layer layer = {sizeof layer, FASCIA_COMBINE_MAX, 1.0f, 0, NULL};
+  require(api->asset_texcoords(asset, 0, &texcoords) == FASCIA_OK, "texture coordinates");
+  require(api->face_set_layer(face, 1, &layer) == FASCIA_OK, "a layer");
+  require(api->face_layer_set_member(face, 1, 0, 0, 0.5f) == FASCIA_OK, "a member of a layer");
+  require(api->face_layer_remove(face, 1) == FASCIA_OK, "the layer is removed");
+  require(api->face_layer_values(face, 1) == NULL, "the layer is gone");
+}
+
 int main(int argc, char** argv) {
   fascia_get_api_function get_api;
   fascia_asset* asset = NULL;
@@ -89,6 +100,7 @@ int main(int argc, char** argv) {
   require(api->asset_load(bytes, size, &asset) == FASCIA_OK, "load");
   require(api->face_create(asset, NULL, &face) == FASCIA_OK, "create");
   rewind_a_frame(face);
+  use_a_layer(asset, face);
   require(api->asset_load(bytes, size / 2, &asset) == FASCIA_ERROR_FORMAT, "half a rig is refused");
   api->face_release(face);
   api->asset_release(asset);

@@ -29,7 +29,8 @@ export async function play(bytes: ArrayBuffer): Promise<number> {
   face.setLevel(face.level, 0.25);
   const state: Uint8Array = face.save();
   face.restore(state);
-  const numbers = face.positions(0).length + face.normals(0).length + face.compression(0).length + mesh.triangles.length;
+  const numbers = face.positions(0).length + face.normals(0).length + face.compression(0).length + face.tangents(0).length +
+      mesh.triangles.length;
   face.clear();
   face.reset();
   face.dispose();

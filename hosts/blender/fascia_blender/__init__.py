@@ -1,13 +1,13 @@
 # Fascia in Blender: rigs as moving heads, channels as properties that can be keyed and driven, shape keys baked.
 #
 # Import a rig (File > Import > Fascia rig): its meshes become Blender's, bound to the rig's bytes, which are kept in the
-# blend file. Each channel and each member of a vocabulary is a property of the head's empty, fascia_channels.NAME.
+# blend file. Each channel and each member of a vocabulary is a property of the head's empty, "fascia:NAME".
 import os
 
 import bpy
 import numpy as np
 from bpy.app.handlers import persistent
-from bpy_extras.io_utils import ImportHelper
+from bpy_extras.io_utils import ExportHelper, ImportHelper
 
 from . import runtime
 
@@ -15,6 +15,7 @@ bl_info = {"name": "Fascia", "author": "The Fascia developers", "version": (0, 1
            "location": "File > Import, Sidebar > Fascia", "category": "Animation",
            "description": "Anatomical face rigs, simulated"}
 
+PREFIX = "fascia:"  # of the properties that are a head's inputs
 heads = {}  # name of a head's empty -> what moves it
 
 
@@ -28,10 +29,9 @@ class Head:
         self.objects = [(obj, int(obj["fascia_mesh"])) for obj in empty.children_recursive if "fascia_mesh" in obj]
 
     def drive(self, empty):
-        values = empty.get("fascia_channels")
         self.face.clear()
-        for name, value in (values.items() if values else ()):
-            if isinstance(value, float) and value != 0.0:
+        for name, value in inputs(empty).items():
+            if value != 0.0:
                 self.face.set(name, value)
 
     def show(self):
@@ -50,6 +50,28 @@ def head_of(empty):
     if empty.name not in heads:
         heads[empty.name] = Head(empty)
     return heads[empty.name]
+
+
+def inputs(empty):
+    """The head's inputs: names of channels and members, and their numbers."""
+    return {name[len(PREFIX):]: float(value) for name, value in empty.items()
+            if name.startswith(PREFIX) and isinstance(value, (int, float))}
+
+
+def add_inputs(empty, asset):
+    """Gives the empty one property for each channel and member of the rig, with its range."""
+    def add(name, value, **described):
+        empty[PREFIX + name] = value
+        empty.id_properties_ui(PREFIX + name).update(default=value, **described)
+
+    for channel in asset.channels:
+        low, high = channel["minimum"], channel["maximum"]
+        add(channel["name"], channel["rest"], min=low, max=high, soft_min=low, soft_max=high,
+            subtype="ANGLE" if channel["unit"] == "rad" else "NONE", description=f"Channel, {channel['group']}")
+    for vocabulary, members in asset.sets.items():
+        for member in members:
+            add(f"{vocabulary}:{member}", 0.0, min=0.0, max=1.0, soft_min=0.0, soft_max=1.0,
+                description=f"Member of {vocabulary}: adds to the channels that it drives")
 
 
 def rig_empties(scene):
@@ -95,10 +117,7 @@ def import_rig(context, path):
         if obj.parent is None:
             obj.parent = empty
     bind(asset, [obj for obj in new if obj.type == "MESH"])
-    empty["fascia_channels"] = {channel["name"]: float(channel["rest"]) for channel in asset.channels}
-    for vocabulary, members in asset.sets.items():
-        for member in members:
-            empty["fascia_channels"][f"{vocabulary}:{member}"] = 0.0
+    add_inputs(empty, asset)
     heads[empty.name] = Head(empty)
     return empty
 
@@ -160,15 +179,36 @@ class FASCIA_OT_import(bpy.types.Operator, ImportHelper):
         return {"FINISHED"}
 
 
-class FASCIA_OT_bake(bpy.types.Operator):
-    """Add a shape key for each ARKit shape to the active head"""
-    bl_idname = "fascia.bake"
-    bl_label = "Bake shape keys"
-    bl_options = {"UNDO"}
+class OfHead:
+    """An operator for the active head."""
 
     @classmethod
     def poll(cls, context):
         return context.object is not None and "fascia_rig" in context.object
+
+
+class FASCIA_OT_export(OfHead, bpy.types.Operator, ExportHelper):
+    """Write the active head's rig as it was imported: the file that engines load"""
+    bl_idname = "fascia.export_rig"
+    bl_label = "Fascia rig (.glb)"
+    filename_ext = ".glb"
+    filter_glob: bpy.props.StringProperty(default="*.glb", options={"HIDDEN"})
+
+    def execute(self, context):
+        try:
+            with open(self.filepath, "wb") as file:
+                file.write(bytes(context.object["fascia_rig"]))
+        except OSError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        return {"FINISHED"}
+
+
+class FASCIA_OT_bake(OfHead, bpy.types.Operator):
+    """Add a shape key for each ARKit shape to the active head"""
+    bl_idname = "fascia.bake"
+    bl_label = "Bake shape keys"
+    bl_options = {"UNDO"}
 
     def execute(self, context):
         self.report({"INFO"}, f"{bake(context.object)} shape keys")
@@ -200,22 +240,28 @@ class FASCIA_PT_panel(bpy.types.Panel):
             return
         self.layout.operator("fascia.pose")
         self.layout.operator("fascia.bake")
+        self.layout.operator("fascia.export_rig", text="Export Fascia rig")
         column = self.layout.column(align=True)
-        for name in sorted(empty["fascia_channels"].keys()):
-            column.prop(empty["fascia_channels"], f'["{name}"]', text=name, slider=True)
+        for name in sorted(inputs(empty)):
+            column.prop(empty, f'["{bpy.utils.escape_identifier(PREFIX + name)}"]', text=name, slider=True)
 
 
-def menu(self, context):
+def import_menu(self, context):
     self.layout.operator(FASCIA_OT_import.bl_idname)
 
 
-classes = (FASCIA_OT_import, FASCIA_OT_bake, FASCIA_OT_pose, FASCIA_PT_panel)
+def export_menu(self, context):
+    self.layout.operator(FASCIA_OT_export.bl_idname)
+
+
+classes = (FASCIA_OT_import, FASCIA_OT_export, FASCIA_OT_bake, FASCIA_OT_pose, FASCIA_PT_panel)
 
 
 def register():
     for entry in classes:
         bpy.utils.register_class(entry)
-    bpy.types.TOPBAR_MT_file_import.append(menu)
+    bpy.types.TOPBAR_MT_file_import.append(import_menu)
+    bpy.types.TOPBAR_MT_file_export.append(export_menu)
     bpy.app.handlers.frame_change_post.append(on_frame)
     bpy.app.handlers.load_post.append(on_load)
 
@@ -223,6 +269,7 @@ def register():
 def unregister():
     bpy.app.handlers.load_post.remove(on_load)
     bpy.app.handlers.frame_change_post.remove(on_frame)
-    bpy.types.TOPBAR_MT_file_import.remove(menu)
+    bpy.types.TOPBAR_MT_file_export.remove(export_menu)
+    bpy.types.TOPBAR_MT_file_import.remove(import_menu)
     for entry in reversed(classes):
         bpy.utils.unregister_class(entry)

@@ -86,7 +86,8 @@ class Asset:
         self.meshes = [{"name": mesh.name.decode(), "part": mesh.part.decode(), "vertices": mesh.vertices} for mesh in meshes]
         channels = _filled(_Channels, "fascia_asset_get_channels", self.handle)
         self.channels = [{"name": channels.names[i].decode(), "group": channels.groups[i].decode(),
-                          "minimum": channels.minimum[i], "maximum": channels.maximum[i], "rest": channels.rest[i]}
+                          "unit": channels.units[i].decode(), "minimum": channels.minimum[i],
+                          "maximum": channels.maximum[i], "rest": channels.rest[i]}
                          for i in range(channels.count)]
         sets = [_filled(_Set, "fascia_asset_get_set", self.handle, i) for i in range(info.sets)]
         self.sets = {entry.name.decode(): [entry.members[m].decode() for m in range(entry.count)] for entry in sets}

@@ -52,6 +52,9 @@ func _write(mesh):
 	arrays.resize(ArrayMesh.ARRAY_MAX)
 	arrays[ArrayMesh.ARRAY_VERTEX] = face.positions(mesh)
 	arrays[ArrayMesh.ARRAY_NORMAL] = face.normals(mesh)
+	var texcoords = face.texcoords(mesh)
+	if texcoords.size() > 0:
+		arrays[ArrayMesh.ARRAY_TEX_UV] = texcoords
 	arrays[ArrayMesh.ARRAY_INDEX] = face.triangles(mesh)
 	while meshes[mesh].get_surface_count() > 0:
 		meshes[mesh].surface_remove(0)

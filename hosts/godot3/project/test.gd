@@ -7,6 +7,22 @@ func expect(condition, what):
 		OS.exit_code = 1
 	return condition
 
+func texture(face):
+	var file = File.new()
+	expect(file.open(OS.get_environment("FASCIA_HEAD"), File.READ) == OK, "the head can be read")
+	expect(face.load(file.get_buffer(file.get_len()), 0), "the head is loaded")
+	var textured = 0
+	for mesh in range(face.mesh_count()):
+		var least = Vector2(1, 1)
+		var most = Vector2(0, 0)
+		var texcoords = face.texcoords(mesh)
+		for place in texcoords:
+			least = Vector2(min(least.x, place.x), min(least.y, place.y))
+			most = Vector2(max(most.x, place.x), max(most.y, place.y))
+		if face.part(mesh) == "skin" and texcoords.size() == face.positions(mesh).size() and (most - least).length() > 0.1:
+			textured += 1
+	expect(textured > 0, "the skin has texture coordinates")
+
 func _init():
 	var face = load("res://fascia_face.gdns").new()
 	expect(not face.load(PoolByteArray([1, 2, 3])), "rubbish is refused")
@@ -34,6 +50,9 @@ func _init():
 	for vertex in range(rest.size()):
 		if not expect(posed[vertex] == rest[vertex], "rest is rest"):
 			break
+	expect(face.texcoords(skin).size() in [0, rest.size()], "texture coordinates of all vertices or none")
+	if OS.has_environment("FASCIA_HEAD"):  # a whole head with texture coordinates
+		texture(load("res://fascia_face.gdns").new())
 	if OS.exit_code == 0:
 		print("godot: %d meshes, all passed" % face.mesh_count())
 	quit()

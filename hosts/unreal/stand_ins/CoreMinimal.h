@@ -38,7 +38,10 @@ struct FVector {
   FVector operator*(double) const { return {}; }
   FVector operator/(double) const { return {}; }
 };
-struct FVector2D {};
+struct FVector2D {
+  FVector2D() = default;
+  FVector2D(double, double) {}
+};
 struct FColor {};
 struct FProcMeshTangent {};
 template <class T>

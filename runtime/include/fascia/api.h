@@ -109,6 +109,10 @@ typedef struct fascia_api {
   fascia_result (*fit_reset)(fascia_fit* fit);
   fascia_result (*face_member_gradient)(const fascia_face* face, uint32_t set, const float* by_channel,
                                         float* by_member);
+  fascia_result (*asset_texcoords)(const fascia_asset* asset, uint32_t mesh, fascia_vectors* texcoords);
+  fascia_result (*face_layer_set_member)(fascia_face* face, uint32_t layer, uint32_t set, uint32_t member,
+                                         float value);
+  fascia_result (*face_layer_remove)(fascia_face* face, uint32_t layer);
 } fascia_api;
 
 /** Gives the library's table, a constant, to a host compiled for `version` (FASCIA_VERSION_MAJOR << 16 |

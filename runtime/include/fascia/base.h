@@ -83,6 +83,29 @@ typedef struct fascia_allocator {
  * host's allocator is set. */
 FASCIA_API fascia_result fascia_set_allocator(const fascia_allocator* allocator);
 
+/** What a task of the host calls: does the work of the range `first` to `end` - 1. */
+typedef void (*fascia_task_range)(uint32_t first, uint32_t end, void* context);
+/** The host's task system, for functions that can run in parallel. Results do not depend on the partition. */
+typedef struct fascia_tasks {
+  uint32_t struct_size; /**< sizeof the structure */
+  uint32_t reserved;    /**< not used: set it to 0 */
+  /** Starts or queues a task that calls `run(first, end, context)` for disjoint ranges that together cover 0
+   * to `count` - 1, each at least `least` long except the last, on any threads at any time. Returns a handle
+   * for `finish`, or NULL if everything has already run. */
+  void* (*begin)(fascia_task_range run, uint32_t count, uint32_t least, void* context, void* user);
+  void (*finish)(void* task, void* user); /**< returns when every range has run */
+  void* user;                             /**< passed to both */
+} fascia_tasks;
+
+/** A list of vectors of floats in the memory of a face or an asset. */
+typedef struct fascia_vectors {
+  uint32_t struct_size; /**< sizeof the structure */
+  uint32_t count;       /**< number of vectors */
+  uint32_t stride;   /**< bytes from one vector to the next: 12; 16 for tangents, 8 for texture coordinates */
+  uint32_t reserved; /**< 0 */
+  const float* data; /**< the first vector; NULL if there are none */
+} fascia_vectors;
+
 #ifdef __cplusplus
 }
 #endif

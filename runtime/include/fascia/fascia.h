@@ -32,10 +32,10 @@
  * Structures. Each begins with struct_size, which the caller sets to sizeof the structure, also before it is
  * filled; later versions only append members. Strings are UTF-8 and null-terminated.
  *
- * Parts. fascia/base.h (results, version, allocator) and fascia/curves.h (recorded curves) are included here.
- * Optional: fascia/gpu.h (vertex data and skinning on the GPU), fascia/fit.h (activations from a stream of
- * landmarks), fascia/research.h (nodes, forces, energies, derivatives), fascia/api.h (all functions in one
- * table, for hosts that load the library dynamically) and fascia/fascia.hpp (C++20).
+ * Parts. fascia/base.h (results, version, allocator, tasks) and fascia/curves.h (recorded curves) are
+ * included here. Optional: fascia/gpu.h (vertex data and skinning on the GPU), fascia/fit.h (activations from
+ * a stream of landmarks), fascia/research.h (nodes, forces, energies, derivatives), fascia/api.h (all
+ * functions in one table, for hosts that load the library dynamically) and fascia/fascia.hpp (C++20).
  *
  * Units and axes. Metres and radians unless a space says otherwise. Left and right are the subject's.
  */
@@ -124,7 +124,8 @@ typedef struct fascia_set_info {
 /** Describes the set with that index, from 0 to set_count - 1. */
 FASCIA_API fascia_result fascia_asset_get_set(const fascia_asset* asset, uint32_t set, fascia_set_info* info);
 
-/** Index of a channel by name, case-insensitive; -1 if there is none or an argument is NULL. */
+/** Index of a channel by name, case-insensitive, or "#7" for channel 7; -1 if there is none or an argument is
+ * NULL. */
 FASCIA_API int32_t fascia_asset_find_channel(const fascia_asset* asset, const char* name);
 
 /** Indices of a set's member by its name, with the set's ("arkit:jawOpen") or without ("jawOpen"), as
@@ -132,6 +133,12 @@ FASCIA_API int32_t fascia_asset_find_channel(const fascia_asset* asset, const ch
  * is a channel's or unknown. */
 FASCIA_API fascia_result fascia_asset_find_member(const fascia_asset* asset, const char* name, uint32_t* set,
                                                   uint32_t* member);
+
+/** Texture coordinates of a mesh: 2 floats per vertex, the file's first set (TEXCOORD_0) without the
+ * transforms of materials; (0, 0) is the top left corner of an image. In the asset's memory. None (count 0)
+ * if the file has none. */
+FASCIA_API fascia_result fascia_asset_texcoords(const fascia_asset* asset, uint32_t mesh,
+                                                fascia_vectors* texcoords);
 
 /** A surface of the anatomy at rest, in metres. */
 typedef struct fascia_surface {
@@ -206,12 +213,13 @@ FASCIA_API void fascia_face_release(fascia_face* face);
  * when used, and at rest where they are not finite. NULL if the face is NULL. */
 FASCIA_API float* fascia_face_values(fascia_face* face);
 
-/** Sets a value by name, case-insensitive: a channel, "set:member" such as "arkit:jawOpen" or "au:12", or a
- * member's name alone if no channel and no earlier set has it; other spellings (mouthSmile_L) and other
- * programs' names (viseme_PP, Joy) are accepted too, but looking them up allocates. A member's value remains
- * until it is set again or cleared and adds to the channels it maps to, through the member's response curve,
- * which makes the displacement of the face proportional to the value; rotations of the eyes are proportional
- * to it directly. FASCIA_ERROR_NAME if the rig has no such channel or member. */
+/** Sets a value by name, case-insensitive: a channel, "#7" for the channel with index 7, "set:member" such as
+ * "arkit:jawOpen" or "au:12", or a member's name alone if no channel and no earlier set has it; other
+ * spellings (mouthSmile_L) and other programs' names (viseme_PP, Joy) are accepted too, but looking them up
+ * allocates. A member's value remains until it is set again or cleared and adds to the channels it maps to,
+ * through the member's response curve, which makes the displacement of the face proportional to the value;
+ * rotations of the eyes are proportional to it directly. FASCIA_ERROR_NAME if the rig has no such channel or
+ * member. */
 FASCIA_API fascia_result fascia_face_set(fascia_face* face, const char* name, float value);
 
 /** The value last set by that name. FASCIA_ERROR_NAME as fascia_face_set. */
@@ -254,8 +262,15 @@ FASCIA_API float* fascia_face_layer_values(fascia_face* face, uint32_t layer);
 /** Sets a value of a layer by name, as fascia_face_set; FASCIA_ERROR_ARGUMENT if there is no such layer. */
 FASCIA_API fascia_result fascia_face_layer_set(fascia_face* face, uint32_t layer, const char* name,
                                                float value);
+/** Sets the value of a member in a layer by index, as fascia_face_set_member; FASCIA_ERROR_ARGUMENT if there
+ * is no such layer. */
+FASCIA_API fascia_result fascia_face_layer_set_member(fascia_face* face, uint32_t layer, uint32_t set,
+                                                      uint32_t member, float value);
 /** Clears a layer, as fascia_face_clear; FASCIA_ERROR_ARGUMENT if there is no such layer. */
 FASCIA_API fascia_result fascia_face_layer_clear(fascia_face* face, uint32_t layer);
+/** Removes a layer (1 to 7) from the next pose or step on. Its values keep their place and have no effect;
+ * fascia_face_set_layer makes the layer again, at rest. FASCIA_ERROR_ARGUMENT if there is no such layer. */
+FASCIA_API fascia_result fascia_face_layer_remove(fascia_face* face, uint32_t layer);
 
 /** Rotates both eyes toward a point in metres in the head's frame (the rig's axes), each about its own centre
  * and within its range, blended by `weight` (0 to 1) with the layers' result; from the next pose or step on,
@@ -281,20 +296,6 @@ FASCIA_API fascia_result fascia_face_pose(fascia_face* face);
  * unstable and the tissue was reset to rest on the current position of the jaw; it may be stepped again.
  * Curves applied since the last pose or step are consumed. */
 FASCIA_API fascia_result fascia_face_step(fascia_face* face, float seconds);
-
-/** What a task of the host calls: does the work of the range `first` to `end` - 1. */
-typedef void (*fascia_task_range)(uint32_t first, uint32_t end, void* context);
-/** The host's task system, for functions that can run in parallel. Results do not depend on the partition. */
-typedef struct fascia_tasks {
-  uint32_t struct_size; /**< sizeof the structure */
-  uint32_t reserved;    /**< not used: set it to 0 */
-  /** Starts or queues a task that calls `run(first, end, context)` for disjoint ranges that together cover 0
-   * to `count` - 1, each at least `least` long except the last, on any threads at any time. Returns a handle
-   * for `finish`, or NULL if everything has already run. */
-  void* (*begin)(fascia_task_range run, uint32_t count, uint32_t least, void* context, void* user);
-  void (*finish)(void* task, void* user); /**< returns when every range has run */
-  void* user;                             /**< passed to both */
-} fascia_tasks;
 
 /** Advances many faces by `seconds` (0 to 1), each as fascia_face_step with a bit-identical result, through
  * the host's tasks, or sequentially on this thread if `tasks` is NULL. The faces may be of different assets;
@@ -348,15 +349,6 @@ FASCIA_API fascia_result fascia_face_touch(fascia_face* face, uint32_t mesh, uin
                                            const float force[3]);
 /** Removes the forces of fascia_face_touch. */
 FASCIA_API fascia_result fascia_face_clear_touches(fascia_face* face);
-
-/** A list of vectors of floats in the face's memory. */
-typedef struct fascia_vectors {
-  uint32_t struct_size; /**< sizeof the structure */
-  uint32_t count;       /**< number of vectors */
-  uint32_t stride;      /**< bytes from one vector to the next: 12; 16 for tangents */
-  uint32_t reserved;    /**< 0 */
-  const float* data;    /**< the first vector; NULL if there are none */
-} fascia_vectors;
 
 /** Vertex positions of a mesh (see fascia_asset_get_mesh) in the face's space, in the file's vertex order. */
 FASCIA_API fascia_result fascia_face_positions(fascia_face* face, uint32_t mesh, fascia_vectors* positions);

@@ -134,6 +134,12 @@ void UFasciaFaceComponent::WriteSections(bool bCreates) {
       Triangles.Append({static_cast<int32>(Shape.triangles[3 * T]),
                         static_cast<int32>(Shape.triangles[3 * T + 2]),
                         static_cast<int32>(Shape.triangles[3 * T + 1])});
-    CreateMeshSection(Mesh, Positions, Triangles, Normals, {}, {}, {}, false);
+    fascia_vectors Texture = {sizeof Texture};  // none if the file has none; the origin is the engine's
+    fascia_asset_texcoords(Asset, Mesh, &Texture);
+    TArray<FVector2D> TexCoords;
+    TexCoords.SetNumUninitialized(Texture.count, false);
+    for (uint32 V = 0; V < Texture.count; ++V)
+      TexCoords[V] = FVector2D(Texture.data[2 * V], Texture.data[2 * V + 1]);
+    CreateMeshSection(Mesh, Positions, Triangles, Normals, TexCoords, {}, {}, false);
   }
 }
