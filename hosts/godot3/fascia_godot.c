@@ -148,6 +148,14 @@ METHOD(part) {
   return fascia_asset_get_mesh(data->asset, mesh, &info) == FASCIA_OK ? text(info.part) : nothing();
 }
 
+/* name(mesh: int) -> String: of the mesh in the rig's file */
+METHOD(name) {
+  NEEDS(1);
+  fascia_mesh_info info = {.struct_size = sizeof info};
+  const uint32_t mesh = (uint32_t)api->godot_variant_as_int(arguments[0]);
+  return fascia_asset_get_mesh(data->asset, mesh, &info) == FASCIA_OK ? text(info.name) : nothing();
+}
+
 static godot_variant vectors_of(const fascia_vectors* vectors) {
   godot_pool_vector3_array array;
   godot_variant result;
@@ -253,6 +261,7 @@ void godot_nativescript_init(void* handle) {
                  {"reset", reset},
                  {"mesh_count", mesh_count},
                  {"part", part},
+                 {"name", name},
                  {"positions", positions},
                  {"normals", normals},
                  {"triangles", triangles},

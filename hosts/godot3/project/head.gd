@@ -6,6 +6,7 @@ const FasciaFace = preload("res://fascia_face.gdns")
 var face = FasciaFace.new()
 var meshes = []
 var seconds = 0.0
+var skin_picture = null
 
 func _ready():
 	var file = File.new()
@@ -17,13 +18,14 @@ func _ready():
 	if not face.load(file.get_buffer(file.get_len()), 0):
 		get_tree().quit(1)
 		return
+	skin_picture = _picture(path.get_base_dir().plus_file("head_skin.jpg"))
 	var box = AABB()
 	for mesh in range(face.mesh_count()):
 		var instance = MeshInstance.new()
 		instance.mesh = ArrayMesh.new()
 		add_child(instance)
 		meshes.append(instance.mesh)
-		instance.material_override = _material(face.part(mesh))
+		instance.material_override = _material(face.part(mesh), face.name(mesh))
 		_write(mesh)
 		box = instance.mesh.get_aabb() if mesh == 0 else box.merge(instance.mesh.get_aabb())
 	var size = box.size.length()
@@ -41,9 +43,22 @@ func _ready():
 		light.look_at(direction, Vector3.UP)
 		light.light_energy = 0.7
 
-func _material(part):
+func _picture(path):
+	var image = Image.new()
+	if not File.new().file_exists(path) or image.load(path) != OK:
+		return null
+	var texture = ImageTexture.new()
+	texture.create_from_image(image)
+	return texture
+
+func _material(part, name):
 	var material = SpatialMaterial.new()
-	material.albedo_color = Color(0.8, 0.62, 0.54) if part == "skin" else Color(0.92, 0.9, 0.86)
+	var colours = {"skin": Color(0.8, 0.62, 0.54), "iris": Color(0.33, 0.43, 0.49), "pupil": Color(0.02, 0.02, 0.02),
+			"lashes": Color(0.1, 0.08, 0.06), "mouth_interior": Color(0.68, 0.36, 0.35)}
+	material.albedo_color = colours.get(name, colours.get(part, Color(0.92, 0.9, 0.86)))
+	if part == "skin" and skin_picture != null:
+		material.albedo_color = Color(1, 1, 1)
+		material.albedo_texture = skin_picture
 	material.roughness = 0.6
 	return material
 
