@@ -2,7 +2,8 @@
 # How much of known expressions the simulated ones explain (docs/expressions.md), as a table: build/expressions.csv.
 #   scripts/bench_expressions.sh [--check] [OPTION of bench_expressions...]      --check: only look at the data
 # The data are other people's and not part of this project. They are looked for in FASCIA_MEASURED, else in ../shared, as
-# data/ict and data/wild; exit 77 when none are there, 1 when one is not what it was.
+# data/ict and data/wild; exit 77 when none are there; one that was converted anew, with other bytes, is said and measured
+# (--check: exit 1).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 measured=$(realpath -m "${FASCIA_MEASURED:-../shared}")/data
@@ -46,9 +47,12 @@ while read -r sum file; do
   [ "$(sha256sum <"$measured/$file" | cut -d' ' -f1)" = "$sum" ] || changed+=("$file")
 done < <(files)
 [ $there -gt 0 ] || { echo "bench_expressions: left out, no data in FASCIA_MEASURED (scripts/bench_expressions.sh says which)"; exit 77; }
-[ ${#changed[@]} -eq 0 ] || { echo "bench_expressions: other contents than measured on: ${changed[*]}" >&2; exit 1; }
-echo "bench_expressions: $there files are what they were"
-[ "${1:-}" != --check ] || exit 0
+if [ ${#changed[@]} -eq 0 ]; then
+  echo "bench_expressions: $there files are what they were"
+else
+  echo "bench_expressions: other contents than docs/expressions.md was measured on, so other figures: ${changed[*]}" >&2
+fi
+[ "${1:-}" != --check ] || exit $((${#changed[@]} > 0))
 
 cmake --preset release -DFASCIA_BUILD_BENCH=ON >/dev/null
 cmake --build build --target bench_expressions fascia
