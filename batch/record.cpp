@@ -12,7 +12,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using OrderedJson = nlohmann::ordered_json;
-constexpr const char* file_name = "job.json";
 
 Record record_of(const OrderedJson& json) {
   Record record;
@@ -37,9 +36,9 @@ Record record_of(const OrderedJson& json) {
 
 bool read_record(const fs::path& folder, Record& record) {
   std::error_code status;
-  if (!fs::exists(folder / file_name, status)) return false;
+  if (!fs::exists(folder / record_name, status)) return false;
   try {
-    const std::vector<uint8_t> bytes = formats::read_bytes(folder / file_name);
+    const std::vector<uint8_t> bytes = formats::read_bytes(folder / record_name);
     record = record_of(OrderedJson::parse(bytes));
     return true;
   } catch (const std::exception&) {  // whatever is wrong with it, the head is built again
@@ -62,7 +61,7 @@ void write_record(const fs::path& folder, const Record& record) {
                             {"failed_checks", record.failed_checks},
                             {"checks", record.checks},
                             {"warnings", record.warnings}};
-  formats::write_text(folder / file_name,
+  formats::write_text(folder / record_name,
                       json.dump(1, ' ', false, OrderedJson::error_handler_t::replace) + "\n");
 }
 

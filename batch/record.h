@@ -6,6 +6,8 @@
 
 namespace fascia::batch {
 
+inline constexpr const char* record_name = "job.json";
+
 /// The result of one head, stored as job.json in its folder.
 struct Record {
   std::string id, head;  ///< head: the mesh's path as it was given

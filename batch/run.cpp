@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "batch/places.h"
 #include "formats/files.h"
 #include "geometry/error.h"
 
@@ -21,7 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-constexpr const char* rig_name = "rig.glb";
 constexpr int exit_check = 4, exit_internal = 3, exit_not_started = 127;
 
 /// A head that one process at a time may work at. The lock goes with the process that holds it.
@@ -114,7 +114,7 @@ class Worker {
       : head_(head),
         options_(options),
         stop_(stop),
-        work_(options.output / ".work" / head.id),
+        work_(options.output / work_folder / head.id),
         result_(options.output / head.id) {}
 
   /// True when what is there will do.
@@ -139,9 +139,15 @@ class Worker {
     return record;
   }
 
+  /// Throws when what is in the results' place may not be lost.
+  void check_replaceable() const {
+    if (const std::string why = why_not_replaced(result_); !why.empty()) throw Error(why);
+  }
+
   /// Puts the results in place of those that were there, in one step where the system can do that.
   void publish(const Record& record) {
     write_record(work_, record);
+    check_replaceable();
     if (exchange(work_, result_)) return clear(work_);
     const fs::path old = work_.string() + ".old";
     clear(old);
@@ -194,7 +200,7 @@ class Worker {
       return built.signal != 0 || built.exit_code == exit_internal ? !built.is_late : false;
     }
     record.is_done = true;
-    formats::write_text(work_ / "build.json", built.out);
+    formats::write_text(work_ / build_name, built.out);
     if (const Json json = parsed(built.out); json.is_object() && json.contains("warnings"))
       for (const Json& warning : json["warnings"])
         if (warning.is_string()) record.warnings.push_back(warning);
@@ -210,7 +216,7 @@ class Worker {
       record.failed_checks.push_back("not played: " + cause_of(outcome));
       return;
     }
-    formats::write_text(work_ / "check.json", outcome.out);
+    formats::write_text(work_ / check_name, outcome.out);
     const Json json = parsed(outcome.out);
     if (!json.is_object() || !json.contains("rows") || !json["rows"].is_array()) return;
     record.checks = static_cast<int>(json["rows"].size());
@@ -221,7 +227,7 @@ class Worker {
   void draw(const std::string& rig, Record& record) {
     const Outcome outcome =
         step({"render", rig, "--set", "arkit:mouthSmileLeft=0.8", "--set", "arkit:mouthSmileRight=0.8",
-              "--level", "low", "--size", "240", "-o", (work_ / "thumbnail.png").string(), "--quiet"},
+              "--level", "low", "--size", "240", "-o", (work_ / thumbnail_name).string(), "--quiet"},
              record);
     if (outcome.exit_code != 0) record.warnings.push_back("no thumbnail: " + cause_of(outcome));
   }
@@ -236,14 +242,15 @@ class Worker {
 Fate settle(const Head& head, const Options& options, const std::atomic<bool>& stop, Record& record) {
   record.id = head.id;
   record.head = head.file.string();
-  const Lock lock(options.output / ".locks", head.id);
+  const Lock lock(options.output / lock_folder, head.id);
   if (!lock.is_mine()) return Fate::elsewhere;
   Worker worker(head, options, stop);
+  worker.check_replaceable();
   const auto fail = [&](const std::string& message) {
     record.attempts = 1;
     record.message = message;
     record.cause = common_part(message);
-    fs::create_directories(options.output / ".work" / head.id);
+    fs::create_directories(options.output / work_folder / head.id);
     worker.publish(record);
     return Fate::failed;
   };
@@ -269,7 +276,7 @@ Fate settle(const Head& head, const Options& options, const std::atomic<bool>& s
 
 Report run_all(const std::vector<Head>& heads, const Options& options, const std::atomic<bool>& stop,
                const std::function<void(size_t, const Record&, Fate)>& told) {
-  for (const char* folder : {".work", ".locks"}) {
+  for (const char* folder : {work_folder, lock_folder}) {
     std::error_code status;
     fs::create_directories(options.output / folder, status);
     if (status)

@@ -160,14 +160,45 @@ TEST_F(Batch, ResumesAndRebuildsChangedHeads) {
   fs::remove(options.output / "b" / "rig.glb");  // somebody took the rig away
   report = run();
   EXPECT_EQ(report.fates, (std::vector<Fate>{Fate::done, Fate::done, Fate::kept}));
-  std::ofstream(options.output / "a" / "job.json") << "{\"id\": ";  // half a record
-  report = run();
-  EXPECT_EQ(report.fates, (std::vector<Fate>{Fate::done, Fate::kept, Fate::kept}));
   options.retries_failed = true;
   EXPECT_EQ(run().fates[2], Fate::failed);
   EXPECT_EQ(builds("c"), 2U);
   options.version = "2";  // another tool
   EXPECT_EQ(run().fates, (std::vector<Fate>{Fate::done, Fate::done, Fate::failed}));
+}
+
+TEST_F(Batch, ReplacesNothingButResults) {
+  add("a", "good");
+  const fs::path result = options.output / "a";
+  const auto expect_refused = [&](const std::string& says) {
+    try {
+      run();
+      ADD_FAILURE() << says;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find(says), std::string::npos) << error.what();
+    }
+    EXPECT_EQ(builds("a"), 0U) << says;
+  };
+  for (const char* kind : {"good", "refused"}) {
+    std::ofstream(folder / "a") << kind;
+    std::ofstream(result) << "a file";
+    expect_refused("no result of a batch");
+    EXPECT_EQ(text(result), "a file");
+    fs::remove(result);
+    fs::create_directories(result);
+    std::ofstream(result / "precious.txt") << "mine";
+    expect_refused("no result of a batch");
+    std::ofstream(result / "job.json") << "{\"id\": ";  // half a record
+    expect_refused("no result of a batch");
+    Record record;
+    write_record(result, record);
+    expect_refused("precious.txt");
+    EXPECT_EQ(text(result / "precious.txt"), "mine");
+    fs::remove_all(result);
+    fs::create_directory_symlink(folder, result);
+    expect_refused("no result of a batch");
+    fs::remove(result);
+  }
 }
 
 TEST_F(Batch, AFailingHeadDoesNotAffectOthers) {
