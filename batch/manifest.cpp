@@ -92,7 +92,7 @@ Head head_of(const std::string& line, const fs::path& folder) {
       {"detail", "--detail"}, {"open", "--open"}, {"add", "--add"}};
   constexpr int deepest = 4;
   const auto shallow = [](int depth, Json::parse_event_t, Json&) {
-    if (depth > deepest) throw Error("it is nested too deeply");
+    if (depth > deepest) throw Error("it is nested more than " + std::to_string(deepest) + " deep");
     return true;
   };
   const Json json = Json::parse(line, shallow, false);

@@ -83,7 +83,7 @@ TEST_F(Manifest, SaysWhichLineIsWrong) {
   expect_refused("{\"head\": \"a\", \"id\": \".work\"}", "becomes a folder");
   expect_refused("{\"head\": \"a\", \"id\": \"x\"}\n{\"head\": \"b\", \"id\": \"x\"}", "line 1");
   expect_refused("{\"head\": [1]}", "neither text nor a number");
-  expect_refused(std::string(10000, '['), "line 1");
+  expect_refused(std::string(10000, '['), "line 1: it is nested more than 4 deep");
   EXPECT_THROW(read_heads(folder / "sub"), Error);
   EXPECT_THROW(read_heads(folder / "missing"), Error);
 }
