@@ -21,6 +21,7 @@ Record record_of(const OrderedJson& json) {
   json.at("done").get_to(record.is_done);
   json.at("cause").get_to(record.cause);
   json.at("message").get_to(record.message);
+  record.is_lasting = json.value("lasting", true);
   json.at("attempts").get_to(record.attempts);
   json.at("seconds").get_to(record.seconds);
   json.at("cpu_seconds").get_to(record.cpu_seconds);
@@ -53,6 +54,7 @@ void write_record(const fs::path& folder, const Record& record) {
                             {"done", record.is_done},
                             {"cause", record.cause},
                             {"message", record.message},
+                            {"lasting", record.is_lasting},
                             {"attempts", record.attempts},
                             {"seconds", record.seconds},
                             {"cpu_seconds", record.cpu_seconds},

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "batch/cause.h"
 #include "batch/places.h"
 #include "formats/files.h"
 #include "geometry/error.h"
@@ -22,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-constexpr int exit_check = 4, exit_internal = 3, exit_not_started = 127;
+constexpr int exit_check = 4;
 
 /// A head that one process at a time may work at. The lock goes with the process that holds it.
 class Lock {
@@ -47,56 +48,6 @@ class Lock {
   int descriptor_ = -1;
 };
 
-Json parsed(const std::string& text) {
-  return Json::parse(
-      text, [](int depth, Json::parse_event_t, Json&) { return depth < 64; }, false);
-}
-
-/// The tool's own words: its JSON object's, else the last line it wrote.
-std::string words_of(const Outcome& outcome) {
-  const Json json = parsed(outcome.out);
-  if (json.is_object() && json.contains("error") && json["error"].is_string()) return json["error"];
-  std::string text = outcome.err;
-  while (!text.empty() && std::strchr(" \n", text.back()))
-    text.pop_back();
-  return text.substr(text.find_last_of('\n') + 1);
-}
-
-/// A message without what differs from head to head: names in quotes, numbers, and what follows a semicolon.
-std::string common_part(const std::string& message) {
-  std::string text;
-  bool is_quoted = false;
-  for (const char c : message) {
-    if (c == ';') break;
-    if (c == '\'') is_quoted = !is_quoted;
-    if (is_quoted || c == '\'') continue;
-    if (std::isdigit(static_cast<unsigned char>(c))) {
-      if (text.empty() || text.back() != '#') text += '#';
-      continue;
-    }
-    if (c == ' ' && (text.empty() || text.back() == ' ')) continue;
-    text += c;
-  }
-  while (!text.empty() && std::strchr(" :,.", text.front()))
-    text.erase(0, 1);
-  while (!text.empty() && std::strchr(" :,.", text.back()))
-    text.pop_back();
-  return text.empty() ? "no message" : text;
-}
-
-/// Why a step failed, in words that many heads share; empty when it did not.
-std::string cause_of(const Outcome& outcome) {
-  if (outcome.exit_code == 0) return "";
-  if (outcome.is_late) return "limit of time";
-  if (outcome.signal != 0)
-    return "ended by signal " + std::to_string(outcome.signal) + " (" + strsignal(outcome.signal) + ")";
-  if (outcome.exit_code == exit_not_started) return "the tool cannot be started";
-  const std::string words = words_of(outcome);
-  if (words.find("out of memory") != std::string::npos) return "limit of memory";
-  if (outcome.exit_code == exit_internal) return "internal error: " + common_part(words);
-  return common_part(words);
-}
-
 /// Lets two folders that are there change places. False, and nothing done, where that cannot be.
 bool exchange(const fs::path& a, const fs::path& b) {
 #ifdef RENAME_EXCHANGE
@@ -119,7 +70,7 @@ class Worker {
 
   /// True when what is there will do.
   bool is_settled(const std::string& key, Record& record) const {
-    if (!read_record(result_, record) || record.key != key) return false;
+    if (!read_record(result_, record) || record.key != key || !record.is_lasting) return false;
     if (!record.is_done) return !options_.retries_failed;
     std::error_code status;
     return fs::file_size(result_ / rig_name, status) == record.rig_bytes && !status;
@@ -179,6 +130,7 @@ class Worker {
   /// Builds, checks and draws once. True when it failed in a way that another attempt may not.
   bool attempt(Record& record) {
     record.seconds = record.cpu_seconds = record.megabytes = 0.0;
+    record.is_lasting = true;
     const std::string rig = (work_ / rig_name).string();
     std::vector<std::string> words = {"build", head_.file.string(), "-o", rig, "--json", "--quiet"};
     if (!head_.landmarks.empty()) words.insert(words.end(), {"--landmarks", head_.landmarks.string()});
@@ -195,13 +147,14 @@ class Worker {
     record.cause = cause_of(built);
     record.message = record.cause.empty() ? "" : words_of(built);
     if (!record.cause.empty()) {
+      record.is_lasting = !is_of_the_machine(built);
       record.rig_bytes = 0;
       fs::remove(rig, status);
-      return built.signal != 0 || built.exit_code == exit_internal ? !built.is_late : false;
+      return built.signal != 0 || built.exit_code == exit_of_a_fault ? !built.is_late : false;
     }
     record.is_done = true;
     formats::write_text(work_ / build_name, built.out);
-    if (const Json json = parsed(built.out); json.is_object() && json.contains("warnings"))
+    if (const Json json = json_of(built.out); json.is_object() && json.contains("warnings"))
       for (const Json& warning : json["warnings"])
         if (warning.is_string()) record.warnings.push_back(warning);
     if (options_.has_checks) check(rig, record);
@@ -214,10 +167,11 @@ class Worker {
     const Outcome outcome = step({"check", rig, "--level", "low", "--json", "--quiet"}, record);
     if (outcome.exit_code != 0 && outcome.exit_code != exit_check) {
       record.failed_checks.push_back("not played: " + cause_of(outcome));
+      if (is_of_the_machine(outcome)) record.is_lasting = false;
       return;
     }
     formats::write_text(work_ / check_name, outcome.out);
-    const Json json = parsed(outcome.out);
+    const Json json = json_of(outcome.out);
     if (!json.is_object() || !json.contains("rows") || !json["rows"].is_array()) return;
     record.checks = static_cast<int>(json["rows"].size());
     for (const Json& row : json["rows"])
@@ -229,7 +183,9 @@ class Worker {
         step({"render", rig, "--set", "arkit:mouthSmileLeft=0.8", "--set", "arkit:mouthSmileRight=0.8",
               "--level", "low", "--size", "240", "-o", (work_ / thumbnail_name).string(), "--quiet"},
              record);
-    if (outcome.exit_code != 0) record.warnings.push_back("no thumbnail: " + cause_of(outcome));
+    if (outcome.exit_code == 0) return;
+    record.warnings.push_back("no thumbnail: " + cause_of(outcome));
+    if (is_of_the_machine(outcome)) record.is_lasting = false;
   }
 
   const Head& head_;

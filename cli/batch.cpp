@@ -76,7 +76,9 @@ batch::Task task_of(const BatchRequest& request) {
 
 std::string line_of(const batch::Record& record, batch::Fate fate) {
   if (fate == batch::Fate::elsewhere) return record.id + ": another process is at it";
-  if (!record.is_done) return record.id + ": " + record.message;
+  if (!record.is_done)
+    return record.id + ": " + record.message +
+           (record.is_lasting ? "" : " (no fault of the head: the same command tries it again)");
   char seconds[32];
   std::snprintf(seconds, sizeof seconds, "%.1f s", record.seconds);
   std::string text = record.id + ": " + seconds;

@@ -41,6 +41,9 @@ case "$(cat "$head")" in
   refused) echo "{\"error\": \"'$head': no face was found in 12 views; give landmarks\", \"exit\": 1}"; exit 1;;
   broken) echo "fascia: internal error: index 7" >&2; exit 3;;
   empty) exit 0 ;;
+  full) echo "{\"error\": \"'$out' cannot be written: No space left on device; check the folder\", \"exit\": 1}"; exit 1;;
+  large) echo "fascia: '$out' cannot be written: File too large; check the folder" >&2; exit 1;;
+  silent) exit 1;;
 esac
 echo "rig of $(basename "$head")" > "$out"
 echo '{"warnings": ["one thing"]}'
@@ -233,6 +236,21 @@ TEST_F(Batch, AFailingHeadDoesNotAffectOthers) {
   expect_no_leftovers();
 }
 
+TEST_F(Batch, AFaultOfTheMachineIsTriedAgain) {
+  const std::vector<std::string> kinds = {"full", "large", "silent", "refused"};
+  for (const std::string& kind : kinds)
+    add(kind, kind);
+  Report report = run();
+  for (const std::string& kind : kinds) {
+    EXPECT_FALSE(of(report, kind).is_done) << kind;
+    EXPECT_EQ(of(report, kind).is_lasting, kind == "refused") << kind;
+  }
+  report = run();
+  for (const std::string& kind : kinds)
+    EXPECT_EQ(builds(kind), kind == "refused" ? 1U : 2U) << kind;
+  EXPECT_EQ(report.fates, (std::vector<Fate>{Fate::failed, Fate::failed, Fate::failed, Fate::kept}));
+}
+
 TEST_F(Batch, AFileThatIsNotThereFailsAlone) {
   add("good", "good");
   heads.push_back({"missing", folder / "nothing.obj", "", "", {}});
@@ -312,6 +330,8 @@ TEST_F(Batch, ReadOnlyFoldersAreSaid) {
   options.tool = folder / "no_tool";
   const Report report = run();
   EXPECT_EQ(of(report, "a").cause, "the tool cannot be started");
+  options.tool = folder / "tool";
+  EXPECT_EQ(run().fates[0], Fate::done);
 }
 
 }  // namespace
