@@ -4,6 +4,7 @@
 #include <set>
 #include <thread>
 
+#include "batch/process.h"
 #include "batch/record.h"
 #include "geometry/error.h"
 
@@ -31,6 +32,15 @@ void check_input(const Head& head, const std::filesystem::path& file,
                     "', which the batch replaces: name another folder with -o, or another id");
 }
 
+/// True for the name of a head's result, and of what a step that was killed may leave of it.
+bool is_own_name(const std::string& name) {
+  if (name == output_name || name == errors_name) return true;
+  for (const char* result : {record_name, rig_name, build_name, check_name, thumbnail_name})
+    if (name == result || (name.starts_with(std::string(result) + ".") && name.ends_with(".part")))
+      return true;
+  return false;
+}
+
 }  // namespace
 
 bool is_result(const std::filesystem::path& folder) {
@@ -39,7 +49,6 @@ bool is_result(const std::filesystem::path& folder) {
 }
 
 std::string why_not_replaced(const std::filesystem::path& result) {
-  static const std::set<std::string> own = {record_name, rig_name, build_name, check_name, thumbnail_name};
   std::error_code status;
   const std::filesystem::file_status there = std::filesystem::symlink_status(result, status);
   if (there.type() == std::filesystem::file_type::not_found) return "";
@@ -48,7 +57,7 @@ std::string why_not_replaced(const std::filesystem::path& result) {
   if (!std::filesystem::is_directory(there) || !is_result(result))
     return name + "is there and is no result of a batch" + remedy;
   for (const auto& entry : std::filesystem::directory_iterator(result, status))
-    if (!own.count(entry.path().filename().string()))
+    if (!is_own_name(entry.path().filename().string()))
       return "'" + entry.path().string() + "' is no result of a batch and would be lost" + remedy;
   return status ? name + "cannot be read: " + status.message() : "";
 }

@@ -82,8 +82,7 @@ class Worker {
     record.head = head_.file.string();
     record.key = key;
     for (bool again = true; again && !stop_;) {
-      clear(work_);
-      fs::create_directories(work_);
+      make_work_folder();
       ++record.attempts;
       again = attempt(record) && record.attempts < options_.attempts;
     }
@@ -95,6 +94,14 @@ class Worker {
     if (const std::string why = why_not_replaced(result_); !why.empty()) throw Error(why);
   }
 
+  /// An empty one.
+  void make_work_folder() const {
+    clear(work_);
+    std::error_code status;
+    fs::create_directories(work_, status);
+    if (status) throw Error("'" + work_.string() + "' cannot be made: " + status.message());
+  }
+
   /// Puts the results in place of those that were there, in one step where the system can do that.
   void publish(const Record& record) {
     write_record(work_, record);
@@ -104,7 +111,12 @@ class Worker {
     clear(old);
     std::error_code status;
     fs::rename(result_, old, status);  // there may be none
-    fs::rename(work_, result_);
+    fs::rename(work_, result_, status);
+    if (status) {
+      std::error_code ignored;
+      fs::rename(old, result_, ignored);
+      throw Error("'" + result_.string() + "' cannot be made: " + status.message());
+    }
     clear(old);
   }
 
@@ -206,7 +218,7 @@ Fate settle(const Head& head, const Options& options, const std::atomic<bool>& s
     record.attempts = 1;
     record.message = message;
     record.cause = common_part(message);
-    fs::create_directories(options.output / work_folder / head.id);
+    worker.make_work_folder();
     worker.publish(record);
     return Fate::failed;
   };

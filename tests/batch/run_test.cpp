@@ -236,6 +236,18 @@ TEST_F(Batch, AFailingHeadDoesNotAffectOthers) {
   expect_no_leftovers();
 }
 
+TEST_F(Batch, WhatAKilledStepLeftIsReplaced) {
+  add("a", "good");
+  run();
+  for (const char* name :
+       {"rig.glb.0123456789abcdef.part", "thumbnail.png.0123456789abcdef.part", "stderr.txt"})
+    std::ofstream(options.output / "a" / name) << "half";
+  options.version = "2";
+  EXPECT_EQ(run().fates[0], Fate::done);
+  expect_whole("a");
+  expect_no_leftovers();
+}
+
 TEST_F(Batch, AFaultOfTheMachineIsTriedAgain) {
   const std::vector<std::string> kinds = {"full", "large", "silent", "refused"};
   for (const std::string& kind : kinds)
