@@ -9,6 +9,7 @@
 #include <optional>
 #include <set>
 
+#include "batch/places.h"
 #include "formats/content_hash.h"
 #include "formats/files.h"
 #include "formats/named_files.h"
@@ -53,14 +54,24 @@ void name(std::vector<Head>& heads, const fs::path& folder) {
   }
 }
 
+/// True for folders of results, finished or not.
+bool is_of_a_batch(const fs::path& folder) {
+  std::error_code status;
+  return is_result(folder) ||
+         (folder.filename() == work_folder && fs::is_directory(folder.parent_path() / lock_folder, status));
+}
+
 std::vector<Head> heads_in(const fs::path& folder) {
   static const std::set<std::string> kinds = {".glb", ".gltf", ".obj", ".ply", ".stl"};
   std::vector<Head> heads;
-  for (const auto& entry :
-       fs::recursive_directory_iterator(folder, fs::directory_options::skip_permission_denied)) {
+  const auto skip_denied = fs::directory_options::skip_permission_denied;
+  for (auto entry = fs::recursive_directory_iterator(folder, skip_denied); entry != end(entry); ++entry) {
     std::error_code status;
-    if (entry.is_regular_file(status) && kinds.count(extension_of(entry.path())))
-      heads.push_back({"", entry.path(), "", "", {}});
+    if (entry->is_directory(status)) {
+      if (is_of_a_batch(entry->path())) entry.disable_recursion_pending();
+    } else if (entry->is_regular_file(status) && kinds.count(extension_of(entry->path()))) {
+      heads.push_back({"", entry->path(), "", "", {}});
+    }
   }
   std::sort(heads.begin(), heads.end(), [](const Head& a, const Head& b) { return a.file < b.file; });
   if (heads.empty())
@@ -81,7 +92,7 @@ Head head_of(const std::string& line, const fs::path& folder) {
       {"detail", "--detail"}, {"open", "--open"}, {"add", "--add"}};
   constexpr int deepest = 4;
   const auto shallow = [](int depth, Json::parse_event_t, Json&) {
-    if (depth > deepest) throw Error("it is nested too deeply");
+    if (depth > deepest) throw Error("it is nested more than " + std::to_string(deepest) + " deep");
     return true;
   };
   const Json json = Json::parse(line, shallow, false);

@@ -16,7 +16,8 @@ struct Head {
   std::vector<std::string> options;  ///< more options of `fascia build`
 };
 
-/// The heads of a folder (every .glb, .gltf, .obj, .ply and .stl in it and below, by path) or of a manifest:
+/// The heads of a folder (every .glb, .gltf, .obj, .ply and .stl in it and below, by path, but for what
+/// batches made) or of a manifest:
 /// one JSON object a line, {"head": FILE, "id": NAME, "landmarks": FILE, "edits": FILE, "units": ..., "up":
 /// ..., "skin": ..., "tissue_scale": ..., "detail": ..., "open": ..., "add": ...}, of which only "head" is
 /// needed; files from the manifest's folder. Throws fascia::Error naming the line and what is wrong with it,

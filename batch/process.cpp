@@ -74,7 +74,7 @@ double seconds_of(const timeval& time) {
 
 Outcome run(const std::vector<std::string>& command, const Limits& limits,
             const std::filesystem::path& scratch, const std::atomic<bool>& stop) {
-  const std::string out = (scratch / "stdout.txt").string(), err = (scratch / "stderr.txt").string();
+  const std::string out = (scratch / output_name).string(), err = (scratch / errors_name).string();
   std::vector<char*> arguments;
   for (const std::string& word : command)
     arguments.push_back(const_cast<char*>(word.c_str()));

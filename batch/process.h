@@ -24,6 +24,9 @@ struct Outcome {
   std::string out, err;    ///< what it wrote, up to 8 MB each
 };
 
+/// Names of what `run` keeps in its folder of what a program writes, while it runs.
+inline constexpr const char *output_name = "stdout.txt", *errors_name = "stderr.txt";
+
 /// Runs a program and waits for its end, in a process of its own with those limits, standard input empty.
 /// `scratch` is a folder for what it writes. When `stop` becomes true, or this process dies, the program is
 /// ended. Throws fascia::Error when no process can be started.

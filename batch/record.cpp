@@ -12,7 +12,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using OrderedJson = nlohmann::ordered_json;
-constexpr const char* file_name = "job.json";
 
 Record record_of(const OrderedJson& json) {
   Record record;
@@ -22,6 +21,7 @@ Record record_of(const OrderedJson& json) {
   json.at("done").get_to(record.is_done);
   json.at("cause").get_to(record.cause);
   json.at("message").get_to(record.message);
+  record.is_lasting = json.value("lasting", true);
   json.at("attempts").get_to(record.attempts);
   json.at("seconds").get_to(record.seconds);
   json.at("cpu_seconds").get_to(record.cpu_seconds);
@@ -37,9 +37,9 @@ Record record_of(const OrderedJson& json) {
 
 bool read_record(const fs::path& folder, Record& record) {
   std::error_code status;
-  if (!fs::exists(folder / file_name, status)) return false;
+  if (!fs::exists(folder / record_name, status)) return false;
   try {
-    const std::vector<uint8_t> bytes = formats::read_bytes(folder / file_name);
+    const std::vector<uint8_t> bytes = formats::read_bytes(folder / record_name);
     record = record_of(OrderedJson::parse(bytes));
     return true;
   } catch (const std::exception&) {  // whatever is wrong with it, the head is built again
@@ -54,6 +54,7 @@ void write_record(const fs::path& folder, const Record& record) {
                             {"done", record.is_done},
                             {"cause", record.cause},
                             {"message", record.message},
+                            {"lasting", record.is_lasting},
                             {"attempts", record.attempts},
                             {"seconds", record.seconds},
                             {"cpu_seconds", record.cpu_seconds},
@@ -62,7 +63,7 @@ void write_record(const fs::path& folder, const Record& record) {
                             {"failed_checks", record.failed_checks},
                             {"checks", record.checks},
                             {"warnings", record.warnings}};
-  formats::write_text(folder / file_name,
+  formats::write_text(folder / record_name,
                       json.dump(1, ' ', false, OrderedJson::error_handler_t::replace) + "\n");
 }
 

@@ -6,13 +6,16 @@
 
 namespace fascia::batch {
 
+inline constexpr const char* record_name = "job.json";
+
 /// The result of one head, stored as job.json in its folder.
 struct Record {
-  std::string id, head;  ///< head: the mesh's path as it was given
-  std::string key;       ///< key_of the head: what the results depend on
-  bool is_done = false;  ///< there is a rig
-  std::string cause;     ///< category of a failure; empty if done
-  std::string message;   ///< message of the tool
+  std::string id, head;    ///< head: the mesh's path as it was given
+  std::string key;         ///< key_of the head: what the results depend on
+  bool is_done = false;    ///< there is a rig
+  std::string cause;       ///< category of a failure; empty if done
+  std::string message;     ///< message of the tool
+  bool is_lasting = true;  ///< false: the machine failed, not the head; the next run tries it again
   int attempts = 0;
   double seconds = 0.0;  ///< wall time of all steps, last attempt
   double cpu_seconds = 0.0;

@@ -11,6 +11,8 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "batch/cause.h"
+#include "batch/places.h"
 #include "formats/files.h"
 #include "geometry/error.h"
 
@@ -21,8 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-constexpr const char* rig_name = "rig.glb";
-constexpr int exit_check = 4, exit_internal = 3, exit_not_started = 127;
+constexpr int exit_check = 4;
 
 /// A head that one process at a time may work at. The lock goes with the process that holds it.
 class Lock {
@@ -47,56 +48,6 @@ class Lock {
   int descriptor_ = -1;
 };
 
-Json parsed(const std::string& text) {
-  return Json::parse(
-      text, [](int depth, Json::parse_event_t, Json&) { return depth < 64; }, false);
-}
-
-/// The tool's own words: its JSON object's, else the last line it wrote.
-std::string words_of(const Outcome& outcome) {
-  const Json json = parsed(outcome.out);
-  if (json.is_object() && json.contains("error") && json["error"].is_string()) return json["error"];
-  std::string text = outcome.err;
-  while (!text.empty() && std::strchr(" \n", text.back()))
-    text.pop_back();
-  return text.substr(text.find_last_of('\n') + 1);
-}
-
-/// A message without what differs from head to head: names in quotes, numbers, and what follows a semicolon.
-std::string common_part(const std::string& message) {
-  std::string text;
-  bool is_quoted = false;
-  for (const char c : message) {
-    if (c == ';') break;
-    if (c == '\'') is_quoted = !is_quoted;
-    if (is_quoted || c == '\'') continue;
-    if (std::isdigit(static_cast<unsigned char>(c))) {
-      if (text.empty() || text.back() != '#') text += '#';
-      continue;
-    }
-    if (c == ' ' && (text.empty() || text.back() == ' ')) continue;
-    text += c;
-  }
-  while (!text.empty() && std::strchr(" :,.", text.front()))
-    text.erase(0, 1);
-  while (!text.empty() && std::strchr(" :,.", text.back()))
-    text.pop_back();
-  return text.empty() ? "no message" : text;
-}
-
-/// Why a step failed, in words that many heads share; empty when it did not.
-std::string cause_of(const Outcome& outcome) {
-  if (outcome.exit_code == 0) return "";
-  if (outcome.is_late) return "limit of time";
-  if (outcome.signal != 0)
-    return "ended by signal " + std::to_string(outcome.signal) + " (" + strsignal(outcome.signal) + ")";
-  if (outcome.exit_code == exit_not_started) return "the tool cannot be started";
-  const std::string words = words_of(outcome);
-  if (words.find("out of memory") != std::string::npos) return "limit of memory";
-  if (outcome.exit_code == exit_internal) return "internal error: " + common_part(words);
-  return common_part(words);
-}
-
 /// Lets two folders that are there change places. False, and nothing done, where that cannot be.
 bool exchange(const fs::path& a, const fs::path& b) {
 #ifdef RENAME_EXCHANGE
@@ -114,12 +65,12 @@ class Worker {
       : head_(head),
         options_(options),
         stop_(stop),
-        work_(options.output / ".work" / head.id),
+        work_(options.output / work_folder / head.id),
         result_(options.output / head.id) {}
 
   /// True when what is there will do.
   bool is_settled(const std::string& key, Record& record) const {
-    if (!read_record(result_, record) || record.key != key) return false;
+    if (!read_record(result_, record) || record.key != key || !record.is_lasting) return false;
     if (!record.is_done) return !options_.retries_failed;
     std::error_code status;
     return fs::file_size(result_ / rig_name, status) == record.rig_bytes && !status;
@@ -131,23 +82,41 @@ class Worker {
     record.head = head_.file.string();
     record.key = key;
     for (bool again = true; again && !stop_;) {
-      clear(work_);
-      fs::create_directories(work_);
+      make_work_folder();
       ++record.attempts;
       again = attempt(record) && record.attempts < options_.attempts;
     }
     return record;
   }
 
+  /// Throws when what is in the results' place may not be lost.
+  void check_replaceable() const {
+    if (const std::string why = why_not_replaced(result_); !why.empty()) throw Error(why);
+  }
+
+  /// An empty one.
+  void make_work_folder() const {
+    clear(work_);
+    std::error_code status;
+    fs::create_directories(work_, status);
+    if (status) throw Error("'" + work_.string() + "' cannot be made: " + status.message());
+  }
+
   /// Puts the results in place of those that were there, in one step where the system can do that.
   void publish(const Record& record) {
     write_record(work_, record);
+    check_replaceable();
     if (exchange(work_, result_)) return clear(work_);
     const fs::path old = work_.string() + ".old";
     clear(old);
     std::error_code status;
     fs::rename(result_, old, status);  // there may be none
-    fs::rename(work_, result_);
+    fs::rename(work_, result_, status);
+    if (status) {
+      std::error_code ignored;
+      fs::rename(old, result_, ignored);
+      throw Error("'" + result_.string() + "' cannot be made: " + status.message());
+    }
     clear(old);
   }
 
@@ -173,6 +142,7 @@ class Worker {
   /// Builds, checks and draws once. True when it failed in a way that another attempt may not.
   bool attempt(Record& record) {
     record.seconds = record.cpu_seconds = record.megabytes = 0.0;
+    record.is_lasting = true;
     const std::string rig = (work_ / rig_name).string();
     std::vector<std::string> words = {"build", head_.file.string(), "-o", rig, "--json", "--quiet"};
     if (!head_.landmarks.empty()) words.insert(words.end(), {"--landmarks", head_.landmarks.string()});
@@ -189,13 +159,14 @@ class Worker {
     record.cause = cause_of(built);
     record.message = record.cause.empty() ? "" : words_of(built);
     if (!record.cause.empty()) {
+      record.is_lasting = !is_of_the_machine(built);
       record.rig_bytes = 0;
       fs::remove(rig, status);
-      return built.signal != 0 || built.exit_code == exit_internal ? !built.is_late : false;
+      return built.signal != 0 || built.exit_code == exit_of_a_fault ? !built.is_late : false;
     }
     record.is_done = true;
-    formats::write_text(work_ / "build.json", built.out);
-    if (const Json json = parsed(built.out); json.is_object() && json.contains("warnings"))
+    formats::write_text(work_ / build_name, built.out);
+    if (const Json json = json_of(built.out); json.is_object() && json.contains("warnings"))
       for (const Json& warning : json["warnings"])
         if (warning.is_string()) record.warnings.push_back(warning);
     if (options_.has_checks) check(rig, record);
@@ -208,10 +179,11 @@ class Worker {
     const Outcome outcome = step({"check", rig, "--level", "low", "--json", "--quiet"}, record);
     if (outcome.exit_code != 0 && outcome.exit_code != exit_check) {
       record.failed_checks.push_back("not played: " + cause_of(outcome));
+      if (is_of_the_machine(outcome)) record.is_lasting = false;
       return;
     }
-    formats::write_text(work_ / "check.json", outcome.out);
-    const Json json = parsed(outcome.out);
+    formats::write_text(work_ / check_name, outcome.out);
+    const Json json = json_of(outcome.out);
     if (!json.is_object() || !json.contains("rows") || !json["rows"].is_array()) return;
     record.checks = static_cast<int>(json["rows"].size());
     for (const Json& row : json["rows"])
@@ -221,9 +193,11 @@ class Worker {
   void draw(const std::string& rig, Record& record) {
     const Outcome outcome =
         step({"render", rig, "--set", "arkit:mouthSmileLeft=0.8", "--set", "arkit:mouthSmileRight=0.8",
-              "--level", "low", "--size", "240", "-o", (work_ / "thumbnail.png").string(), "--quiet"},
+              "--level", "low", "--size", "240", "-o", (work_ / thumbnail_name).string(), "--quiet"},
              record);
-    if (outcome.exit_code != 0) record.warnings.push_back("no thumbnail: " + cause_of(outcome));
+    if (outcome.exit_code == 0) return;
+    record.warnings.push_back("no thumbnail: " + cause_of(outcome));
+    if (is_of_the_machine(outcome)) record.is_lasting = false;
   }
 
   const Head& head_;
@@ -236,14 +210,15 @@ class Worker {
 Fate settle(const Head& head, const Options& options, const std::atomic<bool>& stop, Record& record) {
   record.id = head.id;
   record.head = head.file.string();
-  const Lock lock(options.output / ".locks", head.id);
+  const Lock lock(options.output / lock_folder, head.id);
   if (!lock.is_mine()) return Fate::elsewhere;
   Worker worker(head, options, stop);
+  worker.check_replaceable();
   const auto fail = [&](const std::string& message) {
     record.attempts = 1;
     record.message = message;
     record.cause = common_part(message);
-    fs::create_directories(options.output / ".work" / head.id);
+    worker.make_work_folder();
     worker.publish(record);
     return Fate::failed;
   };
@@ -269,7 +244,7 @@ Fate settle(const Head& head, const Options& options, const std::atomic<bool>& s
 
 Report run_all(const std::vector<Head>& heads, const Options& options, const std::atomic<bool>& stop,
                const std::function<void(size_t, const Record&, Fate)>& told) {
-  for (const char* folder : {".work", ".locks"}) {
+  for (const char* folder : {work_folder, lock_folder}) {
     std::error_code status;
     fs::create_directories(options.output / folder, status);
     if (status)

@@ -40,10 +40,12 @@ struct Report {
 
 /// Builds the heads in processes of their own, `jobs` at a time. Each head's results appear atomically in
 /// `output`/ID: rig.glb, build.json, check.json, thumbnail.png and job.json; of a failure job.json alone. A
-/// head whose results are there and whose files, options and tool are the same is not built again. Several of
+/// head whose results are there and whose files, options and tool are the same is not built again, unless the
+/// machine was what failed (is_of_the_machine). Several of
 /// these may run into one folder, also on several machines where they share its locks (flock): each head is
 /// built by one. `told` is called as each head ends, one at a time. When `stop` becomes true what runs is
-/// ended and nothing of it stays. Throws fascia::Error when nothing can be written.
+/// ended and nothing of it stays. Throws fascia::Error when nothing can be written, or when `output`/ID is
+/// something that may not be replaced (why_not_replaced).
 Report run_all(const std::vector<Head>& heads, const Options& options, const std::atomic<bool>& stop,
                const std::function<void(size_t head, const Record& record, Fate fate)>& told);
 

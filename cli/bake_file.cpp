@@ -127,8 +127,7 @@ void write_glb(const Common& common, const BakeRequest& request, const Face& fac
 void write_sequence(const Common& common, const BakeRequest& request, Face& face,
                     const std::vector<ShapeToBake>& shapes, BakeFigures& figures) {
   formats::PartialGroup together;
-  together.add(request.output);
-  make_output_folder(request.output);
+  make_output_folder(request.output, &together);
   const auto write = [&](const std::string& name) {
     figures.files.push_back(request.output / (name + ".obj"));
     together.add(figures.files.back());

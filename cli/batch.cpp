@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "batch/places.h"
 #include "batch/run.h"
 #include "batch/slurm.h"
 #include "cli/batch_report.h"
@@ -75,7 +76,9 @@ batch::Task task_of(const BatchRequest& request) {
 
 std::string line_of(const batch::Record& record, batch::Fate fate) {
   if (fate == batch::Fate::elsewhere) return record.id + ": another process is at it";
-  if (!record.is_done) return record.id + ": " + record.message;
+  if (!record.is_done)
+    return record.id + ": " + record.message +
+           (record.is_lasting ? "" : " (no fault of the head: the same command tries it again)");
   char seconds[32];
   std::snprintf(seconds, sizeof seconds, "%.1f s", record.seconds);
   std::string text = record.id + ": " + seconds;
@@ -89,6 +92,8 @@ void run_heads(const Common& common, const BatchRequest& request) {
   const std::vector<batch::Head> all = batch::read_heads(request.source);
   const batch::Task task = task_of(request);
   const std::vector<batch::Head> heads = batch::share(all, task.index, task.count);
+  batch::check_inputs(all, request.output);
+  batch::check_results(heads, request.output);
   make_output_folder(request.output);
   batch::Options options;
   options.tool = this_program();
@@ -153,7 +158,10 @@ void submit(const Common& common, const BatchRequest& request) {
   check_output_given(request);
   if (request.operand.empty())
     throw UsageError("'fascia batch submit' needs a manifest or a folder of heads");
-  const size_t heads = batch::read_heads(request.operand).size();
+  const std::vector<batch::Head> all = batch::read_heads(request.operand);
+  batch::check_inputs(all, request.output);
+  batch::check_results(all, request.output);
+  const size_t heads = all.size();
   make_output_folder(request.output);
   fs::create_directories(request.output / ".logs");
   batch::SlurmJob job;

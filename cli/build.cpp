@@ -181,7 +181,11 @@ rigging::BuildReport build_file(const Common& common, const BuildRequest& reques
   std::vector<std::filesystem::path> inputs = request.muscles;
   inputs.insert(inputs.end(), {request.head, request.landmarks, request.edits});
   check_output(request.output, inputs);
-  if (!request.report.empty()) make_output_folder(request.report);
+  formats::PartialGroup together;
+  if (!request.report.empty()) {
+    make_output_folder(request.report, &together);
+    check_outputs({request.output, request.report / report_name}, inputs);
+  }
   if (extension_of(request.output) != ".glb")
     throw Error("'" + request.output.string() + "': a rig is a .glb file; give -o NAME.glb");
   // Shares of a build at medium detail; where another stage takes longest, the time left follows as it is
@@ -199,7 +203,9 @@ rigging::BuildReport build_file(const Common& common, const BuildRequest& reques
                      {"report", request.report.empty() ? 0.0 : 2.0}});
   progress.begin("reading");
   const anatomy::GenericAnatomy anatomy = anatomy_for(request.anatomy);
-  const formats::Scene scene = formats::read(request.head, formats::ReadOptions{request.allow_outside});
+  const formats::Scene scene = formats::read(
+      request.head,
+      {request.allow_outside ? formats::Outside::allowed : formats::Outside::refused_by_default});
   formats::LandmarkFile landmarks;
   if (!request.landmarks.empty()) landmarks = formats::read_landmarks(request.landmarks);
   rigging::BuildOptions options = request.options;
@@ -238,6 +244,7 @@ rigging::BuildReport build_file(const Common& common, const BuildRequest& reques
     progress.begin("report");
     write_report(request.report, request.head, request.output, result.report);
   }
+  together.keep();
   return result.report;
 }
 

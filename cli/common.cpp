@@ -38,7 +38,11 @@ void Common::report(const nlohmann::ordered_json& object) const {
   if (!json) return;
   // Names and paths need not be UTF-8; JSON has to be.
   std::cout << object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << std::endl;
-  if (!std::cout) throw Error("standard output cannot be written: it is closed or its disk is full");
+  if (!std::cout) fail_at_stdout();
+}
+
+void fail_at_stdout() {
+  throw Error("standard output cannot be written: it is closed or its disk is full");
 }
 
 ForEach on_all_threads() {
@@ -57,13 +61,35 @@ void check_output(const std::filesystem::path& path, const std::vector<std::file
       throw Error("'" + path.string() + "' is the input as well as the output: give another name with -o");
 }
 
-void make_output_folder(const std::filesystem::path& folder) {
+void check_outputs(const std::vector<std::filesystem::path>& outputs,
+                   const std::vector<std::filesystem::path>& inputs) {
+  std::error_code status;
+  std::vector<std::filesystem::path> places;
+  for (const std::filesystem::path& output : outputs) {
+    if (output.empty()) continue;
+    check_output(output, inputs);
+    const std::filesystem::path place = std::filesystem::weakly_canonical(output, status);
+    for (const std::filesystem::path& other : places)
+      if (place == other || (std::filesystem::is_regular_file(place, status) &&
+                             std::filesystem::equivalent(place, other, status)))
+        throw Error("'" + output.string() + "' is named for two outputs: give each another name");
+    places.push_back(place);
+  }
+}
+
+void make_output_folder(const std::filesystem::path& folder, formats::PartialGroup* together) {
   std::error_code status;
   std::filesystem::path whole = std::filesystem::absolute(folder).lexically_normal();
   if (!whole.has_filename()) whole = whole.parent_path();  // written with a slash at the end
   check_output(whole);
   if (std::filesystem::is_directory(folder, status)) return;
-  if (!std::filesystem::create_directory(folder, status))
+  if (together) together->add(whole);
+  bool is_made = false;
+  {
+    const formats::MakingPartial making;
+    is_made = std::filesystem::create_directory(whole, status);
+  }
+  if (!is_made)
     throw Error("the folder '" + folder.string() +
                 "' cannot be made: " + (status ? status.message() : "a file bears its name"));
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/options.h"
+#include "formats/partial.h"
 #include "geometry/for_each.h"
 
 namespace fascia::cli {
@@ -29,6 +30,9 @@ struct Common {
   void report(const nlohmann::ordered_json& object) const;
 };
 
+/// Throws fascia::Error that says that standard output cannot be written.
+[[noreturn]] void fail_at_stdout();
+
 /// Runs independent parts on the threads that the tool may use.
 ForEach on_all_threads();
 
@@ -48,6 +52,11 @@ void add_manual(const Command& tool);
 /// would destroy.
 void check_output(const std::filesystem::path& path, const std::vector<std::filesystem::path>& inputs = {});
 
+/// The same of every output of one command; empty ones are skipped. Throws fascia::Error, too, when two are
+/// one file.
+void check_outputs(const std::vector<std::filesystem::path>& outputs,
+                   const std::vector<std::filesystem::path>& inputs);
+
 /// The options several commands share, worded alike.
 void add_rig_argument(const Command& command, std::filesystem::path& rig);
 void add_set_options(const Command& command, std::vector<std::string>& set,
@@ -55,8 +64,8 @@ void add_set_options(const Command& command, std::vector<std::string>& set,
 void add_solver_option(const Command& command, std::string& solver);
 void add_level_option(const Command& command, std::string& level);
 
-/// Makes `folder` for a command's results unless it is there. Throws fascia::Error when the folder it would
-/// lie in is not there, or when a file bears its name.
-void make_output_folder(const std::filesystem::path& folder);
+/// Makes `folder` for a command's results unless it is there, as one of `together` where that is given.
+/// Throws fascia::Error when the folder it would lie in is not there, or when a file bears its name.
+void make_output_folder(const std::filesystem::path& folder, formats::PartialGroup* together = nullptr);
 
 }  // namespace fascia::cli

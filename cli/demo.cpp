@@ -168,7 +168,8 @@ void film(const Common& common, Studio& with, const std::filesystem::path& curve
 
 void run(const Common& common, const std::filesystem::path& folder,
          const std::filesystem::path& anatomy_folder) {
-  make_output_folder(folder);
+  formats::PartialGroup together;
+  make_output_folder(folder, &together);
   Clock clock(common);
   Progress progress(common, "demo",
                     {{"build", 2.0}, {"play", 1.0}, {"bake", 1.0}, {"sheet", 4.0}, {"film", 20.0}});
@@ -219,6 +220,7 @@ void run(const Common& common, const std::filesystem::path& folder,
   clock.say("filmed " + (folder / "demo.mp4").string());
   common.say("look at " + (folder / "contact_sheet.png").string() + " and " + (folder / "demo.mp4").string() +
              " first; open " + (folder / "play.glb").string() + " in any glTF viewer");
+  together.keep();
   common.report({{"out", folder.string()},
                  {"muscles", report.muscles.size()},
                  {"milliseconds_a_frame", played.milliseconds_a_frame}});

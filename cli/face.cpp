@@ -87,10 +87,9 @@ Json landmarks_json(const reconstruction::Result& result) {
   return list;
 }
 
-void check_outputs(const FaceRequest& request) {
-  const std::vector<std::filesystem::path> inputs = {request.skull, request.landmarks, request.depths};
-  for (const auto& path : {request.output, request.landmarks_out, request.sheet, request.rig})
-    if (!path.empty()) check_output(path, inputs);
+void check_face_outputs(const FaceRequest& request) {
+  check_outputs({request.output, request.landmarks_out, request.sheet, request.rig},
+                {request.skull, request.landmarks, request.depths});
   if (!request.sheet.empty() && extension_of(request.sheet) != ".png")
     throw Error("'" + request.sheet.string() + "': a sheet is written as .png");
   if (!request.landmarks_out.empty() && extension_of(request.landmarks_out) != ".json")
@@ -98,7 +97,7 @@ void check_outputs(const FaceRequest& request) {
 }
 
 void run(const Common& common, const FaceRequest& request) {
-  check_outputs(request);
+  check_face_outputs(request);
   anatomy::GenericAnatomy anatomy = anatomy_for(request.anatomy);
   std::vector<std::string> warnings;
   reconstruction::Options options;

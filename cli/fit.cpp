@@ -137,8 +137,15 @@ void fit_targets(const Common& common, const FitRequest& request, fit::Subject& 
 
 void run(const Common& common, const FitRequest& request) {
   const auto started = std::chrono::steady_clock::now();
-  check_output(request.output, {request.rig, request.target, request.neutral});
-  if (!request.report.empty()) make_output_folder(request.report);
+  const std::vector<std::filesystem::path> inputs = {request.rig, request.target, request.neutral};
+  check_output(request.output, inputs);
+  formats::PartialGroup together;
+  if (!request.report.empty()) {
+    make_output_folder(request.report, &together);
+    std::vector<std::filesystem::path> outputs = fit_report_files(request.report);
+    outputs.push_back(request.output);
+    check_outputs(outputs, inputs);
+  }
   fit::Subject subject(rig::read(formats::read_bytes(request.rig), request.rig.string()), request.level);
   FitTargets targets;
   std::vector<fit::FitResult> results;
@@ -152,6 +159,7 @@ void run(const Common& common, const FitRequest& request) {
     fit_targets(common, request, subject, targets, results, motion);
   write_fit(request.output, subject, targets, results, request.reading.fps);
   if (!request.report.empty()) write_fit_report(request.report, subject, targets, results);
+  together.keep();
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   nlohmann::ordered_json report = {{"output", request.output.string()}, {"level", subject.level_name()}};
   if (!scan_figures.is_null()) report.update(scan_figures);

@@ -221,15 +221,19 @@ void write_fit(const std::filesystem::path& path, const fit::Subject& subject, c
     return;
   }
   if (targets.kind == FitTargets::Kind::shapes && path.extension().empty()) {
-    make_output_folder(path);
+    formats::PartialGroup together;
+    make_output_folder(path, &together);
     std::set<std::string> words;
     for (size_t i = 0; i < results.size(); ++i) {
       std::string word = file_word(targets.names[i]);
       if (!words.insert(word).second) words.insert(word += "_" + std::to_string(i));
+      const std::filesystem::path file = path / (word + ".json");
+      together.add(file);
       formats::write_text(
-          path / (word + ".json"),
+          file,
           nlohmann::ordered_json{{"activations", fitted_activations(subject, results[i])}}.dump(2) + "\n");
     }
+    together.keep();
     return;
   }
   std::vector<double> times = targets.times;
@@ -239,15 +243,24 @@ void write_fit(const std::filesystem::path& path, const fit::Subject& subject, c
                                                          : curves_of(subject, times, results));
 }
 
+std::vector<std::filesystem::path> fit_report_files(const std::filesystem::path& folder) {
+  return {folder / "residual.png", folder / "residual.ply", folder / "report.md"};
+}
+
 void write_fit_report(const std::filesystem::path& folder, const fit::Subject& subject,
                       const FitTargets& targets, const std::vector<fit::FitResult>& results) {
   size_t worst = 0;
   for (size_t i = 1; i < results.size(); ++i)
     if (results[i].rms_mm > results[worst].rms_mm) worst = i;
   const fit::Target target = targets.target(worst);
-  write_picture(folder / "residual.png", subject, target, results[worst], targets.names[worst]);
-  write_residual_ply(folder / "residual.ply", subject, target, results[worst]);
-  formats::write_text(folder / "report.md", report_text(subject, targets, results, worst));
+  const std::vector<std::filesystem::path> files = fit_report_files(folder);
+  formats::PartialGroup together;
+  for (const std::filesystem::path& file : files)
+    together.add(file);
+  write_picture(files[0], subject, target, results[worst], targets.names[worst]);
+  write_residual_ply(files[1], subject, target, results[worst]);
+  formats::write_text(files[2], report_text(subject, targets, results, worst));
+  together.keep();
 }
 
 }  // namespace fascia::cli

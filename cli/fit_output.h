@@ -24,6 +24,9 @@ void write_fit(const std::filesystem::path& path, const fit::Subject& subject, c
 /// Throws fascia::Error when `path` cannot take the results of `targets`; called before the work is done.
 void check_fit_output(const std::filesystem::path& path, const FitTargets& targets);
 
+/// What write_fit_report writes into `folder`.
+std::vector<std::filesystem::path> fit_report_files(const std::filesystem::path& folder);
+
 /// Writes residual.png, residual.ply and report.md for the target that is explained worst into `folder`.
 void write_fit_report(const std::filesystem::path& folder, const fit::Subject& subject,
                       const FitTargets& targets, const std::vector<fit::FitResult>& results);

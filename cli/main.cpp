@@ -105,6 +105,7 @@ int main(int argc, char** argv) {
       limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
                                                     static_cast<size_t>(common.threads));
     if (action) action();
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) fascia::cli::fail_at_stdout();
   } catch (const Exit& end) {
     return end.code;
   } catch (const UsageError& error) {

@@ -163,11 +163,10 @@ void finish(const Common& common, const snapshot::Snapshot& then, const snapshot
   if (comparison.failed > 0) throw Exit{exit_check};
 }
 
-/// Neither of a check's results may take the place of `inputs`.
+/// Neither of a check's results may take the place of the other or of `inputs`.
 void check_results(const SnapshotRequest& wanted, std::vector<fs::path> inputs) {
   inputs.insert(inputs.end(), {wanted.file, wanted.against});
-  for (const fs::path& output : {wanted.report, wanted.junit})
-    if (!output.empty()) check_output(output, inputs);
+  check_outputs({wanted.report, wanted.junit}, inputs);
 }
 
 void check_snapshot(const Common& common, const SnapshotRequest& wanted) {

@@ -93,7 +93,7 @@ void write_text(const fs::path& path, const std::string& text) {
   write_bytes(path, text.data(), text.size());
 }
 
-PathBeside find_beside(const fs::path& owner, const std::string& relative, bool allow_outside) {
+PathBeside find_beside(const fs::path& owner, const std::string& relative, Outside outside) {
   const fs::path folder = owner.has_parent_path() ? owner.parent_path() : fs::path(".");
   std::error_code status;
   fs::path wanted = folder / fs::path(relative);
@@ -104,16 +104,17 @@ PathBeside find_beside(const fs::path& owner, const std::string& relative, bool 
   }
   const fs::path real = fs::weakly_canonical(wanted, status);
   const fs::path home = fs::weakly_canonical(folder, status);
-  if (status || (!allow_outside && !is_within(real, home)))
+  if (status || (outside != Outside::allowed && !is_within(real, home)))
     return {std::nullopt, "lies outside the folder of '" + owner.filename().string() +
-                              "' and is not opened; move it there, or give --allow-outside"};
+                              "' and is not opened; move it there" +
+                              (outside == Outside::refused_by_default ? ", or give --allow-outside" : "")};
   if (!fs::is_regular_file(real, status))
     return {std::nullopt, "is not there; put it where the file says, beside it"};
   return {real, ""};
 }
 
-FileBeside read_beside(const fs::path& owner, const std::string& relative, bool allow_outside) {
-  const PathBeside found = find_beside(owner, relative, allow_outside);
+FileBeside read_beside(const fs::path& owner, const std::string& relative, Outside outside) {
+  const PathBeside found = find_beside(owner, relative, outside);
   if (!found.path) return {std::nullopt, found.why};
   try {
     return {read_bytes(*found.path), ""};

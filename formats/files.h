@@ -34,6 +34,13 @@ void write_bytes(const std::filesystem::path& path, const void* bytes, size_t si
 void write_parts(const std::filesystem::path& path, const std::vector<std::span<const uint8_t>>& parts);
 void write_text(const std::filesystem::path& path, const std::string& text);
 
+/// Files outside the folder of the file that references them.
+enum class Outside {
+  refused,
+  refused_by_default,  ///< refused with the advice to give --allow-outside
+  allowed
+};
+
 /// The path of a referenced file, or why it may not be read, with a remedy.
 struct PathBeside {
   std::optional<std::filesystem::path> path;
@@ -41,8 +48,8 @@ struct PathBeside {
 };
 
 /// The regular file `relative` (forward or backward slashes) in the folder of `owner`. One outside that
-/// folder, by its path or through a symbolic link, is refused unless `allow_outside`.
-PathBeside find_beside(const std::filesystem::path& owner, const std::string& relative, bool allow_outside);
+/// folder, by its path or through a symbolic link, is refused unless `outside` allows it.
+PathBeside find_beside(const std::filesystem::path& owner, const std::string& relative, Outside outside);
 
 /// The bytes of a referenced file, or why it was not read, with a remedy.
 struct FileBeside {
@@ -51,6 +58,6 @@ struct FileBeside {
 };
 
 /// The bytes of what `find_beside` finds.
-FileBeside read_beside(const std::filesystem::path& owner, const std::string& relative, bool allow_outside);
+FileBeside read_beside(const std::filesystem::path& owner, const std::string& relative, Outside outside);
 
 }  // namespace fascia::formats

@@ -39,7 +39,7 @@ class PictureReader {
     if (name.empty()) return nullptr;
     const auto [entry, is_new] = known_.try_emplace(name);
     if (!is_new) return entry->second;
-    FileBeside file = read_beside(scene_.path, name, options_.allow_outside);
+    FileBeside file = read_beside(scene_.path, name, options_.outside);
     if (!file.bytes) {
       warnings_.push_back("texture '" + gltf::as_utf8(name) + "' is left out: " + file.why);
       return nullptr;
@@ -147,7 +147,7 @@ MaterialLibrary read_materials(const Scene& scene, const ReadOptions& options) {
   std::map<std::string, int> by_name;
   PictureReader pictures(scene, options, library.warnings);
   for (const std::string& name : found.libraries) {
-    const FileBeside file = read_beside(scene.path, name, options.allow_outside);
+    const FileBeside file = read_beside(scene.path, name, options.outside);
     if (!file.bytes) {
       // Many a head comes without; one that is there and not opened is another matter.
       if (file.why.starts_with("lies outside"))

@@ -48,7 +48,7 @@ std::string_view without_blanks_at_end(std::string_view text) {
 }
 
 NamedFile beside(const fs::path& owner, std::string_view name) {
-  return {std::string(name), find_beside(owner, std::string(name), false).path};
+  return {std::string(name), find_beside(owner, std::string(name), Outside::refused).path};
 }
 
 bool names_texture(std::string_view keyword) {

@@ -184,7 +184,7 @@ void read_document(Scene& scene, const std::vector<uint8_t>& bytes, const ReadOp
                                                 : gltf::Document{{bytes.begin(), bytes.end()}, {}};
   check_version(scene, gltf::parsed(document.json, name));
   const auto resolve = [&](const std::string& relative) -> gltf::OutsideFile {
-    FileBeside file = read_beside(scene.path, relative, options.allow_outside);
+    FileBeside file = read_beside(scene.path, relative, options.outside);
     return {std::move(file.bytes), std::move(file.why)};
   };
   scene.document = gltf::self_contained(std::move(document), resolve, name, &scene.warnings);

@@ -48,7 +48,7 @@ struct Scene {
 };
 
 struct ReadOptions {
-  bool allow_outside = false;  ///< files referenced by a glTF may lie outside its folder
+  Outside outside = Outside::refused;  ///< files referenced by a glTF
 };
 
 /// Reads a mesh file; the format is detected from its first bytes, then from its extension.

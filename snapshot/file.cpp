@@ -106,16 +106,19 @@ std::string states_text(const Snapshot& snapshot) {
   return text;
 }
 
-constexpr size_t most_vertices = 1000000;  // of a region; a file that says more is damaged
-
-Region region_from(const Json& json, const std::vector<Mesh>& meshes) {
+/// `before`: the vertices of the regions before it.
+Region region_from(const Json& json, const std::vector<Mesh>& meshes, size_t before) {
   Region region;
   region.name = json.at("name").get<std::string>();
   region.tolerance_mm = json.at("tolerance_mm").get<double>();
   if (!(region.tolerance_mm > 0.0))
     throw Error("region '" + region.name + "': tolerance_mm has to be above 0");
   const auto count = json.at("count").get<size_t>();
-  if (count > most_vertices) throw Error("region '" + region.name + "' watches too many vertices");
+  size_t most = 0;
+  for (const Mesh& mesh : meshes)
+    most += mesh.vertex_count;
+  if (count > most) throw Error("region '" + region.name + "' watches more vertices than the meshes have");
+  check_size(before + count, 1);
   const std::vector<int32_t> numbers = unpack(json.at("vertices").get<std::string>(), 2, 2 * count);
   for (size_t i = 0; i < count; ++i) {
     const Vertex vertex{static_cast<uint32_t>(numbers[2 * i]), static_cast<uint32_t>(numbers[2 * i + 1])};
@@ -157,8 +160,11 @@ Snapshot parsed(const Json& json) {
   for (const Json& mesh : json.at("meshes"))
     snapshot.meshes.push_back(
         {mesh.at(0).get<uint32_t>(), mesh.at(1).get<uint32_t>(), mesh.at(2).get<uint32_t>()});
-  for (const Json& region : json.at("regions"))
-    snapshot.regions.push_back(region_from(region, snapshot.meshes));
+  size_t vertices = 0;
+  for (const Json& region : json.at("regions")) {
+    snapshot.regions.push_back(region_from(region, snapshot.meshes, vertices));
+    vertices += snapshot.regions.back().vertices.size();
+  }
   for (const Json& pose : json.at("poses")) {
     snapshot.poses.push_back({pose.at("name").get<std::string>(), {}});
     for (const Json& value : pose.at("set"))
@@ -171,9 +177,9 @@ Snapshot parsed(const Json& json) {
   if (states.size() != names.size())
     throw Error("it has " + std::to_string(states.size()) + " states for " + std::to_string(names.size()) +
                 " poses and frames: record it anew");
+  check_size(vertices, names.size());
   for (size_t s = 0; s < names.size(); ++s)
-    snapshot.states.push_back(
-        {names[s], unpack(states[s].at("packed").get<std::string>(), 3, 3 * snapshot.vertex_count())});
+    snapshot.states.push_back({names[s], unpack(states[s].at("packed").get<std::string>(), 3, 3 * vertices)});
   return snapshot;
 }
 
@@ -215,7 +221,7 @@ WantedRegion wanted_region(const std::string& name, const Json& json) {
 Json parse(std::string_view text) {
   constexpr int deepest = 16;
   const auto shallow = [](int depth, Json::parse_event_t, Json&) {
-    if (depth > deepest) throw Error("it is nested too deeply");
+    if (depth > deepest) throw Error("it is nested more than " + std::to_string(deepest) + " deep");
     return true;
   };
   Json json = Json::parse(text.begin(), text.end(), shallow, false);

@@ -2,6 +2,8 @@
 
 #include <zlib.h>
 
+#include <algorithm>
+
 #include "geometry/base64.h"
 #include "geometry/error.h"
 
@@ -38,7 +40,11 @@ std::vector<int32_t> unpack(std::string_view text, size_t stride, size_t count) 
   size_t skipped = 0;
   const std::vector<uint8_t> deflated = from_base64(text, &skipped);
   if (skipped > 0) damaged();
-  std::vector<uint8_t> bytes(count * 5);  // the longest a number can be
+  // A number is a byte at least; deflate makes of a byte 1032 at most.
+  constexpr size_t longest_number = 5, most_inflated = 1032;
+  const size_t most = most_inflated * deflated.size();
+  if (count > most) damaged();
+  std::vector<uint8_t> bytes(std::min(longest_number * count, most));
   auto size = static_cast<uLongf>(bytes.size());
   if (uncompress(bytes.data(), &size, deflated.data(), static_cast<uLong>(deflated.size())) != Z_OK)
     damaged();

@@ -206,6 +206,7 @@ Snapshot record(std::span<const uint8_t> rig, const std::string& name, const Req
   for (size_t t = 0; t < takes.size(); ++t)
     snapshot.takes.push_back(take_of(request.takes[t], takes[t].curves.get(), request));
   number_states(snapshot, takes);
+  check_size(snapshot.vertex_count(), state_names(snapshot).size());
   play(snapshot, player, name, takes, request.threads, request.progress);
   return snapshot;
 }

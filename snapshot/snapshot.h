@@ -71,6 +71,10 @@ struct Snapshot {
   size_t first_vertex(size_t region) const;
 };
 
+/// Throws fascia::Error unless a snapshot may hold so many watched vertices, up to a million, in so many
+/// states, up to twenty million places in all.
+void check_size(size_t vertices, size_t states);
+
 /// Names of the states that `poses` and `takes` give, in order; the first is "rest".
 std::vector<std::string> state_names(const Snapshot& snapshot);
 

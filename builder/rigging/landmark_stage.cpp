@@ -11,6 +11,7 @@
 #include "builder/rigging/shape_places.h"
 #include "builder/rigging/stages.h"
 #include "geometry/error.h"
+#include "geometry/nearest_names.h"
 
 namespace fascia::rigging {
 
@@ -101,6 +102,13 @@ LocatedHead locate_head(const formats::Scene& scene, const formats::LandmarkFile
   return located;
 }
 
+Points reference_points(const anatomy::GenericAnatomy& anatomy) {
+  Points points;
+  for (const anatomy::Landmark& landmark : anatomy.landmarks)
+    if (landmark.skin) points[landmark.name] = *landmark.skin;
+  return points;
+}
+
 void place_landmarks(FoundLandmarks& result, const LocatedHead& located, const formats::LandmarkFile& given,
                      const anatomy::GenericAnatomy& anatomy, bool with_regions) {
   const prepare::PreparedHead& head = result.head;
@@ -121,8 +129,12 @@ void place_landmarks(FoundLandmarks& result, const LocatedHead& located, const f
   } else {
     result.landmarks = landmarks::complete(by_hand, anatomy, skin, &unknown);
   }
+  std::vector<std::string> names;
+  for (const auto& [name, p] : reference_points(anatomy))
+    names.push_back(name);
   for (const std::string& name : unknown)
-    result.warnings.push_back("landmark '" + name + "' is not known and was left out");
+    if (did_you_mean(name, names).empty())  // of the others the prepared head has said it
+      result.warnings.push_back("landmark '" + name + "' is not known and was left out");
 }
 
 /// The same meshes with their triangles facing the other way.
@@ -141,13 +153,6 @@ std::string doubt(const formats::Scene& scene, const formats::LandmarkFile& give
       "RIG.glb --layers skin,landmarks) and, where they are off, ";
   if (given.points.size() < 2) return found + "give exocanthion_left and exocanthion_right with --landmarks";
   return found + "give more of them with --landmarks: " + std::to_string(given.points.size()) + " were given";
-}
-
-Points reference_points(const anatomy::GenericAnatomy& anatomy) {
-  Points points;
-  for (const anatomy::Landmark& landmark : anatomy.landmarks)
-    if (landmark.skin) points[landmark.name] = *landmark.skin;
-  return points;
 }
 
 /// Changes the rig frame: x becomes rotation * x + translation (metres).

@@ -222,6 +222,8 @@ void read_primitives(const tinygltf::Model& model, RigFile& file, const std::str
 /// Throws unless `matrix` is an affine map that turns and scales by something between a millionth of a
 /// millionth and its inverse: others have no use, and no inverse in single precision.
 void check_map(const Mat4f& matrix, const std::string& path) {
+  if (matrix.row(3) != Eigen::RowVector4f(0.0F, 0.0F, 0.0F, 1.0F))
+    throw Error(path + ": the last row of the matrix is not 0, 0, 0, 1");
   const Eigen::Matrix3d linear = matrix.topLeftCorner<3, 3>().cast<double>();
   const double volume = std::abs(linear.determinant()), largest = linear.cwiseAbs().maxCoeff();
   if (!(largest > 1e-12 && largest < 1e12 && volume > 1e-6 * largest * largest * largest))

@@ -14,6 +14,7 @@ constexpr double longest_take = 6 * 3600.0;  // seconds
 /// A recording in which nothing comes for so long, and for so many of its usual steps, was stopped between.
 constexpr double longest_pause = 600.0;  // seconds
 constexpr double most_steps = 100.0;
+constexpr double noted_gap = 60.0;  // seconds
 constexpr double pause_left = 1.0;  // seconds that remain of such a pause
 
 std::string rounded(double value) {
@@ -71,16 +72,24 @@ struct Pause {
   double taken = 0.0;  ///< seconds that are taken off, of this pause and of all before it
 };
 
-/// Shortens pauses of the recorder to one second, so that they are not simulated.
+/// Shortens pauses of the recorder to one second, so that they are not simulated, and notes other long gaps.
 void shorten_pauses(Curves& curves) {
   const std::vector<double> times = times_of_keys(curves);
-  if (times.size() < 3) return;
-  const double longest = std::max(longest_pause, most_steps * median_step(times));
+  if (times.size() < 2) return;
+  // Of two keys nothing tells whether the time between them is meant.
+  const double longest = times.size() > 2 ? std::max(longest_pause, most_steps * median_step(times))
+                                          : std::numeric_limits<double>::infinity();
   std::vector<Pause> pauses;
   double taken = 0.0;
   for (std::size_t i = 1; i < times.size(); ++i) {
     const double pause = times[i] - times[i - 1];
-    if (pause <= longest) continue;
+    if (pause <= longest) {
+      if (pause > noted_gap)
+        curves.notes.push_back("there is no row for " + rounded(pause) + " s from " +
+                               rounded(times[i - 1] - times.front()) +
+                               " s on, and all of that time is played: if it is not meant, cut it out");
+      continue;
+    }
     pauses.push_back({times[i], taken += pause - pause_left});
     curves.notes.push_back("nothing was recorded for " + rounded(pause) + " s from " +
                            rounded(times[i - 1] - times.front()) +

@@ -9,6 +9,8 @@
 #include <set>
 
 #include "batch/manifest.h"
+#include "batch/places.h"
+#include "batch/record.h"
 #include "batch/slurm.h"
 #include "geometry/error.h"
 
@@ -21,6 +23,7 @@ class Manifest : public ::testing::Test {
  protected:
   void SetUp() override {
     folder = fs::temp_directory_path() / ("fascia_manifest_" + std::to_string(getpid()));
+    fs::remove_all(folder);
     fs::create_directories(folder / "sub");
   }
   void TearDown() override { fs::remove_all(folder); }
@@ -80,7 +83,7 @@ TEST_F(Manifest, SaysWhichLineIsWrong) {
   expect_refused("{\"head\": \"a\", \"id\": \".work\"}", "becomes a folder");
   expect_refused("{\"head\": \"a\", \"id\": \"x\"}\n{\"head\": \"b\", \"id\": \"x\"}", "line 1");
   expect_refused("{\"head\": [1]}", "neither text nor a number");
-  expect_refused(std::string(10000, '['), "line 1");
+  expect_refused(std::string(10000, '['), "line 1: it is nested more than 4 deep");
   EXPECT_THROW(read_heads(folder / "sub"), Error);
   EXPECT_THROW(read_heads(folder / "missing"), Error);
 }
@@ -97,6 +100,40 @@ TEST_F(Manifest, TasksShareEveryHeadOnce) {
     EXPECT_EQ(ids.size(), 17U);
     EXPECT_EQ(std::set<std::string>(ids.begin(), ids.end()).size(), 17U);
   }
+}
+
+TEST_F(Manifest, FoldersOfResultsHoldNoHeads) {
+  write("a.obj", "x");
+  for (const char* made : {"out/a", "out/.work/b", "out/.locks"})
+    fs::create_directories(folder / made);
+  write("out/a/rig.glb", "x");
+  write("out/.work/b/rig.glb", "x");
+  EXPECT_EQ(read_heads(folder).size(), 2U) << "a rig without a record is a file like any other";
+  write_record(folder / "out" / "a", {});
+  EXPECT_EQ(read_heads(folder).size(), 1U);
+}
+
+TEST_F(Manifest, NoInputLiesWhereResultsGo) {
+  fs::create_directories(folder / "scans" / "anna");
+  const fs::path scan = write("scans/anna/head.obj", "x"), beside = write("scans/landmarks.json", "{}");
+  const auto expect_refused_into = [&](const fs::path& output, const Head& head) {
+    try {
+      check_inputs({head, {"bert", beside, "", "", {}}}, output);
+      ADD_FAILURE() << output;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find("-o"), std::string::npos) << error.what();
+    }
+  };
+  expect_refused_into(folder / "scans", {"anna", scan, "", "", {}});
+  expect_refused_into(folder / "scans" / ".." / "scans", {"anna", beside, scan, "", {}});
+  expect_refused_into(folder, {"scans", beside, "", scan, {}});
+  fs::create_directory_symlink(folder / "scans", folder / "link");
+  expect_refused_into(folder / "link", {"anna", scan, "", "", {}});
+  fs::create_symlink(scan, folder / "linked.obj");
+  expect_refused_into(folder / "scans", {"anna", folder / "linked.obj", "", "", {}});
+  expect_refused_into(folder / "scans", {"bert", scan, folder / "scans" / ".work" / "x.json", "", {}});
+  EXPECT_NO_THROW(check_inputs({{"bert", scan, beside, "", {}}}, folder / "scans"));
+  EXPECT_NO_THROW(check_inputs({{"anna", scan, "", "", {}}}, folder / "out"));
 }
 
 class Environment : public ::testing::Test {

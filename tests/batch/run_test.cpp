@@ -41,6 +41,9 @@ case "$(cat "$head")" in
   refused) echo "{\"error\": \"'$head': no face was found in 12 views; give landmarks\", \"exit\": 1}"; exit 1;;
   broken) echo "fascia: internal error: index 7" >&2; exit 3;;
   empty) exit 0 ;;
+  full) echo "{\"error\": \"'$out' cannot be written: No space left on device; check the folder\", \"exit\": 1}"; exit 1;;
+  large) echo "fascia: '$out' cannot be written: File too large; check the folder" >&2; exit 1;;
+  silent) exit 1;;
 esac
 echo "rig of $(basename "$head")" > "$out"
 echo '{"warnings": ["one thing"]}'
@@ -160,14 +163,45 @@ TEST_F(Batch, ResumesAndRebuildsChangedHeads) {
   fs::remove(options.output / "b" / "rig.glb");  // somebody took the rig away
   report = run();
   EXPECT_EQ(report.fates, (std::vector<Fate>{Fate::done, Fate::done, Fate::kept}));
-  std::ofstream(options.output / "a" / "job.json") << "{\"id\": ";  // half a record
-  report = run();
-  EXPECT_EQ(report.fates, (std::vector<Fate>{Fate::done, Fate::kept, Fate::kept}));
   options.retries_failed = true;
   EXPECT_EQ(run().fates[2], Fate::failed);
   EXPECT_EQ(builds("c"), 2U);
   options.version = "2";  // another tool
   EXPECT_EQ(run().fates, (std::vector<Fate>{Fate::done, Fate::done, Fate::failed}));
+}
+
+TEST_F(Batch, ReplacesNothingButResults) {
+  add("a", "good");
+  const fs::path result = options.output / "a";
+  const auto expect_refused = [&](const std::string& says) {
+    try {
+      run();
+      ADD_FAILURE() << says;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find(says), std::string::npos) << error.what();
+    }
+    EXPECT_EQ(builds("a"), 0U) << says;
+  };
+  for (const char* kind : {"good", "refused"}) {
+    std::ofstream(folder / "a") << kind;
+    std::ofstream(result) << "a file";
+    expect_refused("no result of a batch");
+    EXPECT_EQ(text(result), "a file");
+    fs::remove(result);
+    fs::create_directories(result);
+    std::ofstream(result / "precious.txt") << "mine";
+    expect_refused("no result of a batch");
+    std::ofstream(result / "job.json") << "{\"id\": ";  // half a record
+    expect_refused("no result of a batch");
+    Record record;
+    write_record(result, record);
+    expect_refused("precious.txt");
+    EXPECT_EQ(text(result / "precious.txt"), "mine");
+    fs::remove_all(result);
+    fs::create_directory_symlink(folder, result);
+    expect_refused("no result of a batch");
+    fs::remove(result);
+  }
 }
 
 TEST_F(Batch, AFailingHeadDoesNotAffectOthers) {
@@ -200,6 +234,33 @@ TEST_F(Batch, AFailingHeadDoesNotAffectOthers) {
   for (const Record& record : report.records)
     EXPECT_EQ(fs::exists(options.output / record.id / "rig.glb"), record.is_done) << record.id;
   expect_no_leftovers();
+}
+
+TEST_F(Batch, WhatAKilledStepLeftIsReplaced) {
+  add("a", "good");
+  run();
+  for (const char* name :
+       {"rig.glb.0123456789abcdef.part", "thumbnail.png.0123456789abcdef.part", "stderr.txt"})
+    std::ofstream(options.output / "a" / name) << "half";
+  options.version = "2";
+  EXPECT_EQ(run().fates[0], Fate::done);
+  expect_whole("a");
+  expect_no_leftovers();
+}
+
+TEST_F(Batch, AFaultOfTheMachineIsTriedAgain) {
+  const std::vector<std::string> kinds = {"full", "large", "silent", "refused"};
+  for (const std::string& kind : kinds)
+    add(kind, kind);
+  Report report = run();
+  for (const std::string& kind : kinds) {
+    EXPECT_FALSE(of(report, kind).is_done) << kind;
+    EXPECT_EQ(of(report, kind).is_lasting, kind == "refused") << kind;
+  }
+  report = run();
+  for (const std::string& kind : kinds)
+    EXPECT_EQ(builds(kind), kind == "refused" ? 1U : 2U) << kind;
+  EXPECT_EQ(report.fates, (std::vector<Fate>{Fate::failed, Fate::failed, Fate::failed, Fate::kept}));
 }
 
 TEST_F(Batch, AFileThatIsNotThereFailsAlone) {
@@ -281,6 +342,8 @@ TEST_F(Batch, ReadOnlyFoldersAreSaid) {
   options.tool = folder / "no_tool";
   const Report report = run();
   EXPECT_EQ(of(report, "a").cause, "the tool cannot be started");
+  options.tool = folder / "tool";
+  EXPECT_EQ(run().fates[0], Fate::done);
 }
 
 }  // namespace

@@ -80,10 +80,29 @@ printf '\377\377\177\002' | dd of="$place/heads/large.stl" bs=1 seek=80 conv=not
 printf '{"head": "heads/poisoned.obj", "id": "poisoned"}\n{"head": "heads/large.stl", "id": "large"}\n' >>"$place/heads.jsonl"
 
 "$tool" batch submit "$place/heads.jsonl" -o "$place/out" --task-count 4 --jobs 1 --memory 1500 --no-thumbnail
-for _ in $(seq 200); do [ -n "$(squeue -h -t running -o %N | grep n2)" ] && break; sleep 0.2; done
-kill -9 "$(cat "$place/slurmd.n2.pid")"   # the node is gone; its task is queued again
+# Processes on a node, by the variable that Slurm gives them, and the first of them that builds a head.
+on_node() { { grep -lzx "SLURMD_NODENAME=$1" /proc/[0-9]*/environ 2>/dev/null || true; } | cut -d/ -f3; }  # some end meanwhile
+builder_on() { for process in $(on_node "$1"); do ! grep -qz '^build$' "/proc/$process/cmdline" 2>/dev/null || { echo "$process"; return; }; done; }
+for _ in $(seq 600); do [ -n "$(builder_on n2)" ] && break; sleep 0.1; done
+[ -n "$(builder_on n2)" ] || { echo "no head was in work on the node that is to be killed"; squeue; sinfo -N; exit 1; }
+# The node is gone with all that runs there, in the middle of a head; its task is queued again.
+kill -9 "$(cat "$place/slurmd.n2.pid")"
+there=$(on_node n2)
+for process in $there; do
+  parent=$(ps -o ppid= -p "$process" | tr -d ' ')
+  [ "$(cat "/proc/$parent/comm" 2>/dev/null)" != slurmstepd ] || kill -9 "$parent"
+done
+for process in $there; do kill -9 "$process" 2>/dev/null || true; done
 for _ in $(seq 600); do [ -z "$(squeue -h)" ] && break; sleep 1; done
 [ -z "$(squeue -h)" ] || { echo "the queue never emptied"; squeue; exit 1; }
+
+grep -qi requeu "$place/state/log" || { echo "the killed node's task was not queued again"; tail "$place/state/log"; exit 1; }
+
+# Every process says in its task's log what it built: "[1/2] good1: 2.3 s".
+for k in 1 2 3 4 5 6; do
+  builds=$(cat "$place"/out/.logs/*.txt | grep -cE "\] good$k: [0-9.]+ s" || true)
+  [ "$builds" = 1 ] || { echo "good$k was built $builds times"; grep . "$place"/out/.logs/*.txt; exit 1; }
+done
 
 # The same again finds nothing to do: every head that can be built has been.
 "$tool" batch "$place/heads.jsonl" -o "$place/out" --memory 1500 --no-thumbnail --json >"$place/again.json" || [ $? = 1 ]

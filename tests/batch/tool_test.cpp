@@ -78,6 +78,22 @@ TEST_F(BatchTool, WritesASlurmScript) {
   EXPECT_EQ(std::system(("bash -n " + at("queue/batch.sbatch")).c_str()), 0);
 }
 
+TEST_F(BatchTool, KeepsWhatItDidNotMake) {
+  fs::create_directories(at("own/a"));
+  for (const char* name : {"own/a.obj", "own/a/head.obj", "own/a/precious.txt"})
+    std::ofstream(at(name)) << "mine";
+  std::ofstream(at("own.jsonl")) << "{\"head\": \"own/a/head.obj\", \"id\": \"a\"}\n";
+  for (const char* words : {"batch ", "batch submit --dry-run "})
+    for (const char* source : {"own", "own.jsonl"}) {
+      const Outcome outcome = run(words + at(source) + " -o " + at("own"));
+      EXPECT_EQ(outcome.code, 1);
+      EXPECT_NE(outcome.err.find("-o"), std::string::npos) << outcome.err;
+      EXPECT_EQ(std::distance(fs::directory_iterator(at("own")), {}), 2) << words;
+    }
+  for (const char* name : {"own/a.obj", "own/a/head.obj", "own/a/precious.txt"})
+    EXPECT_EQ(text_of(at(name)), "mine") << name;
+}
+
 TEST_F(BatchTool, SaysWhatIsMissing) {
   EXPECT_EQ(run("batch").code, 2);
   EXPECT_EQ(run("batch " + at("heads.jsonl")).code, 2);

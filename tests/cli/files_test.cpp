@@ -56,6 +56,21 @@ TEST_F(FilesOfTheTool, AnOutputNeverDestroysItsInput) {
   EXPECT_EQ(text_of(at("rig.glb")), before);
 }
 
+TEST_F(FilesOfTheTool, AFailureLeavesNoEmptyFolder) {
+  std::ofstream(at("no_mesh.obj")) << "v 0 0 0\n";
+  fs::create_directory(at("folder_of_reports"));
+  for (const std::string& reports : {at("new_folder"), at("new_folder/"), at("folder_of_reports")})
+    for (const std::string& command :
+         {"build " + at("no_mesh.obj") + " -o " + at("x.glb") + " --report " + reports,
+          "fit " + at("rig.glb") + " --target " + at("no_mesh.obj") + " -o " + at("x.json") + " --report " +
+              reports,
+          "demo --anatomy " + at("no_such_anatomy") + " --out " + reports}) {
+      EXPECT_EQ(run(command).code, 1) << command;
+      EXPECT_FALSE(fs::exists(at("new_folder"))) << command;
+      EXPECT_TRUE(fs::exists(at("folder_of_reports"))) << command;
+    }
+}
+
 TEST_F(FilesOfTheTool, NoCommandWritesOverAnythingItReads) {
   const std::string rig = " " + at("rig.glb") + " ", skull = " " + at("head.obj") + " ", in = at("input");
   formats::write_text(in, "what was there before");
@@ -95,6 +110,44 @@ TEST_F(FilesOfTheTool, NoCommandWritesOverAnythingItReads) {
   }
 }
 
+TEST_F(FilesOfTheTool, NoCommandWritesOneOutputOverAnother) {
+  const std::string rig = " " + at("rig.glb") + " ", skull = " " + at("head.obj") + " ";
+  fs::create_directories(at("both"));
+  fs::create_directory_symlink(at("both"), at("linked"));
+  for (const std::string& words :
+       {"snapshot check" + rig + "--against " + at("x.json") + " --report " + at("both/a") + " --junit " +
+            at("both/../both/a"),
+        "snapshot check" + rig + "--against " + at("x.json") + " --report " + at("both/a") + " --junit " +
+            at("linked/a"),
+        "face" + skull + "-o " + at("both/a.png") + " --sheet " + at("both/a.png"),
+        "build" + skull + "-o " + at("both/report.html") + " --report " + at("both"),
+        "fit" + rig + "--target " + at("head.obj") + " -o " + at("both/report.md") + " --report " +
+            at("both")}) {
+    const Outcome outcome = run(words);
+    EXPECT_EQ(outcome.code, 1) << words;
+    EXPECT_NE(outcome.err.find("another name"), std::string::npos) << words << outcome.err;
+    EXPECT_TRUE(fs::is_empty(at("both"))) << words;
+  }
+}
+
+TEST_F(FilesOfTheTool, AnOptionIsAdvisedOnlyWhereThereIsOne) {
+  fs::create_directories(at("inside"));
+  std::ofstream(at("buffer.bin")) << "1234";
+  std::ofstream(at("inside/head.gltf"))
+      << R"({"asset": {"version": "2.0"}, "buffers": [{"uri": "../buffer.bin", "byteLength": 4}]})";
+  const std::string head = at("inside/head.gltf");
+  EXPECT_NE(run("build " + head + " -o " + at("x.glb")).err.find("--allow-outside"), std::string::npos);
+  for (const std::string& words :
+       {"fit " + at("rig.glb") + " --target " + head + " -o " + at("x.json"),
+        "face " + head + " -o " + at("x.glb"),
+        "calibrate " + at("rig.glb") + " --scans " + head + " -o " + at("x.glb")}) {
+    const Outcome outcome = run(words);
+    EXPECT_EQ(outcome.code, 1) << words;
+    EXPECT_NE(outcome.err.find("lies outside the folder"), std::string::npos) << outcome.err;
+    EXPECT_EQ(outcome.err.find("--allow-outside"), std::string::npos) << outcome.err;
+  }
+}
+
 TEST_F(FilesOfTheTool, AFolderThatIsNotThereIsRefusedNotMade) {
   const Outcome outcome = run("pose " + at("rig.glb") + " -o " + at("nowhere/x.glb"));
   EXPECT_EQ(outcome.code, 1);
@@ -108,11 +161,29 @@ TEST_F(FilesOfTheTool, NamesNeedNotBeUtf8) {
   EXPECT_TRUE(json::parse(outcome.out).contains("error")) << outcome.out;
 }
 
-TEST_F(FilesOfTheTool, JsonThatCannotBeWrittenIsAFailure) {
-  const std::string command =
-      test::tool().string() + " info " + at("rig.glb") + " --json >/dev/full 2>/dev/null";
-  const int status = std::system(command.c_str());
-  EXPECT_EQ(WEXITSTATUS(status), 1);
+TEST_F(FilesOfTheTool, OutputThatCannotBeWrittenIsAFailure) {
+  for (const char* option : {" --json", "", " --channels"}) {
+    const int status = std::system(
+        (test::tool().string() + " info " + at("rig.glb") + option + " >/dev/full 2>" + at("said.txt"))
+            .c_str());
+    EXPECT_EQ(WEXITSTATUS(status), 1) << option;
+    EXPECT_NE(text_of(at("said.txt")).find("standard output cannot be written"), std::string::npos) << option;
+  }
+}
+
+TEST_F(FilesOfTheTool, AMisspeltLandmarkIsWarnedOfOnce) {
+  json landmarks = json::parse(text_of(at("landmarks.json")));
+  landmarks["landmarks"]["nasionn"] = landmarks["landmarks"]["nasion"];
+  landmarks["landmarks"]["qqqqqqqq"] = landmarks["landmarks"]["nasion"];
+  std::ofstream(at("misspelt.json")) << landmarks.dump();
+  const Outcome outcome = run("build " + at("head.obj") + " --landmarks " + at("misspelt.json") +
+                              " --detail low -o " + at("misspelt.glb"));
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  for (const char* name : {"'nasionn'", "'qqqqqqqq'"}) {
+    const size_t first = outcome.err.find(name);
+    ASSERT_NE(first, std::string::npos) << outcome.err;
+    EXPECT_EQ(outcome.err.find(name, first + 1), std::string::npos) << outcome.err;
+  }
 }
 
 /// A rig with other notes of its source's.

@@ -2,6 +2,9 @@
 // so with its exit code, an output that was there stays whole, and nothing is left beside it.
 #include <algorithm>
 #include <cstdlib>
+#include <iterator>
+#include <map>
+#include <sstream>
 
 #include "tests/faults/workplace.h"
 
@@ -14,9 +17,14 @@ using cli::text_of;
 
 class Faults : public Workplace {
  protected:
-  /// Runs a command with the `number`-th call of `kind` failing; the number of calls in `count`.
+  /// Kinds of the shim without memory. Every output needs those of `needed`.
+  static constexpr const char* kinds[] = {"read",   "open",      "write", "fsync",  "rename", "close",
+                                          "fchmod", "renameat2", "mkdir", "linkat", "unlink"};
+  static constexpr size_t needed = 7;
+
+  /// Runs a command with the `number`-th call of `kind` failing; the calls of each kind in `counts`.
   Outcome run_with_fault(const std::string& words, const std::string& kind, long number,
-                         long* count = nullptr) {
+                         std::map<std::string, long>* counts = nullptr) {
     const std::filesystem::path logs = folder.string() + "_logs";
     std::filesystem::create_directories(logs);
     const std::string log = (logs / "calls").string();
@@ -27,7 +35,12 @@ class Faults : public Workplace {
     const std::string out = (logs / "out").string(), err = (logs / "err").string();
     const int status = std::system((command + " --threads 1 >" + out + " 2>" + err + " </dev/null").c_str());
     const Outcome outcome = {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(out), text_of(err)};
-    if (count) *count = std::atol(text_of(log).c_str());
+    if (counts) {
+      std::istringstream lines(text_of(log));
+      std::string name;
+      for (long calls = 0; lines >> name >> calls;)
+        (*counts)[name] = calls;
+    }
     std::filesystem::remove_all(logs);
     return outcome;
   }
@@ -49,10 +62,20 @@ class Faults : public Workplace {
     }
     std::filesystem::remove(at(job.output));
   }
+  /// Numbers of calls to fail: many of one kind are alike, so the first, the last and some between.
+  static std::vector<long> some_of(long calls) {
+    std::vector<long> numbers;
+    const long step = std::max(1L, calls / 6);
+    for (long number = 1; number <= calls;
+         number += number + step > calls && number < calls ? calls - number : step)
+      numbers.push_back(number);
+    return numbers;
+  }
   /// The command with `runs` of its allocations refused in turn.
   void expect_allocations_may_fail(const Job& job, long runs) {
-    long calls = 0;
-    ASSERT_EQ(run_with_fault(job.words + at(job.output), "malloc", 0, &calls).code, 0);
+    std::map<std::string, long> counts;
+    ASSERT_EQ(run_with_fault(job.words + at(job.output), "malloc", 0, &counts).code, 0);
+    const long calls = counts["malloc"];
     std::filesystem::remove(at(job.output));
     EXPECT_GT(calls, 1000);
     // Before main the loader and the standard library allocate; there is nobody to say anything yet.
@@ -66,31 +89,29 @@ TEST_F(Faults, EveryCallThatWritesMayFail) {
   for (const Job& job : picture_jobs())
     all.push_back(job);
   all.push_back(build_job());
-  for (const Job& job : all)
-    for (const char* kind : {"open", "write", "fsync", "rename", "close"}) {
-      long calls = 0;
-      const Outcome outcome = run_with_fault(job.words + at(job.output), kind, 0, &calls);
-      ASSERT_EQ(outcome.code, 0) << job.words << outcome.err;
-      EXPECT_GT(calls, 0) << job.words << kind;
-      std::filesystem::remove(at(job.output));
-      // Many writes of one stream are alike: the first, the last and some between.
-      const long step = std::max(1L, calls / 6);
-      for (long number = 1; number <= calls;
-           number += number + step > calls && number < calls ? calls - number : step)
-        expect_nothing_lost(job, kind, number);
+  for (const Job& job : all) {
+    std::map<std::string, long> counts;
+    const Outcome outcome = run_with_fault(job.words + at(job.output), "none", 0, &counts);
+    ASSERT_EQ(outcome.code, 0) << job.words << outcome.err;
+    std::filesystem::remove(at(job.output));
+    for (size_t k = 0; k < std::size(kinds); ++k) {
+      EXPECT_TRUE(counts[kinds[k]] > 0 || k >= needed) << job.words << kinds[k];
+      for (const long number : some_of(counts[kinds[k]]))
+        expect_nothing_lost(job, kinds[k], number);
     }
+  }
 }
 
 TEST_F(Faults, ASequenceIsThereAsAWholeOrNotAtAll) {
   const std::string words =
       "bake " + at("rig.glb") + " --shapes arkit --format obj-sequence -o " + at("shapes");
   const std::set<std::string> before = names();
-  for (const char* kind : {"open", "write", "fsync", "rename", "close"}) {
-    long calls = 0;
-    ASSERT_EQ(run_with_fault(words, kind, 0, &calls).code, 0) << kind;
-    EXPECT_GT(calls, 1) << kind;
-    const auto whole = std::distance(std::filesystem::directory_iterator(at("shapes")), {});
-    for (long number = 1; number <= calls; ++number) {
+  std::map<std::string, long> counts;
+  ASSERT_EQ(run_with_fault(words, "none", 0, &counts).code, 0);
+  const auto whole = std::distance(std::filesystem::directory_iterator(at("shapes")), {});
+  for (const char* kind : {"open", "write", "fsync", "rename", "close", "fchmod", "mkdir"}) {
+    EXPECT_GT(counts[kind], 0) << kind;
+    for (long number = 1; number <= counts[kind]; ++number) {
       std::filesystem::remove_all(at("shapes"));
       const Outcome outcome = run_with_fault(words, kind, number);
       if (outcome.code == 0) {
@@ -101,7 +122,33 @@ TEST_F(Faults, ASequenceIsThereAsAWholeOrNotAtAll) {
         EXPECT_EQ(names(), before) << kind << number;
       }
     }
-    std::filesystem::remove_all(at("shapes"));
+  }
+}
+
+/// A batch's own calls: the tools that it starts are not the shim's.
+TEST_F(Faults, ABatchKeepsItsResultsAndIsResumed) {
+  std::ofstream(at("none.obj")) << "v 0 0 0\n";
+  std::ofstream(at("heads.jsonl")) << R"({"head": "none.obj", "id": "none"})"
+                                   << "\n";
+  const std::string words = "batch " + at("heads.jsonl") + " -o " + at("heads") + " --jobs 1 --retry-failed",
+                    record = at("heads/none/job.json");
+  for (const bool has_results : {false, true}) {
+    std::map<std::string, long> counts;
+    ASSERT_EQ(run_with_fault(words, "none", 0, &counts).code, 1);
+    ASSERT_NE(text_of(record).find("\"done\": false"), std::string::npos);
+    for (const char* kind : kinds)
+      for (const long number : some_of(counts[kind])) {
+        const std::string where = kind + std::string(" ") + std::to_string(number);
+        if (!has_results) std::filesystem::remove_all(at("heads"));
+        const Outcome outcome = run_with_fault(words, kind, number);
+        EXPECT_EQ(outcome.code, 1) << where << outcome.err;
+        EXPECT_EQ(outcome.err.find("internal error"), std::string::npos) << where << outcome.err;
+        EXPECT_TRUE(std::filesystem::exists(record) || !has_results) << where;
+        const Outcome again = run_with_fault(words, "none", 0);
+        EXPECT_NE(again.out.find("1 failed"), std::string::npos) << where << again.out << again.err;
+        EXPECT_NE(text_of(record).find("no triangles"), std::string::npos) << where << text_of(record);
+        EXPECT_TRUE(std::filesystem::is_empty(at("heads/.work"))) << where;
+      }
   }
 }
 

@@ -78,6 +78,26 @@ TEST_F(Interrupted, EveryStageEndsAtOnce) {
     EXPECT_EQ(name.find(".part"), std::string::npos) << name;
 }
 
+TEST_F(Interrupted, NoEmptyFolderIsLeft) {
+  rigging::write_embedded_head(at("head.obj"), at("landmarks.json"));
+  const std::set<std::string> before = names();
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"build", at("head.obj"), "-o", at("built.glb"), "--report", at("pages")},
+        std::vector<std::string>{"fit", at("rig.glb"), "--target", at("smile.ply"), "-o", at("found.json"),
+                                 "--report", at("pages")}})
+    for (const int milliseconds : {20, 60, 200}) {
+      const pid_t child = start(words);
+      std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+      kill(child, SIGINT);
+      const int status = wait_for(child);
+      if (WIFEXITED(status) && WEXITSTATUS(status) == 0) {  // it was faster
+        std::filesystem::remove_all(at("pages"));
+        std::filesystem::remove(at("found.json"));
+      }
+      EXPECT_EQ(names(), before) << words[0] << milliseconds;
+    }
+}
+
 TEST_F(Interrupted, AFolderThatMayNotBeWrittenIsSaid) {
   const std::string locked = at("locked");
   std::filesystem::create_directories(locked);

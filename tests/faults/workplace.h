@@ -63,7 +63,15 @@ class Workplace : public ::testing::Test {
     const Job build = build_job();
     EXPECT_EQ(std::system((test::tool().string() + " " + build.words + at("whole.glb") + " --quiet").c_str()),
               0);
+    EXPECT_EQ(std::system((test::tool().string() + " snapshot record " + at("rig.glb") + " -o " +
+                           at("then.json") + " --quiet")
+                              .c_str()),
+              0);
+    std::ofstream(at("then.xml")) << "what was there before";
     return {{"render " + at("rig.glb") + " --size 64 -o ", "picture.png"},
+            {"snapshot check " + at("rig.glb") + " --against " + at("then.json") + " --junit " +
+                 at("then.xml") + " --report ",
+             "then.html"},
             {"check " + at("whole.glb") + " --sheet ", "sheet.png"}};
   }
   /// Writes a head, for a build of it, which takes seconds.

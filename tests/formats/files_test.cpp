@@ -42,8 +42,8 @@ TEST_F(Files, OpensWhatLiesBesideAndBelow) {
   const fs::path owner = folder_ / "in" / "head.gltf";
   for (const char* name :
        {"tex/skin \xC3\xA4.png", "tex\\skin \xC3\xA4.png", "./tex/../tex/skin \xC3\xA4.png"})
-    EXPECT_TRUE(read_beside(owner, name, false).bytes) << name;
-  EXPECT_NE(read_beside(owner, "tex/gone.png", false).why.find("is not there"), std::string::npos);
+    EXPECT_TRUE(read_beside(owner, name, Outside::refused).bytes) << name;
+  EXPECT_NE(read_beside(owner, "tex/gone.png", Outside::refused).why.find("is not there"), std::string::npos);
 }
 
 TEST_F(Files, OpensNothingOutsideUnlessTold) {
@@ -54,10 +54,13 @@ TEST_F(Files, OpensNothingOutsideUnlessTold) {
   for (const std::string& name :
        {std::string("../secret.txt"), (folder_ / "secret.txt").string(), std::string("tex/../../secret.txt"),
         std::string("..\\secret.txt"), std::string("link.png"), std::string("../inside/x.png")}) {
-    const FileBeside refused = read_beside(owner, name, false);
+    const FileBeside refused = read_beside(owner, name, Outside::refused_by_default);
     EXPECT_FALSE(refused.bytes) << name;
     EXPECT_NE(refused.why.find("--allow-outside"), std::string::npos) << name;
-    EXPECT_TRUE(read_beside(owner, name, true).bytes) << name;
+    const FileBeside without_option = read_beside(owner, name, Outside::refused);
+    EXPECT_FALSE(without_option.bytes) << name;
+    EXPECT_EQ(without_option.why.find("--"), std::string::npos) << without_option.why;
+    EXPECT_TRUE(read_beside(owner, name, Outside::allowed).bytes) << name;
   }
 }
 

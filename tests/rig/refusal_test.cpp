@@ -117,8 +117,9 @@ TEST(Refusal, WrongAccessors) {
 TEST(Refusal, ExtremeButFiniteNumbers) {
   const auto scaled = [](double factor) {
     return [factor](Json& root) {
-      for (Json& value : extension(root, "FASCIA_tissue")["inputToMetres"])
-        value = factor * value.get<double>();
+      Json& matrix = extension(root, "FASCIA_tissue")["inputToMetres"];
+      for (size_t k = 0; k < 15; ++k)  // the last stays 1
+        matrix[k] = factor * matrix[k].get<double>();
     };
   };
   for (const double factor : {0.0, 1e-30, 1e30})
@@ -129,6 +130,19 @@ TEST(Refusal, ExtremeButFiniteNumbers) {
                   value = 0.0;
               }),
               "toRig");
+}
+
+TEST(Refusal, MapsThatAreNotAffine) {
+  for (const auto& [place, value] : {std::pair(15, 0.0), std::pair(15, 0.001), std::pair(3, 1e3),
+                                     std::pair(7, 1e-3), std::pair(11, 5.0)}) {
+    EXPECT_SAYS(
+        refusal([&](Json& root) { extension(root, "FASCIA_tissue")["inputToMetres"][place] = value; }),
+        "inputToMetres: the last row");
+    EXPECT_SAYS(refusal([&](Json& root) {
+                  extension(root, "FASCIA_tissue")["levels"][0]["bindings"][0]["toRig"][place] = value;
+                }),
+                "toRig: the last row");
+  }
 }
 
 TEST(Refusal, ValuesOutOfRange) {

@@ -170,6 +170,9 @@ TEST(Tables, APauseOfTheRecorderIsShortened) {
   const Curves keyed = read("time,jawOpen\n0,0\n700,1\n1400,0\n");
   EXPECT_NEAR(keyed.duration(), 1400.0, 1e-9);
   EXPECT_FALSE(has_note(keyed, "nothing was recorded"));
+  EXPECT_TRUE(has_note(keyed, "there is no row for 700 s from 700 s on"));
+  EXPECT_TRUE(has_note(read("time,jawOpen\n0,0\n3600,1\n"), "there is no row for 3600 s from 0 s on"));
+  EXPECT_FALSE(has_note(read("time,jawOpen\n0,0\n60,1\n"), "there is no row"));
 }
 
 TEST(Tables, RowsALittleOutOfOrderAreSortedAndTwoTakesAreRefused) {

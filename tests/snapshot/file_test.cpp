@@ -23,6 +23,7 @@ TEST(Packing, GivesBackEveryNumber) {
     EXPECT_EQ(unpack(text, stride, numbers.size()), numbers) << stride;
     EXPECT_THROW(unpack(text, stride, numbers.size() + 1), Error);
     EXPECT_THROW(unpack(text, stride, numbers.size() - 1), Error);
+    EXPECT_THROW(unpack(text, stride, size_t{1} << 40), Error) << "before memory is taken for them";
   }
   EXPECT_EQ(pack({}, 3), "");
   EXPECT_TRUE(unpack("", 3, 0).empty());
@@ -108,6 +109,44 @@ TEST(File, RefusesWhatIsNoSnapshot) {
     } catch (const Error& error) {
       EXPECT_EQ(std::string(error.what()).rfind("'file'", 0), 0U) << error.what();
     }
+}
+
+std::string refusal_of(const std::string& text) {
+  try {
+    from_text(text, "'file'");
+    return "none";
+  } catch (const Error& error) {
+    return error.what();
+  }
+}
+
+TEST(File, BoundsWhatAllRegionsAndStatesTake) {
+  Snapshot snapshot = small();
+  snapshot.meshes = {{0, 0, 600'000}};
+  snapshot.regions = {{"chin", std::vector<Vertex>(600'000), 0.03},
+                      {"nose", std::vector<Vertex>(600'000), 0.03}};
+  for (State& state : snapshot.states)
+    state.quanta.assign(3 * snapshot.vertex_count(), 0);
+  EXPECT_NE(refusal_of(to_text(snapshot)).find("more than a million vertices"), std::string::npos);
+
+  snapshot.regions = {{"chin", std::vector<Vertex>(600'001), 0.03}};
+  for (State& state : snapshot.states)
+    state.quanta.assign(3 * snapshot.vertex_count(), 0);
+  EXPECT_NE(refusal_of(to_text(snapshot)).find("more vertices than the meshes have"), std::string::npos);
+
+  snapshot.regions = {{"chin", std::vector<Vertex>(600'000), 0.03}};
+  for (State& state : snapshot.states)
+    state.quanta.assign(3 * snapshot.vertex_count(), 0);
+  EXPECT_EQ(refusal_of(to_text(snapshot)), "none");
+  while (snapshot.poses.size() < 40) {
+    snapshot.poses.push_back(snapshot.poses[0]);
+    snapshot.states.push_back(snapshot.states[0]);
+  }
+  EXPECT_NE(refusal_of(to_text(snapshot)).find("more than twenty million places"), std::string::npos);
+}
+
+TEST(File, SaysHowDeepItMayBeNested) {
+  EXPECT_EQ(refusal_of(std::string(100000, '[')), "'file': it is nested more than 16 deep");
 }
 
 TEST(Poses, AreReadWithRegions) {
