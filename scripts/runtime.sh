@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # The runtime alone: configured without the builder, built, installed, and run: the samples on a rig that was released.
-#   scripts/runtime.sh [BUILD_FOLDER [CMAKE_OPTION...]]      build/runtime when left out; on Linux, macOS and Windows (Git's bash)
+#   scripts/runtime.sh [BUILD_FOLDER [CMAKE_OPTION...]]      build/runtime_alone when left out; on Linux, macOS and Windows (Git's bash)
 set -euo pipefail
 cd "$(dirname "$0")/.."
-build=${1:-build/runtime}
+build=${1:-build/runtime_alone}
 [ $# -eq 0 ] || shift
 rig=tests/data/released/rig-1.0.glb
 

@@ -26,7 +26,7 @@ packages=(
   nodejs npm slurmctld slurmd slurm-client munge
   # bindings and hosts: scripts/hosts.sh
   emscripten chromium python3-dev pybind11-dev python3-matplotlib unzip mono-mcs mono-runtime blender godot3-server godot3-runner
-  g++-mingw-w64-x86-64-posix wine wine64 lintian
+  g++-mingw-w64-x86-64-posix wine wine64 lintian zsh fish
 )
 
 missing=()

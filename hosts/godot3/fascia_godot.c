@@ -253,19 +253,11 @@ void godot_nativescript_init(void* handle) {
   static const struct {
     const char* name;
     godot_variant (*run)(godot_object*, void*, void*, int, godot_variant**);
-  } methods[] = {{"load", load},
-                 {"set_value", set_value},
-                 {"clear", clear},
-                 {"step", step},
-                 {"pose", pose},
-                 {"reset", reset},
-                 {"mesh_count", mesh_count},
-                 {"part", part},
-                 {"name", name},
-                 {"positions", positions},
-                 {"normals", normals},
-                 {"triangles", triangles},
-                 {"texcoords", texcoords}};
+  } methods[] = {
+      {"load", load},          {"set_value", set_value}, {"clear", clear},           {"step", step},
+      {"pose", pose},          {"reset", reset},         {"mesh_count", mesh_count}, {"part", part},
+      {"name", name},          {"positions", positions}, {"normals", normals},       {"triangles", triangles},
+      {"texcoords", texcoords}};
   const godot_instance_create_func create = {make, NULL, NULL};
   const godot_instance_destroy_func release = {destroy, NULL, NULL};
   const godot_method_attributes attributes = {GODOT_METHOD_RPC_MODE_DISABLED};

@@ -94,6 +94,29 @@ TEST_F(ShapeResponse, APoseDoesNotDependOnThePosesBefore) {
   }
 }
 
+TEST_F(ShapeResponse, MouthCloseClosesTheLipsOverAnOpenJaw) {
+  // Between the lips of the embedded head in the middle third of their width, in its own unit, millimetres.
+  const auto gap = [](float close) {
+    face->clear();
+    face->set("arkit:jawOpen", 1.0F);
+    face->set("arkit:mouthClose", close);
+    face->pose();
+    double upper = 1e9, lower = -1e9;
+    for (uint32_t mesh = 0; mesh < asset->info().mesh_count; ++mesh) {
+      const std::string name = asset->mesh(mesh).name;
+      for (const api::Vector3& position : face->positions(mesh)) {
+        if (std::abs(position[0]) > 8.0) continue;
+        if (name == "lip_upper") upper = std::min(upper, static_cast<double>(position[1]));
+        if (name == "lip_lower") lower = std::max(lower, static_cast<double>(position[1]));
+      }
+    }
+    return upper - lower;
+  };
+  const double open = gap(0.0F), closed = gap(1.0F);
+  EXPECT_GT(open, 15.0);
+  EXPECT_LT(closed, 0.1 * open);
+}
+
 TEST_F(ShapeResponse, GazeTurnsTheEyesInProportion) {
   const int32_t pitch = asset->find_channel("eye_pitch_left");
   ASSERT_GE(pitch, 0);

@@ -65,6 +65,13 @@ if [ -x "$prefix/bin/fascia" ]; then
   case "$page" in *.gz) gzip -dc "$page" ;; *) cat "$page" ;; esac | grep -q '[.]SH NAME'
   bash -c "set -e; . '$prefix/share/bash-completion/completions/fascia'; COMP_WORDS=(fascia bu); COMP_CWORD=1; _fascia; \
            test \"\${COMPREPLY[0]}\" = build"
+  zsh_file=$prefix/share/zsh/vendor-completions/_fascia fish_file=$prefix/share/fish/vendor_completions.d/fascia.fish
+  grep -q "'build:" "$zsh_file" && grep -q ' -a build' "$fish_file"
+  if command -v zsh >/dev/null; then zsh -n "$zsh_file"; fi
+  if command -v fish >/dev/null; then
+    fish -c "source '$fish_file'; complete -C 'fascia bu'" | grep -q '^build'
+    fish -c "source '$fish_file'; complete -C 'fascia build --det'" | grep -q '^--detail'
+  fi
 
   # samples/snapshot: a head's regression test holds, and fails for one whose jaw opens by another angle.
   LC_ALL=C sed 's/"openAngle":0\.4/"openAngle":0.3/' "$head" >"$place/changed.glb"

@@ -8,7 +8,9 @@
  * or, for a vertex of an eye, eye_matrix * rest. fascia_face_skinning gives the constant data once, as vertex
  * attributes; in each frame fascia_face_write_node_texture and fascia_face_bone_matrices give about ten
  * thousand numbers instead of every vertex. The shader functions are in skinning.glsl and skinning.wgsl
- * (installed in share/fascia/shaders). They reproduce fascia_face_positions to within 1e-5 m.
+ * (installed in share/fascia/shaders). They reproduce fascia_face_positions to within 1e-5 m. Normals are not
+ * among them: take them in the fragment shader from the derivatives of the position, or from the CPU with
+ * fascia_face_write_normals.
  */
 #ifndef FASCIA_GPU_H
 #define FASCIA_GPU_H
