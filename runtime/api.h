@@ -75,10 +75,14 @@ void hand_out_vectors(const std::vector<Vector>& vectors, fascia_vectors* to) {
            to);
 }
 
+/// Bytes from one vertex to the next: more is a negative number of a host's.
+constexpr std::size_t widest_stride = std::size_t{1} << 20;
+
 /// Copies vectors to the host's memory.
 template <class Vector>
 void write_out(const std::vector<Vector>& vectors, void* to, std::size_t stride, std::size_t capacity) {
-  require(to != nullptr && stride >= sizeof(Vector), "the memory is null or the stride too small");
+  require(to != nullptr && stride >= sizeof(Vector) && stride <= widest_stride,
+          "the memory is null, or the stride too small or more than a megabyte");
   require(capacity >= vectors.size(), "the memory holds fewer vertices than the mesh has");
   for (std::size_t v = 0; v < vectors.size(); ++v)
     std::memcpy(static_cast<char*>(to) + v * stride, vectors[v].data(), sizeof(Vector));

@@ -29,6 +29,14 @@ fascia::sim::Vec3 bounded_force(const fascia::sim::Vec3& force) {
   return size > strongest ? fascia::sim::Vec3(force * (strongest / size)) : force;
 }
 
+bool is_rigid(const Eigen::Matrix4f& place) {
+  constexpr float tolerance = 1e-3F, farthest = 1e6F;  // metres
+  const Eigen::Matrix3f turn = place.topLeftCorner<3, 3>();
+  return (turn * turn.transpose() - Eigen::Matrix3f::Identity()).cwiseAbs().maxCoeff() < tolerance &&
+         turn.determinant() > 0.0F && place.topRightCorner<3, 1>().cwiseAbs().maxCoeff() <= farthest &&
+         (place.row(3) - Eigen::RowVector4f(0, 0, 0, 1)).cwiseAbs().maxCoeff() < tolerance;
+}
+
 }  // namespace
 
 extern "C" {
@@ -118,6 +126,7 @@ fascia_result fascia_face_move_head(fascia_face* face, const float matrix[16], f
     const Eigen::Matrix4f place = Eigen::Map<const Eigen::Matrix4f>(matrix);
     require(place.allFinite() && std::isfinite(inertia_scale),
             "the matrix or the scale is not a finite number");
+    require(is_rigid(place), "the matrix is not a rotation with a translation of at most 1000 kilometres");
     checked(face).move_head(place, inertia_scale);
     return FASCIA_OK;
   });

@@ -33,8 +33,9 @@ fascia_result fascia_face_write_deltas(fascia_face* handle, uint32_t mesh, fasci
     const auto& positions = face.positions(mesh);
     const auto& rest = face.shape(mesh).rest();
     require(format == FASCIA_DELTA_FLOAT32 || format == FASCIA_DELTA_SNORM16, "unknown format of deltas");
-    require(to != nullptr && scale != nullptr && stride >= (format == FASCIA_DELTA_FLOAT32 ? 12U : 8U),
-            "the memory or the scale is null, or the stride too small");
+    require(to != nullptr && scale != nullptr && stride >= (format == FASCIA_DELTA_FLOAT32 ? 12U : 8U) &&
+                stride <= widest_stride,
+            "the memory or the scale is null, or the stride too small or more than a megabyte");
     require(capacity >= positions.size(), "the memory holds fewer vertices than the mesh has");
     float largest = 0.0F;
     for (std::size_t v = 0; v < positions.size(); ++v)

@@ -100,6 +100,9 @@ class Asset {
   std::vector<std::vector<const char*>> set_members;    ///< by set
   std::vector<std::vector<const char*>> fibre_muscles;  ///< by level
 
+  /// A hash of the rig's bytes.
+  uint64_t contents() const { return contents_; }
+
  private:
   void index_channels();
   void index_sets();
@@ -108,7 +111,7 @@ class Asset {
   std::vector<Member> members_;
   std::map<std::string, Target, IgnoringCase> names_;
   std::map<std::string, Target, std::less<>> spellings_;  ///< as `spelled` gives them
-  uint64_t serial_ = 0;
+  uint64_t serial_ = 0, contents_ = 0;
   BoneChannels bones_;
   sim::JawMuscles jaw_muscles_;
   mutable std::mutex models_mutex_;

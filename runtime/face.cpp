@@ -78,10 +78,9 @@ uint64_t Face::state_kind() const {
     for (std::size_t i = 0; i < size; ++i)
       kind = (kind ^ static_cast<const uint8_t*>(bytes)[i]) * 1099511628211ULL;
   };
-  const auto& rest = asset_->rig().tissue.levels[level_].rest;
-  add(rest.data(), rest.size() * sizeof rest.front());
-  for (const char* name : asset_->channel_names)
-    add(name, std::char_traits<char>::length(name));
+  const uint64_t rig = asset_->contents();
+  add(&rig, sizeof rig);
+  add(&level_, sizeof level_);
   add(&options_.solver, sizeof options_.solver);
   return kind;
 }

@@ -139,10 +139,16 @@ void Mixer::turn_eyes() {
   if (gaze_.weight <= 0.0F) return;
   const BoneChannels& bones = asset_->bones();
   const rig::Skull& skull = asset_->rig().skull;
+  // Eyes converge on points as near as 6 cm, the near point of convergence; nearer, beside and behind the
+  // head they turn together.
+  constexpr float nearest = 0.06F, most = 0.5F;  // metres; radians from the direction of both
+  const auto yaw = [](const Vec3f& along) { return std::atan2(along.x(), std::max(along.z(), 1e-3F)); };
+  const Vec3f middle = gaze_.point - 0.5F * (skull.eye_left.centre + skull.eye_right.centre);
+  const float vergence = most * std::clamp(middle.z() / nearest, 0.0F, 1.0F);
   for (std::size_t eye = 0; eye < 2; ++eye) {
     const Vec3f along = gaze_.point - (eye == 0 ? skull.eye_left.centre : skull.eye_right.centre);
     if (along.norm() < 1e-4F) continue;  // a point in the eye itself
-    const float angles[2] = {std::atan2(along.x(), along.z()),
+    const float angles[2] = {std::clamp(yaw(along), yaw(middle) - vergence, yaw(middle) + vergence),
                              std::atan2(along.y(), std::hypot(along.x(), along.z()))};
     const int32_t channels[2] = {bones.eye_yaw[eye], bones.eye_pitch[eye]};
     for (int axis = 0; axis < 2; ++axis)

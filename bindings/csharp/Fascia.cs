@@ -116,6 +116,8 @@ namespace Fascia
         {
             if (result != 0) throw new FasciaException(result, Text(fascia_last_message()));
         }
+        /// A count of bytes or of elements; OverflowException when it is negative.
+        public static UIntPtr Size(int count) { return (UIntPtr)checked((uint)count); }
         public static uint Size<T>() where T : struct { return (uint)Marshal.SizeOf(typeof(T)); }
     }
 
@@ -317,12 +319,12 @@ namespace Fascia
         public void WritePositions(int mesh, float[] to) { fixed (float* data = to) WritePositions(mesh, data, 12, to.Length / 3); }
         public void WritePositions(int mesh, void* to, int stride, int capacity)
         {
-            Native.Check(Native.fascia_face_write_positions(handle, (uint)mesh, to, (UIntPtr)stride, (UIntPtr)capacity));
+            Native.Check(Native.fascia_face_write_positions(handle, (uint)mesh, to, Native.Size(stride), Native.Size(capacity)));
         }
         public void WriteNormals(int mesh, float[] to) { fixed (float* data = to) WriteNormals(mesh, data, 12, to.Length / 3); }
         public void WriteNormals(int mesh, void* to, int stride, int capacity)
         {
-            Native.Check(Native.fascia_face_write_normals(handle, (uint)mesh, to, (UIntPtr)stride, (UIntPtr)capacity));
+            Native.Check(Native.fascia_face_write_normals(handle, (uint)mesh, to, Native.Size(stride), Native.Size(capacity)));
         }
 
         public byte[] Save()

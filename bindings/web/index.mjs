@@ -99,6 +99,18 @@ class Fascia {
   }
 }
 
+/** The number that stands for a word of an option. */
+function chosen(option, words, word) {
+  if (Object.hasOwn(words, word)) return words[word];
+  throw new FasciaError(`there is no ${option} '${word}': ${Object.keys(words).join(', ')}`);
+}
+
+/** `list` as 32-bit floats, exactly `count` of them. */
+function numbers(what, list, count) {
+  if (list.length !== count) throw new FasciaError(`the ${what} has ${list.length} numbers, not ${count}`);
+  return Float32Array.from(list);
+}
+
 /** A loaded rig. `dispose` it when no more faces will be made; faces keep what they need. */
 class Asset {
   constructor(fascia, handle) {
@@ -127,7 +139,9 @@ class Asset {
 
   createFace({level = -1, space = 'mesh', iterations = 0} = {}) {
     const index = typeof level === 'string' ? this.levels.findIndex(({name}) => name === level) : level;
-    const handle = this.fascia.exports.web_face_create(this.handle, spaces[space], index, iterations);
+    if (typeof level === 'string' && index < 0)
+      throw new FasciaError(`there is no level '${level}': ${this.levels.map(({name}) => name).join(', ')}`);
+    const handle = this.fascia.exports.web_face_create(this.handle, chosen('space', spaces, space), index, iterations);
     if (handle === 0) this.fascia.fail();
     return new Face(this, handle);
   }
@@ -148,9 +162,11 @@ class Face {
   }
 
   /** The channels' own values, to read and write. */
-  get values() { return this.fascia.floats(this.exports.fascia_face_values(this.handle), this.asset.channels.length); }
-  get effectiveValues() {
-    return this.fascia.floats(this.exports.fascia_face_effective_values(this.handle), this.asset.channels.length);
+  get values() { return this.channelList(this.exports.fascia_face_values(this.handle)); }
+  get effectiveValues() { return this.channelList(this.exports.fascia_face_effective_values(this.handle)); }
+  channelList(at) {
+    if (at === 0) throw new FasciaError('the face was disposed of');
+    return this.fascia.floats(at, this.asset.channels.length);
   }
   set(name, value) { this.fascia.withText(name, (at) => this.exports.fascia_face_set(this.handle, at, value)); }
   get(name) {
@@ -167,7 +183,7 @@ class Face {
       try {
         this.set(name, value);
       } catch (error) {
-        if (!(error instanceof FasciaError)) throw error;
+        if (!(error instanceof FasciaError) || !Number.isFinite(value)) throw error;
         unknown.push(name);
       }
     }
@@ -176,10 +192,11 @@ class Face {
   clear() { this.fascia.check(this.exports.fascia_face_clear(this.handle)); }
 
   setLayer(index, {combine = 'add', weight = 1, mask = null} = {}) {
-    const set = (at) => this.exports.web_face_set_layer(this.handle, index, combines[combine], weight, at);
+    const how = chosen('combine', combines, combine);
+    const set = (at) => this.exports.web_face_set_layer(this.handle, index, how, weight, at);
     if (!mask) return this.fascia.check(set(0));
     let result = 0;
-    this.fascia.withBytes(Float32Array.from(mask), (at) => { result = set(at); return 1; });
+    this.fascia.withBytes(numbers('mask', mask, this.asset.channels.length), (at) => { result = set(at); return 1; });
     this.fascia.check(result);
   }
   layerValues(layer) {
@@ -194,7 +211,7 @@ class Face {
   lookAt(point, weight = 1) {
     if (!point) return this.fascia.check(this.exports.fascia_face_look_at(this.handle, 0, 0));
     let result = 0;
-    this.fascia.withBytes(Float32Array.from(point), (at) => {
+    this.fascia.withBytes(numbers('point', point, 3), (at) => {
       result = this.exports.fascia_face_look_at(this.handle, at, weight);
       return 1;
     });
@@ -214,7 +231,7 @@ class Face {
   /** `matrix`: 16 numbers, column-major, a rigid transform in metres. */
   moveHead(matrix, inertiaScale = 1) {
     let result = 0;
-    this.fascia.withBytes(Float32Array.from(matrix), (at) => {
+    this.fascia.withBytes(numbers('matrix', matrix, 16), (at) => {
       result = this.exports.fascia_face_move_head(this.handle, at, inertiaScale);
       return 1;
     });

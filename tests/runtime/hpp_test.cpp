@@ -199,6 +199,8 @@ TEST(Hpp, WritesToTheHostsMemory) {
   face.write_positions(0, wide.data(), sizeof(Vector4), count);
   EXPECT_EQ(wide[150][0], face.positions(0)[150][0]);
   EXPECT_EQ(wide[150][3], 9.0F);
+  EXPECT_THROW(face.write_positions(0, wide.data(), static_cast<size_t>(-12), count), Error)
+      << "a negative stride";
   face.write_normals(0, wide.data(), sizeof(Vector4), count);
   EXPECT_EQ(wide[150][0], face.normals(0)[150][0]);
   face.write_tangents(0, wide.data(), sizeof(Vector4), count);

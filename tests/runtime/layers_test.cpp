@@ -204,6 +204,12 @@ TEST(Gaze, TurnsEyesToAPoint) {
   ASSERT_EQ(fascia_face_look_at(face.face, aside, 1.0F), FASCIA_OK);
   ASSERT_EQ(fascia_face_step(face.face, 0.01F), FASCIA_OK);
   EXPECT_EQ(effective[eye_yaw], 0.6F);
+  for (const float side : {-0.05F, 0.05F}) {  // behind the head both eyes turn to that side
+    const float behind[3] = {side, 1.63F, -0.5F};
+    ASSERT_EQ(fascia_face_look_at(face.face, behind, 1.0F), FASCIA_OK);
+    ASSERT_EQ(fascia_face_step(face.face, 0.01F), FASCIA_OK);
+    EXPECT_EQ(effective[eye_yaw], side < 0.0F ? -0.6F : 0.6F);
+  }
   ASSERT_EQ(fascia_face_look_at(face.face, nullptr, 1.0F), FASCIA_OK);
   ASSERT_EQ(fascia_face_step(face.face, 0.01F), FASCIA_OK);
   EXPECT_EQ(effective[eye_yaw], 0.0F);

@@ -131,6 +131,11 @@ TEST_F(Moved, ATeleportAndAResetCauseNoInertia) {
   EXPECT_LT(apart(positions(moving), rest), 2e-6);
   float bad[16] = {NAN};
   EXPECT_EQ(fascia_face_move_head(moving, bad, 1.0F), FASCIA_ERROR_ARGUMENT);
+  const float none[16] = {}, larger[16] = {2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 1},
+              mirrored[16] = {-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1},
+              far[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1e20F, 0, 0, 1};
+  for (const float* matrix : {none, larger, mirrored, far})
+    EXPECT_EQ(fascia_face_move_head(moving, matrix, 1.0F), FASCIA_ERROR_ARGUMENT) << matrix[0];
 }
 
 TEST_F(Moved, AnAbsurdForceCountsAsTheStrongest) {

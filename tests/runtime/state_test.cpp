@@ -117,6 +117,20 @@ std::vector<uint8_t> rig_of_two_levels() {
   return fascia::rig::write(tiny_head(), rig);
 }
 
+TEST(State, OfAnotherRigIsRejectedThoughItsPlacesAreTheSame) {
+  fascia::rig::Rig other = tiny_rig();
+  for (float& mass : other.tissue.levels[0].masses)
+    mass *= 1.05F;
+  const std::vector<uint8_t> bytes = fascia::rig::write(tiny_head(), other);
+  fascia_asset* asset = nullptr;
+  ASSERT_EQ(fascia_asset_load(bytes.data(), bytes.size(), &asset), FASCIA_OK) << fascia_last_message();
+  const Loaded rig;
+  const Face face(rig.asset), heavier(asset);
+  const std::vector<uint8_t> state = saved(face.face);
+  EXPECT_EQ(fascia_face_restore(heavier.face, state.data(), state.size()), FASCIA_ERROR_MISMATCH);
+  fascia_asset_release(asset);
+}
+
 TEST(Levels, SwitchContinuously) {
   const Loaded rig(rig_of_two_levels());
   const Face face(rig.asset), fine(rig.asset);
