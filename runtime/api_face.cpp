@@ -1,3 +1,5 @@
+#include <Eigen/LU>
+
 #include "runtime/api.h"
 #include "runtime/crowd.h"
 
