@@ -338,8 +338,8 @@ FASCIA_API fascia_result fascia_face_set_acceleration(fascia_face* face, const f
 /** Sets the pose of the head in the world: a rigid transform in metres, 4 x 4, column-major, from the head's
  * frame. In the next step soft tissue lags behind the head's acceleration (at most 60 m/s^2), scaled by
  * `inertia_scale` (1 is physical, 0 none). A jump of more than half a metre in one step counts as a teleport
- * and causes no motion. Call it before each step while the head moves. FASCIA_ERROR_ARGUMENT for a matrix that
- * scales, shears or mirrors, or whose translation exceeds 1000 km. */
+ * and causes no motion. Call it before each step while the head moves. FASCIA_ERROR_ARGUMENT for a matrix
+ * that scales, shears or mirrors, or whose translation exceeds 1000 km. */
 FASCIA_API fascia_result fascia_face_move_head(fascia_face* face, const float matrix[16],
                                                float inertia_scale);
 
