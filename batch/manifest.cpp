@@ -209,7 +209,10 @@ Task task_of_environment(size_t count) {
 std::string key_of(const Head& head, const std::string& version) {
   std::string text = version + "\n" + formats::content_hash(head.file);
   // One that is missing is for the builder to complain of.
-  for (const formats::NamedFile& file : formats::named_files(head.file))
+  const bool is_allowed =
+      std::find(head.options.begin(), head.options.end(), "--allow-outside") != head.options.end();
+  const auto outside = is_allowed ? formats::Outside::allowed : formats::Outside::refused;
+  for (const formats::NamedFile& file : formats::named_files(head.file, outside))
     text += "\n" + file.name + ": " + (file.path ? formats::content_hash(*file.path) : "missing");
   std::error_code status;
   for (const fs::path& file : {head.landmarks, head.edits})

@@ -38,8 +38,9 @@ struct Task {
 /// above 0 is the number of tasks the user gave. Throws fascia::Error for variables that make no sense.
 Task task_of_environment(size_t count);
 
-/// What the results of a head depend on, as a hash: the bytes of its file and of those that it names in its
-/// folder, its options and `version`, the tool's. Throws fascia::Error when a file cannot be read.
+/// What the results of a head depend on, as a hash: the bytes of its file and of those that it names (in its
+/// folder, or anywhere with the option --allow-outside), its options and `version`, the tool's. Throws
+/// fascia::Error when a file cannot be read.
 std::string key_of(const Head& head, const std::string& version);
 
 }  // namespace fascia::batch

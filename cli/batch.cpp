@@ -37,8 +37,9 @@ struct BatchRequest {
   size_t megabytes = 4096, attempts = 2, at_once = 0;
   int task_index = -1;
   size_t task_count = 0;
-  bool has_checks = true, has_thumbnails = true, retries_failed = false, is_dry = false;
-  std::string time, partition;
+  bool has_checks = true, has_thumbnails = true, retries_failed = false, allow_outside = false,
+       is_dry = false;
+  std::string detail, time, partition;
 };
 
 std::atomic<bool> is_stopped = false;
@@ -87,9 +88,21 @@ std::string line_of(const batch::Record& record, batch::Fate fate) {
   return text;
 }
 
+/// The request's own options of `fascia build`; a head's, from its manifest, take their place.
+std::vector<batch::Head> heads_of(const BatchRequest& request, const std::string& source) {
+  std::vector<batch::Head> heads = batch::read_heads(source);
+  for (batch::Head& head : heads) {
+    std::vector<std::string>& words = head.options;
+    if (!request.detail.empty() && std::find(words.begin(), words.end(), "--detail") == words.end())
+      words.insert(words.end(), {"--detail", request.detail});
+    if (request.allow_outside) words.push_back("--allow-outside");
+  }
+  return heads;
+}
+
 void run_heads(const Common& common, const BatchRequest& request) {
   check_output_given(request);
-  const std::vector<batch::Head> all = batch::read_heads(request.source);
+  const std::vector<batch::Head> all = heads_of(request, request.source);
   const batch::Task task = task_of(request);
   const std::vector<batch::Head> heads = batch::share(all, task.index, task.count);
   batch::check_inputs(all, request.output);
@@ -158,7 +171,7 @@ void submit(const Common& common, const BatchRequest& request) {
   check_output_given(request);
   if (request.operand.empty())
     throw UsageError("'fascia batch submit' needs a manifest or a folder of heads");
-  const std::vector<batch::Head> all = batch::read_heads(request.operand);
+  const std::vector<batch::Head> all = heads_of(request, request.operand);
   batch::check_inputs(all, request.output);
   batch::check_results(all, request.output);
   const size_t heads = all.size();
@@ -187,6 +200,8 @@ void submit(const Common& common, const BatchRequest& request) {
   if (!request.has_checks) job.options.push_back("--no-check");
   if (!request.has_thumbnails) job.options.push_back("--no-thumbnail");
   if (request.retries_failed) job.options.push_back("--retry-failed");
+  if (request.allow_outside) job.options.push_back("--allow-outside");
+  if (!request.detail.empty()) job.options.insert(job.options.end(), {"--detail", request.detail});
   const fs::path script = job.output / "batch.sbatch";
   formats::write_text(script, batch::slurm_script(job));
   common.say("wrote " + script.string() + ": " + std::to_string(heads) + " heads in " +
@@ -260,6 +275,10 @@ void add_batch(const Command& tool, Common& common) {
       .range(0, 1e7);
   command.option("--attempts", &request->attempts, "Attempts for a head whose process crashes").range(1, 10);
   command.flag("--retry-failed", request->retries_failed, "Try heads again that failed before");
+  command.option("--detail", &request->detail, "Finest lattice of heads whose manifest names none")
+      .one_of({"low", "medium", "high"})
+      .default_text("the build's");
+  add_outside_option(command, request->allow_outside);
   command.flag("--check", request->has_checks, "Check each rig", true);
   command.flag("--thumbnail", request->has_thumbnails, "Draw each head", true);
   command.option("--task-index", &request->task_index, "Index of this task, from 0")

@@ -203,9 +203,7 @@ rigging::BuildReport build_file(const Common& common, const BuildRequest& reques
                      {"report", request.report.empty() ? 0.0 : 2.0}});
   progress.begin("reading");
   const anatomy::GenericAnatomy anatomy = anatomy_for(request.anatomy);
-  const formats::Scene scene = formats::read(
-      request.head,
-      {request.allow_outside ? formats::Outside::allowed : formats::Outside::refused_by_default});
+  const formats::Scene scene = formats::read(request.head, reading_options(request.allow_outside));
   formats::LandmarkFile landmarks;
   if (!request.landmarks.empty()) landmarks = formats::read_landmarks(request.landmarks);
   rigging::BuildOptions options = request.options;
@@ -284,8 +282,7 @@ void add_input_options(const Command& command, BuildRequest& request) {
   command.option("--skin", &request.options.prepare.skin, "Name of the mesh that is the skin")
       .default_text("found by its shape");
   add_anatomy_option(command, request.anatomy);
-  command.flag("--allow-outside", request.allow_outside,
-               "Open files referenced by a glTF outside its folder");
+  add_outside_option(command, request.allow_outside);
 }
 
 void add_anatomy_options(const Command& command, BuildRequest& request) {

@@ -25,6 +25,7 @@ using Json = nlohmann::ordered_json;
 struct CalibrateRequest {
   std::filesystem::path rig, scans, output;
   std::string level = "low", adjust = "all";
+  bool allow_outside = false;
   fit::CalibrationOptions options;
 };
 
@@ -101,10 +102,11 @@ void add_scans(const Common& common, const CalibrateRequest& request, fit::Subje
       continue;
     }
     common.progress("reading " + name);
-    const formats::Scene scene = formats::read(path);
+    const formats::Scene scene = formats::read(path, reading_options(request.allow_outside));
     if (has_rig_topology(subject, scene)) {
       FitTargetOptions options;
       options.as = "mesh";
+      options.allow_outside = request.allow_outside;
       cases.push_back({name, open_fit_targets(common, path, subject, options).target(0), std::move(row)});
       continue;
     }
@@ -123,6 +125,7 @@ void add_shapes(const Common& common, const CalibrateRequest& request, const fit
                 std::vector<std::string>& unknown) {
   FitTargetOptions options;
   options.as = "shapes";
+  options.allow_outside = request.allow_outside;
   const FitTargets shapes = open_fit_targets(common, request.scans, subject, options);
   for (size_t i = 0; i < shapes.names.size(); ++i) {
     std::vector<float> row = tables.row(shapes.names[i]);
@@ -300,6 +303,7 @@ void add_calibrate(const Command& tool, Common& common) {
       .option("--prior", &request->options.prior,
               "Penalty for a gain different from 1, relative to the expressions' squared motion")
       .range(1e-6, 1e3);
+  add_outside_option(command, request->allow_outside);
   command.run([request, &common] { run(common, *request); });
 }
 

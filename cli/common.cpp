@@ -114,6 +114,14 @@ void add_solver_option(const Command& command, std::string& solver) {
   command.option("--solver", &solver, "Solver").one_of({"own", "reference", "bullet"});
 }
 
+void add_outside_option(const Command& command, bool& is_allowed) {
+  command.flag("--allow-outside", is_allowed, "Open files that inputs reference outside their folders");
+}
+
+formats::ReadOptions reading_options(bool is_allowed) {
+  return {is_allowed ? formats::Outside::allowed : formats::Outside::refused_by_default};
+}
+
 void add_level_option(const Command& command, std::string& level) {
   command.option("--level", &level, "Level of detail: low, medium or high, if the rig has it")
       .default_text("the rig's finest");

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/options.h"
+#include "formats/files.h"
 #include "formats/partial.h"
 #include "geometry/for_each.h"
 
@@ -62,6 +63,9 @@ void add_rig_argument(const Command& command, std::filesystem::path& rig);
 void add_set_options(const Command& command, std::vector<std::string>& set,
                      std::filesystem::path& activations);
 void add_solver_option(const Command& command, std::string& solver);
+void add_outside_option(const Command& command, bool& is_allowed);
+/// How to read inputs, by what `--allow-outside` says.
+formats::ReadOptions reading_options(bool is_allowed);
 void add_level_option(const Command& command, std::string& level);
 
 /// Makes `folder` for a command's results unless it is there, as one of `together` where that is given.

@@ -25,6 +25,7 @@ struct FaceRequest {
   std::string depths, units = "auto";
   reconstruction::Person person;
   double tissue_scale = 1.0;
+  bool allow_outside = false;
 };
 
 double unit_of(const std::string& text) {
@@ -105,7 +106,7 @@ void run(const Common& common, const FaceRequest& request) {
   options.tissue_scale = request.tissue_scale;
   Progress progress(common, "face", {{"skull", 1.0}, {"skin", 2.0}});
   progress.begin("skull");
-  const formats::Scene scene = formats::read(request.skull);
+  const formats::Scene scene = formats::read(request.skull, reading_options(request.allow_outside));
   const TriangleMesh skull = skull_of(scene);
   const auto of_skull = [&](const Error& error) {
     return Error("'" + request.skull.string() + "': " + error.what());
@@ -184,6 +185,7 @@ void add_face(const Command& tool, Common& common) {
       .option("--sheet", &request->sheet, "Picture of the head, the head over the skull and the band (.png)")
       .default_text("none");
   command.option("--rig", &request->rig, "Also build the head's rig (.glb)").default_text("none");
+  add_outside_option(command, request->allow_outside);
   add_anatomy_option(command, request->anatomy);
   command.run([request, &common] { run(common, *request); });
 }

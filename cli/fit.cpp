@@ -78,7 +78,7 @@ std::optional<formats::Scene> scan_of(const FitRequest& request, const fit::Subj
   const bool may_be = as == "auto" && !std::filesystem::is_directory(path) && extension != ".pc2" &&
                       extension != ".mdd" && !is_landmark_file(path);
   if (as != "scan" && !may_be) return {};
-  formats::Scene scene = formats::read(path);
+  formats::Scene scene = formats::read(path, reading_options(request.reading.allow_outside));
   if (as != "scan" && has_rig_topology(subject, scene)) return {};
   return scene;
 }
@@ -221,6 +221,7 @@ void add_fit(const Command& tool, Common& common) {
       .option("--head-pose", &request->reading.head_pose,
               "auto: remove the head's rigid motion if parts that no muscle moves have moved")
       .one_of({"auto", "fixed"});
+  add_outside_option(command, request->reading.allow_outside);
   command.option("--fps", &request->reading.fps, "Frames a second of what holds no times").range(1.0, 1000.0);
   command
       .option("--ridge", &request->fitting.ridge, "Cost of squared activations, mm^2 of mean squared error")

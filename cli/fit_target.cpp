@@ -35,7 +35,8 @@ FitTargets cache_targets(const std::filesystem::path& path, const TargetMaker& m
   return targets;
 }
 
-FitTargets sequence_targets(const std::filesystem::path& folder, const TargetMaker& maker, double fps) {
+FitTargets sequence_targets(const std::filesystem::path& folder, const TargetMaker& maker,
+                            const FitTargetOptions& options) {
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const std::string extension = extension_of(entry.path());
@@ -48,9 +49,11 @@ FitTargets sequence_targets(const std::filesystem::path& folder, const TargetMak
   targets.kind = FitTargets::Kind::take;
   for (size_t f = 0; f < files.size(); ++f) {
     targets.names.push_back(files[f].filename().string());
-    targets.times.push_back(static_cast<double>(f) / fps);
+    targets.times.push_back(static_cast<double>(f) / options.fps);
   }
-  targets.target = [files, maker](size_t frame) { return maker.of_scene(formats::read(files[frame])); };
+  targets.target = [files, maker, reading = reading_options(options.allow_outside)](size_t frame) {
+    return maker.of_scene(formats::read(files[frame], reading));
+  };
   return targets;
 }
 
@@ -134,9 +137,10 @@ FitTargets open_fit_targets(const Common& common, const std::filesystem::path& p
                             const fit::Subject& subject, const FitTargetOptions& options) {
   const TargetMaker maker(subject, options.head_pose != "fixed");
   const std::string extension = extension_of(path);
-  if (std::filesystem::is_directory(path)) return sequence_targets(path, maker, options.fps);
+  if (std::filesystem::is_directory(path)) return sequence_targets(path, maker, options);
   if (extension == ".pc2" || extension == ".mdd") return cache_targets(path, maker, options.fps);
-  const auto scene = std::make_shared<formats::Scene>(formats::read(path));
+  const auto scene =
+      std::make_shared<formats::Scene>(formats::read(path, reading_options(options.allow_outside)));
   if (options.as == "take" || options.as == "auto")
     if (formats::ShapeCurves curves = formats::shape_curves(*scene);
         curves.times.size() > (options.as == "take" ? 0 : 1))

@@ -22,8 +22,9 @@ struct FitTargets {
 struct FitTargetOptions {
   std::string as = "auto";  ///< auto, mesh, shapes or take: what to read a glTF file with morph targets as
   std::string head_pose =
-      "auto";         ///< auto: taken out when the parts that do not move have moved; fixed: never
-  double fps = 30.0;  ///< of PC2 caches and sequences of meshes, which hold no times
+      "auto";                  ///< auto: taken out when the parts that do not move have moved; fixed: never
+  bool allow_outside = false;  ///< files that the target references may lie outside its folder
+  double fps = 30.0;           ///< of PC2 caches and sequences of meshes, which hold no times
 };
 
 /// Opens `path`: GLB, glTF, OBJ, PLY or STL of the rig's own topology, a PC2 or MDD cache, or a folder of

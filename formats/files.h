@@ -41,6 +41,11 @@ enum class Outside {
   allowed
 };
 
+/// How a mesh file is read.
+struct ReadOptions {
+  Outside outside = Outside::refused;  ///< files referenced by a glTF or by an OBJ's materials
+};
+
 /// The path of a referenced file, or why it may not be read, with a remedy.
 struct PathBeside {
   std::optional<std::filesystem::path> path;

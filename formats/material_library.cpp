@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
+#include <set>
 #include <sstream>
 #include <string_view>
 
@@ -32,14 +33,14 @@ std::string argument_of(std::string_view line) {
 
 class PictureReader {
  public:
-  PictureReader(const Scene& scene, const ReadOptions& options, std::vector<std::string>& warnings)
-      : scene_(scene), options_(options), warnings_(warnings) {}
+  PictureReader(const Scene& scene, std::vector<std::string>& warnings)
+      : scene_(scene), warnings_(warnings) {}
 
   std::shared_ptr<const std::vector<uint8_t>> read(const std::string& name) {
     if (name.empty()) return nullptr;
     const auto [entry, is_new] = known_.try_emplace(name);
     if (!is_new) return entry->second;
-    FileBeside file = read_beside(scene_.path, name, options_.outside);
+    FileBeside file = read_beside(scene_.path, name, scene_.options.outside);
     if (!file.bytes) {
       warnings_.push_back("texture '" + gltf::as_utf8(name) + "' is left out: " + file.why);
       return nullptr;
@@ -55,7 +56,6 @@ class PictureReader {
 
  private:
   const Scene& scene_;
-  const ReadOptions& options_;
   std::vector<std::string>& warnings_;
   std::map<std::string, std::shared_ptr<const std::vector<uint8_t>>> known_;
 };
@@ -68,6 +68,7 @@ double bounded(double value, double otherwise) {
 struct ObjMaterials {
   std::vector<std::string> libraries;
   std::vector<std::string> of_mesh;  ///< material of the mesh's face that is looked for; empty if it has none
+  std::map<std::string, std::set<std::string>> of_object;  ///< of all faces of an object or group
 };
 
 /// `v` lines of a face that the file itself has (vertices appended to it come last), ascending.
@@ -89,7 +90,7 @@ ObjMaterials scan(std::string_view obj, const std::vector<SceneMesh>& meshes) {
   std::map<std::vector<int>, size_t> wanted;
   for (size_t m = 0; m < meshes.size(); ++m)
     wanted.try_emplace(face_of(meshes[m]), m);
-  std::string current;
+  std::string current, object;
   int vertices = 0;
   for (size_t at = 0; at < obj.size();) {
     const size_t end = std::min(obj.find('\n', at), obj.size());
@@ -101,8 +102,11 @@ ObjMaterials scan(std::string_view obj, const std::vector<SceneMesh>& meshes) {
     };
     if (begins("mtllib")) found.libraries.push_back(argument_of(line));
     if (begins("usemtl")) current = argument_of(line);
+    if (begins("o") || begins("g")) object = argument_of(line);
     if (begins("v")) ++vertices;
-    if (!begins("f") || current.empty() || wanted.empty()) continue;
+    if (!begins("f") || current.empty()) continue;
+    found.of_object[object].insert(current);
+    if (wanted.empty()) continue;
     std::istringstream words{std::string(line.substr(1))};
     std::vector<int> face;
     for (std::string word; words >> word;) {
@@ -138,16 +142,16 @@ SceneMaterial material_of(const tinyobj::material_t& from, PictureReader& pictur
 
 }  // namespace
 
-MaterialLibrary read_materials(const Scene& scene, const ReadOptions& options) {
+MaterialLibrary read_materials(const Scene& scene) {
   MaterialLibrary library;
   library.of_mesh.assign(scene.meshes.size(), -1);
   if (scene.kind != FileKind::obj) return library;
   const ObjMaterials found = scan(
       std::string_view(reinterpret_cast<const char*>(scene.bytes.data()), scene.bytes.size()), scene.meshes);
   std::map<std::string, int> by_name;
-  PictureReader pictures(scene, options, library.warnings);
+  PictureReader pictures(scene, library.warnings);
   for (const std::string& name : found.libraries) {
-    const FileBeside file = read_beside(scene.path, name, options.outside);
+    const FileBeside file = read_beside(scene.path, name, scene.options.outside);
     if (!file.bytes) {
       // Many a head comes without; one that is there and not opened is another matter.
       if (file.why.starts_with("lies outside"))
@@ -164,6 +168,11 @@ MaterialLibrary read_materials(const Scene& scene, const ReadOptions& options) {
       library.materials.push_back(material_of(one, pictures));
     }
   }
+  for (const auto& [object, names] : found.of_object)
+    if (names.size() > 1 && !by_name.empty())
+      library.warnings.push_back(
+          "object '" + gltf::as_utf8(object) + "' has " + std::to_string(names.size()) +
+          " materials, and the rig shows the first: for all, make each an object or export GLB");
   for (size_t m = 0; m < scene.meshes.size(); ++m) {
     const auto material = by_name.find(found.of_mesh[m]);
     if (material != by_name.end()) library.of_mesh[m] = material->second;

@@ -27,6 +27,6 @@ struct MaterialLibrary {
 /// The materials of an OBJ file: its `mtllib` files and their textures (PNG and JPEG, which glTF can hold),
 /// from the OBJ's folder. A mesh gets the material of its first face. Empty for other formats, and for
 /// missing libraries.
-MaterialLibrary read_materials(const Scene& scene, const ReadOptions& options = {});
+MaterialLibrary read_materials(const Scene& scene);
 
 }  // namespace fascia::formats

@@ -47,8 +47,14 @@ std::string_view without_blanks_at_end(std::string_view text) {
   return text.substr(0, text.find_last_not_of(" \t") + 1);
 }
 
-NamedFile beside(const fs::path& owner, std::string_view name) {
-  return {std::string(name), find_beside(owner, std::string(name), Outside::refused).path};
+/// The file that names others, and whether they may lie outside its folder.
+struct Owner {
+  const fs::path& path;
+  Outside outside;
+};
+
+NamedFile beside(const Owner& owner, std::string_view name) {
+  return {std::string(name), find_beside(owner.path, std::string(name), owner.outside).path};
 }
 
 bool names_texture(std::string_view keyword) {
@@ -57,7 +63,7 @@ bool names_texture(std::string_view keyword) {
 }
 
 /// The texture of a line: what is left behind its options, of which a name with blanks may look like one.
-NamedFile texture_of(const fs::path& owner, std::string_view line, size_t keyword_end) {
+NamedFile texture_of(const Owner& owner, std::string_view line, size_t keyword_end) {
   const std::string_view text = without_blanks_at_end(line);
   std::string_view last;
   for (auto [begin, end] = word_at(text, keyword_end); begin < end;
@@ -68,16 +74,16 @@ NamedFile texture_of(const fs::path& owner, std::string_view line, size_t keywor
   return {std::string(last), std::nullopt};
 }
 
-void add_textures(const fs::path& mesh, const fs::path& library, std::vector<NamedFile>& files) {
+void add_textures(const Owner& mesh, const fs::path& library, std::vector<NamedFile>& files) {
   for_each_short_line(library, [&](std::string_view line) {
     const auto [begin, end] = word_at(line, 0);
     if (names_texture(line.substr(begin, end - begin))) files.push_back(texture_of(mesh, line, end));
   });
 }
 
-std::vector<NamedFile> files_of_obj(const fs::path& mesh) {
+std::vector<NamedFile> files_of_obj(const Owner& mesh) {
   std::vector<NamedFile> files;
-  for_each_short_line(mesh, [&](std::string_view line) {
+  for_each_short_line(mesh.path, [&](std::string_view line) {
     const auto [begin, end] = word_at(line, 0);
     if (line.substr(begin, end - begin) != "mtllib") return;
     const size_t name = word_at(line, end).first;
@@ -121,9 +127,9 @@ class UriListener : public nlohmann::json_sax<PlainJson> {
   std::string key_;
 };
 
-std::vector<NamedFile> files_of_gltf(const fs::path& mesh) {
-  std::ifstream stream(mesh, std::ios::binary);
-  if (!stream) throw Error("'" + mesh.string() + "' cannot be opened: check its permissions");
+std::vector<NamedFile> files_of_gltf(const Owner& mesh) {
+  std::ifstream stream(mesh.path, std::ios::binary);
+  if (!stream) throw Error("'" + mesh.path.string() + "' cannot be opened: check its permissions");
   UriListener listener;
   PlainJson::sax_parse(stream, &listener);
   std::vector<NamedFile> files;
@@ -134,11 +140,11 @@ std::vector<NamedFile> files_of_gltf(const fs::path& mesh) {
 
 }  // namespace
 
-std::vector<NamedFile> named_files(const fs::path& mesh) {
+std::vector<NamedFile> named_files(const fs::path& mesh, Outside outside) {
   std::error_code status;
   if (!fs::is_regular_file(mesh, status)) throw Error("'" + mesh.string() + "' is not a file");
-  if (extension_of(mesh) == ".obj") return files_of_obj(mesh);
-  if (extension_of(mesh) == ".gltf") return files_of_gltf(mesh);
+  if (extension_of(mesh) == ".obj") return files_of_obj({mesh, outside});
+  if (extension_of(mesh) == ".gltf") return files_of_gltf({mesh, outside});
   return {};
 }
 

@@ -95,6 +95,7 @@ Scene read(const std::filesystem::path& path, std::vector<uint8_t> bytes, const 
   if (bytes.empty()) throw Error("'" + path.string() + "' is empty");
   Scene scene;
   scene.path = path;
+  scene.options = options;
   scene.kind = kind_of(path, bytes);
   if (scene.kind == FileKind::glb || scene.kind == FileKind::gltf) {
     detail::read_gltf(scene, bytes, options);

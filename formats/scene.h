@@ -36,6 +36,7 @@ struct SceneMesh {
 /// A mesh file in memory.
 struct Scene {
   std::filesystem::path path;
+  ReadOptions options;  ///< it was read with
   FileKind kind = FileKind::glb;
   std::vector<SceneMesh> meshes;  ///< in node order
   gltf::Document document;        ///< of GLB and glTF: self-contained, uncompressed, with one mesh per node
@@ -45,10 +46,6 @@ struct Scene {
   /// (scans in map coordinates), whose shape would be lost in single precision.
   Vec3 offset = Vec3::Zero();
   std::vector<std::string> warnings;  ///< repairs and omissions
-};
-
-struct ReadOptions {
-  Outside outside = Outside::refused;  ///< files referenced by a glTF
 };
 
 /// Reads a mesh file; the format is detected from its first bytes, then from its extension.

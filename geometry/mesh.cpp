@@ -7,9 +7,13 @@ namespace fascia {
 
 namespace {
 
+Vec3 area_vector(const std::vector<Vec3>& positions, const Triangle& triangle) {
+  const auto& [a, b, c] = triangle;
+  return 0.5 * (positions[b] - positions[a]).cross(positions[c] - positions[a]);
+}
+
 Vec3 area_vector(const TriangleMesh& mesh, int triangle) {
-  const auto& [a, b, c] = mesh.triangles[triangle];
-  return 0.5 * (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]);
+  return area_vector(mesh.vertices, mesh.triangles[triangle]);
 }
 
 Vec3 unit_or_zero(const Vec3& v) {
@@ -38,13 +42,19 @@ double triangle_height(const Vec3& a, const Vec3& b, const Vec3& c) {
   return longest > 0.0 ? (b - a).cross(c - a).norm() / longest : 0.0;
 }
 
-std::vector<Vec3> vertex_normals(const TriangleMesh& mesh) {
-  std::vector<Vec3> normals(mesh.vertices.size(), Vec3::Zero());
-  for (int t = 0; t < mesh.triangle_count(); ++t) {
-    const Vec3 area = area_vector(mesh, t);
-    for (int corner : mesh.triangles[t])
-      normals[corner] += area;
+std::vector<Vec3> vertex_area_vectors(const std::vector<Vec3>& positions,
+                                      const std::vector<Triangle>& triangles) {
+  std::vector<Vec3> sums(positions.size(), Vec3::Zero());
+  for (const Triangle& triangle : triangles) {
+    const Vec3 area = area_vector(positions, triangle);
+    for (int corner : triangle)
+      sums[corner] += area;
   }
+  return sums;
+}
+
+std::vector<Vec3> vertex_normals(const TriangleMesh& mesh) {
+  std::vector<Vec3> normals = vertex_area_vectors(mesh.vertices, mesh.triangles);
   for (Vec3& normal : normals)
     normal = unit_or_zero(normal);
   return normals;

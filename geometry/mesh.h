@@ -49,6 +49,10 @@ double triangle_area(const TriangleMesh& mesh, int triangle);
 /// Height of a triangle over its longest side, in the unit of its corners; 0 where they are one point.
 double triangle_height(const Vec3& a, const Vec3& b, const Vec3& c);
 
+/// Of each of `positions`, the sum of the area vectors of `triangles` about it.
+std::vector<Vec3> vertex_area_vectors(const std::vector<Vec3>& positions,
+                                      const std::vector<Triangle>& triangles);
+
 /// Area-weighted unit vertex normals, one per vertex; zero for vertices without area around them.
 std::vector<Vec3> vertex_normals(const TriangleMesh& mesh);
 

@@ -2,6 +2,7 @@
 
 #include "runtime/api.h"
 #include "runtime/crowd.h"
+#include "runtime/fnv.h"
 
 using namespace fascia::runtime;
 
@@ -10,19 +11,11 @@ namespace {
 /// Before the bytes of a saved state.
 struct StateHeader {
   uint32_t magic = 0x54535346U;  // "FSST"
-  uint32_t version = 1;
+  uint32_t version = 2;
   uint64_t kind = 0;      ///< Face::state_kind
   uint64_t size = 0;      ///< bytes after the header
-  uint64_t checksum = 0;  ///< of them
+  uint64_t checksum = 0;  ///< of them: hash_of
 };
-
-/// FNV-1a, 64 bits, by bytes.
-uint64_t checksum(const uint8_t* bytes, std::size_t size) {
-  uint64_t sum = 14695981039346656037ULL;
-  for (std::size_t i = 0; i < size; ++i)
-    sum = (sum ^ bytes[i]) * 1099511628211ULL;
-  return sum;
-}
 
 /// A force in newtons, no stronger than any that a face bears: solving for absurd ones takes seconds.
 fascia::sim::Vec3 bounded_force(const fascia::sim::Vec3& force) {
@@ -180,7 +173,7 @@ fascia_result fascia_face_save(fascia_face* handle, void* to, size_t capacity, s
     StateHeader header;
     header.kind = face.state_kind();
     header.size = counted.used();
-    header.checksum = checksum(body, counted.used());
+    header.checksum = hash_of(body, counted.used());
     std::memcpy(to, &header, sizeof header);
     return FASCIA_OK;
   });
@@ -194,7 +187,7 @@ fascia_result fascia_face_restore(fascia_face* handle, const void* bytes, size_t
     const auto* const body = static_cast<const uint8_t*>(bytes) + sizeof header;
     if (size >= sizeof header) std::memcpy(&header, bytes, sizeof header);
     if (size < sizeof header || header.magic != StateHeader{}.magic || header.size != size - sizeof header ||
-        header.checksum != checksum(body, size - sizeof header))
+        header.checksum != hash_of(body, size - sizeof header))
       throw Failure(FASCIA_ERROR_FORMAT, "the bytes are not a saved state, or damaged");
     fascia::sim::StateBytes counted;
     if (!face.exchange_state(counted))

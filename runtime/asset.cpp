@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cstring>
 
 #include "runtime/drivers/aliases.h"
+#include "runtime/fnv.h"
 
 namespace fascia::runtime {
 namespace {
@@ -53,27 +53,11 @@ bool IgnoringCase::operator()(std::string_view a, std::string_view b) const {
                                       [&](char left, char right) { return lower(left) < lower(right); });
 }
 
-namespace {
-
-/// FNV-1a's steps by words of 64 bits.
-uint64_t hash_of(std::span<const uint8_t> bytes) {
-  uint64_t hash = 14695981039346656037ULL ^ bytes.size();
-  for (std::size_t at = 0; at < bytes.size(); at += sizeof hash) {
-    uint64_t word = 0;
-    std::memcpy(&word, bytes.data() + at, std::min(sizeof word, bytes.size() - at));
-    hash = (hash ^ word) * 1099511628211ULL;
-    hash ^= hash >> 32;
-  }
-  return hash;
-}
-
-}  // namespace
-
 Asset::Asset(std::span<const uint8_t> bytes)
     : file_(rig::read(bytes)), models_(file_.rig.tissue.levels.size()), realtime_models_(models_.size()) {
   static std::atomic<uint64_t> next{1};
   serial_ = next++;
-  contents_ = hash_of(bytes);
+  contents_ = hash_of(bytes.data(), bytes.size());
   index_channels();
   index_sets();
   for (const auto& [name, target] : names_)

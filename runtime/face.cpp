@@ -6,6 +6,7 @@
 #include <string>
 
 #include "geometry/smoothstep.h"
+#include "runtime/fnv.h"
 
 namespace fascia::runtime {
 namespace {
@@ -73,16 +74,12 @@ void Face::set_level(int32_t level, float seconds) {
 }
 
 uint64_t Face::state_kind() const {
-  uint64_t kind = 14695981039346656037ULL;  // FNV-1a, 64 bits
-  const auto add = [&kind](const void* bytes, std::size_t size) {
-    for (std::size_t i = 0; i < size; ++i)
-      kind = (kind ^ static_cast<const uint8_t*>(bytes)[i]) * 1099511628211ULL;
-  };
   const uint64_t rig = asset_->contents();
-  add(&rig, sizeof rig);
-  add(&level_, sizeof level_);
-  add(&options_.solver, sizeof options_.solver);
-  return kind;
+  Fnv1a kind;
+  kind.add(&rig, sizeof rig);
+  kind.add(&level_, sizeof level_);
+  kind.add(&options_.solver, sizeof options_.solver);
+  return kind.value();
 }
 
 bool Face::has_layers_of(const uint8_t* bytes, std::size_t size) const {

@@ -139,9 +139,10 @@ void Mixer::turn_eyes() {
   if (gaze_.weight <= 0.0F) return;
   const BoneChannels& bones = asset_->bones();
   const rig::Skull& skull = asset_->rig().skull;
-  // Eyes converge on points as near as 6 cm, the near point of convergence; nearer, beside and behind the
-  // head they turn together.
-  constexpr float nearest = 0.06F, most = 0.5F;  // metres; radians from the direction of both
+  // Eyes converge on points no nearer than they are apart; nearer, beside and behind the head they turn
+  // together.
+  const float nearest = (skull.eye_left.centre - skull.eye_right.centre).norm();
+  const float most = std::atan(0.5F);  // radians from the direction of both, on a point as near as that
   const auto yaw = [](const Vec3f& along) { return std::atan2(along.x(), std::max(along.z(), 1e-3F)); };
   const Vec3f middle = gaze_.point - 0.5F * (skull.eye_left.centre + skull.eye_right.centre);
   const float vergence = most * std::clamp(middle.z() / nearest, 0.0F, 1.0F);

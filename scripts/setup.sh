@@ -20,7 +20,7 @@ packages=(
   libepoxy-dev libegl-dev libgl-dev libegl1 libgl1-mesa-dri libimgui-dev libstb-dev
   ffmpeg fonts-dejavu-core fonts-lato
 )
-[ "$tier" = demo ] || packages+=(libgtest-dev libvalijson-dev binutils clang-format abigail-tools valgrind xvfb xauth)
+[ "$tier" = demo ] || packages+=(libgtest-dev libvalijson-dev binutils locales clang-format abigail-tools valgrind xvfb xauth)
 [ "$tier" != full ] || packages+=(
   clang clang-tidy doxygen libvtk9-dev libcgal-dev python3-numpy python3-pil python3-scipy
   nodejs npm slurmctld slurmd slurm-client munge

@@ -26,10 +26,6 @@ std::map<std::string, Vec3> onto_skin(const formats::Scene& scene, const spatial
     projected[name] = hit.position;
     if (rough.count(name)) continue;
     const double off_mm = 1e3 * hit.distance;
-    if (!reference.count(name))
-      if (const std::string meant = did_you_mean(name, names); !meant.empty())
-        warnings.push_back("landmark '" + name + "' is not a name that is known here" + meant +
-                           "; it is left out");
     const std::string where = "landmark '" + name + "' lies " +
                               std::to_string(static_cast<int>(off_mm + 0.5)) + " mm from the skin of '" +
                               scene.path.string() + "'";

@@ -62,15 +62,7 @@ std::vector<std::vector<Vec3>> smooth_normals(const formats::Scene& scene) {
   std::unordered_map<int, Vec3> by_line;
   std::vector<std::vector<Vec3>> normals;
   for (const formats::SceneMesh& mesh : scene.meshes) {
-    normals.emplace_back(mesh.positions.size(), Vec3::Zero());
-    for (const Triangle& t : mesh.triangles) {
-      const auto place = [&](int k) {
-        return mesh.positions[static_cast<size_t>(t[static_cast<size_t>(k)])];
-      };
-      const Vec3 area = (place(1) - place(0)).cross(place(2) - place(0));
-      for (const int corner : t)
-        normals.back()[static_cast<size_t>(corner)] += area;
-    }
+    normals.push_back(vertex_area_vectors(mesh.positions, mesh.triangles));
     for (size_t v = 0; v < mesh.source_vertices.size(); ++v)
       by_line.try_emplace(mesh.source_vertices[v], Vec3::Zero()).first->second += normals.back()[v];
   }

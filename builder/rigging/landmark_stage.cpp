@@ -133,8 +133,8 @@ void place_landmarks(FoundLandmarks& result, const LocatedHead& located, const f
   for (const auto& [name, p] : reference_points(anatomy))
     names.push_back(name);
   for (const std::string& name : unknown)
-    if (did_you_mean(name, names).empty())  // of the others the prepared head has said it
-      result.warnings.push_back("landmark '" + name + "' is not known and was left out");
+    result.warnings.push_back("landmark '" + name + "' is not a name that is known here" +
+                              did_you_mean(name, names) + "; it is left out");
 }
 
 /// The same meshes with their triangles facing the other way.

@@ -219,6 +219,18 @@ struct Gaps {
   std::size_t cells = 0, first_line = 0, lost = 0;
 };
 
+/// A take is as long as its rows, whichever of their cells are empty: the first and the last value are held.
+void hold_ends(Curve& curve, double first, double last) {
+  if (curve.times.front() > first) {
+    curve.times.insert(curve.times.begin(), first);
+    curve.values.insert(curve.values.begin(), curve.values.front());
+  }
+  if (curve.times.back() < last) {
+    curve.times.push_back(last);
+    curve.values.push_back(curve.values.back());
+  }
+}
+
 Curve read_column(const Table& table, std::size_t c, const std::vector<std::size_t>& order,
                   const std::vector<double>& times, const std::vector<bool>& lost, Gaps& gaps) {
   Curve curve;
@@ -235,6 +247,7 @@ Curve read_column(const Table& table, std::size_t c, const std::vector<std::size
     curve.times.push_back(times[row]);
     curve.values.push_back(static_cast<float>(*value));
   }
+  if (!curve.times.empty()) hold_ends(curve, times[order.front()], times[order.back()]);
   return curve;
 }
 

@@ -51,7 +51,8 @@ Curves read_curves(std::span<const uint8_t> bytes, const ReadOptions& options = 
 
 /// A table with a column of times (`time`, `timestamp`, `time_ms`, ...) or timecodes (Live Link Face), or
 /// without one where `frames_per_second` is given, and one column a name. Empty cells and NaN are left out:
-/// the curve goes straight from the key before to the next.
+/// the curve goes straight from the key before to the next, and holds its ends from the first row to the
+/// last.
 Curves read_csv_curves(std::string_view text, const ReadOptions& options = {});
 
 /// {"fps": F, "channels": {NAME: [values]}}, {NAME: {"times": [], "values": [], "interpolation": ""}}, or

@@ -6,6 +6,7 @@
 #include <fascia/fascia.hpp>
 
 #include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <condition_variable>
 #include <cstdio>
@@ -120,6 +121,14 @@ void draw(const std::string& path, const std::vector<double>& milliseconds) {
   if (!svg) throw std::runtime_error("cannot write " + path);
 }
 
+int count_of(const std::string& option, const std::string& word) {
+  int count = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), count);
+  if (error != std::errc() || end != word.data() + word.size() || count < 1)
+    throw std::runtime_error(option + " takes a whole number from 1, not '" + word + "'");
+  return count;
+}
+
 int run(const std::vector<std::string>& words) {
   std::vector<std::string> files;
   std::string svg;
@@ -128,11 +137,11 @@ int run(const std::vector<std::string>& words) {
   for (std::size_t i = 0; i < words.size(); ++i) {
     const bool has_next = i + 1 < words.size();
     if (words[i] == "--faces" && has_next)
-      count = std::max(1, std::atoi(words[++i].c_str()));
+      count = count_of("--faces", words[++i]);
     else if (words[i] == "--frames" && has_next)
-      frames = std::max(1, std::atoi(words[++i].c_str()));
+      frames = count_of("--frames", words[++i]);
     else if (words[i] == "--threads" && has_next)
-      threads = std::max(1, std::atoi(words[++i].c_str()));
+      threads = count_of("--threads", words[++i]);
     else if (words[i] == "--svg" && has_next)
       svg = words[++i];
     else

@@ -2,6 +2,7 @@
 #include <fascia/fascia.h>
 
 #include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -31,6 +32,14 @@ std::vector<char> file_bytes(const std::string& path) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
+int count_of(const std::string& option, const std::string& word) {
+  int count = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), count);
+  if (error != std::errc() || end != word.data() + word.size() || count < 0)
+    throw std::invalid_argument(option + " takes a whole number from 0, not '" + word + "'");
+  return count;
+}
+
 Arguments arguments_of(int argc, char** argv) {
   Arguments arguments;
   std::vector<std::string> names;
@@ -41,7 +50,7 @@ Arguments arguments_of(int argc, char** argv) {
       return argv[++i];
     };
     if (word == "--frames")
-      arguments.frames = std::atoi(next().c_str());
+      arguments.frames = count_of(word, next());
     else if (word == "--fps")
       arguments.fps = std::atof(next().c_str());
     else if (word == "-o")

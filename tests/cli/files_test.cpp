@@ -130,21 +130,22 @@ TEST_F(FilesOfTheTool, NoCommandWritesOneOutputOverAnother) {
   }
 }
 
-TEST_F(FilesOfTheTool, AnOptionIsAdvisedOnlyWhereThereIsOne) {
+TEST_F(FilesOfTheTool, FilesOutsideAreOpenedWhereTheAdviceIsFollowed) {
   fs::create_directories(at("inside"));
   std::ofstream(at("buffer.bin")) << "1234";
   std::ofstream(at("inside/head.gltf"))
       << R"({"asset": {"version": "2.0"}, "buffers": [{"uri": "../buffer.bin", "byteLength": 4}]})";
   const std::string head = at("inside/head.gltf");
-  EXPECT_NE(run("build " + head + " -o " + at("x.glb")).err.find("--allow-outside"), std::string::npos);
   for (const std::string& words :
-       {"fit " + at("rig.glb") + " --target " + head + " -o " + at("x.json"),
+       {"build " + head + " -o " + at("x.glb"),
+        "fit " + at("rig.glb") + " --target " + head + " -o " + at("x.json"),
         "face " + head + " -o " + at("x.glb"),
         "calibrate " + at("rig.glb") + " --scans " + head + " -o " + at("x.glb")}) {
     const Outcome outcome = run(words);
     EXPECT_EQ(outcome.code, 1) << words;
     EXPECT_NE(outcome.err.find("lies outside the folder"), std::string::npos) << outcome.err;
-    EXPECT_EQ(outcome.err.find("--allow-outside"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("--allow-outside"), std::string::npos) << outcome.err;
+    EXPECT_EQ(run(words + " --allow-outside").err.find("lies outside"), std::string::npos) << words;
   }
 }
 

@@ -62,14 +62,28 @@ class Faults : public Workplace {
     }
     std::filesystem::remove(at(job.output));
   }
-  /// Numbers of calls to fail: many of one kind are alike, so the first, the last and some between.
-  static std::vector<long> some_of(long calls) {
-    std::vector<long> numbers;
-    const long step = std::max(1L, calls / 6);
-    for (long number = 1; number <= calls;
-         number += number + step > calls && number < calls ? calls - number : step)
-      numbers.push_back(number);
-    return numbers;
+  static bool is_thorough() { return std::getenv("FASCIA_THOROUGH") != nullptr; }
+
+  /// Numbers of calls to fail: many of one kind are alike, so the first, the last and `between` of the
+  /// others.
+  static std::vector<long> some_of(long calls, long between = 5) {
+    std::set<long> numbers;
+    for (long k = 0; k <= between + 1 && calls > 0; ++k)
+      numbers.insert(1 + k * (calls - 1) / (between + 1));
+    return {numbers.begin(), numbers.end()};
+  }
+
+  /// Of every kind of call some fail. A command of seconds is tried less often, but for a thorough run.
+  void expect_calls_may_fail(const Job& job) {
+    std::map<std::string, long> counts;
+    const Outcome outcome = run_with_fault(job.words + at(job.output), "none", 0, &counts);
+    ASSERT_EQ(outcome.code, 0) << job.words << outcome.err;
+    std::filesystem::remove(at(job.output));
+    for (size_t k = 0; k < std::size(kinds); ++k) {
+      EXPECT_TRUE(counts[kinds[k]] > 0 || k >= needed) << job.words << kinds[k];
+      for (const long number : some_of(counts[kinds[k]], job.takes_seconds && !is_thorough() ? 0 : 5))
+        expect_nothing_lost(job, kinds[k], number);
+    }
   }
   /// The command with `runs` of its allocations refused in turn.
   void expect_allocations_may_fail(const Job& job, long runs) {
@@ -89,17 +103,26 @@ TEST_F(Faults, EveryCallThatWritesMayFail) {
   for (const Job& job : picture_jobs())
     all.push_back(job);
   all.push_back(build_job());
-  for (const Job& job : all) {
-    std::map<std::string, long> counts;
-    const Outcome outcome = run_with_fault(job.words + at(job.output), "none", 0, &counts);
-    ASSERT_EQ(outcome.code, 0) << job.words << outcome.err;
-    std::filesystem::remove(at(job.output));
-    for (size_t k = 0; k < std::size(kinds); ++k) {
-      EXPECT_TRUE(counts[kinds[k]] > 0 || k >= needed) << job.words << kinds[k];
-      for (const long number : some_of(counts[kinds[k]]))
-        expect_nothing_lost(job, kinds[k], number);
+  all.push_back(calibrate_job());
+  all.push_back(face_job());
+  for (const Job& job : all)
+    expect_calls_may_fail(job);
+}
+
+TEST_F(Faults, TheDemonstrationIsThereAsAWholeOrNotAtAll) {
+  if (!is_thorough()) GTEST_SKIP() << "takes minutes: set FASCIA_THOROUGH";
+  const std::string words = "demo --out " + at("demo");
+  const std::set<std::string> before = names();
+  std::map<std::string, long> counts;
+  ASSERT_EQ(run_with_fault(words, "none", 0, &counts).code, 0);
+  for (size_t k = 0; k < needed; ++k)
+    for (const long number : some_of(counts[kinds[k]], 1)) {
+      std::filesystem::remove_all(at("demo"));
+      const Outcome outcome = run_with_fault(words, kinds[k], number);
+      if (outcome.code == 0) continue;
+      EXPECT_EQ(outcome.code, 1) << kinds[k] << number << outcome.err;
+      EXPECT_EQ(names(), before) << kinds[k] << number;
     }
-  }
 }
 
 TEST_F(Faults, ASequenceIsThereAsAWholeOrNotAtAll) {
@@ -153,10 +176,10 @@ TEST_F(Faults, ABatchKeepsItsResultsAndIsResumed) {
 }
 
 TEST_F(Faults, AllocationsMayFail) {
-  const bool is_thorough = std::getenv("FASCIA_THOROUGH") != nullptr;
   for (const Job& job : jobs())
-    expect_allocations_may_fail(job, is_thorough ? 400 : 10);
-  expect_allocations_may_fail(build_job(), is_thorough ? 60 : 5);
+    expect_allocations_may_fail(job, is_thorough() ? 400 : 10);
+  expect_allocations_may_fail(build_job(), is_thorough() ? 60 : 5);
+  if (is_thorough()) expect_allocations_may_fail(face_job(), 60);
 }
 
 TEST_F(Faults, AFullStandardOutputIsReported) {

@@ -45,6 +45,7 @@ class Workplace : public ::testing::Test {
   /// What a command writes: its words but for the output, and the output's name.
   struct Job {
     std::string words, output;
+    bool takes_seconds = false;
   };
   std::vector<Job> jobs() const {
     return {{"pose " + at("rig.glb") + " --set zygomaticus_major_left=0.5 -o ", "pose.glb"},
@@ -72,13 +73,26 @@ class Workplace : public ::testing::Test {
             {"snapshot check " + at("rig.glb") + " --against " + at("then.json") + " --junit " +
                  at("then.xml") + " --report ",
              "then.html"},
-            {"check " + at("whole.glb") + " --sheet ", "sheet.png"}};
+            {"check " + at("whole.glb") + " --sheet ", "sheet.png", true}};
   }
   /// Writes a head, for a build of it, which takes seconds.
   Job build_job() const {
     rigging::write_embedded_head(at("head.obj"), at("landmarks.json"));
     return {"build " + at("head.obj") + " --landmarks " + at("landmarks.json") + " --detail low -o ",
-            "built.glb"};
+            "built.glb", true};
+  }
+  /// Writes scans of the small rig, for a calibration to them.
+  Job calibrate_job() const {
+    std::filesystem::create_directories(at("scans"));
+    const std::string words = "pose " + at("rig.glb") + " --set arkit:mouthSmileLeft=0.6 --quiet -o ";
+    EXPECT_EQ(std::system((test::tool().string() + " " + words + at("scans/mouthSmileLeft.obj")).c_str()), 0);
+    return {"calibrate " + at("rig.glb") + " --scans " + at("scans") + " --adjust gains -o ", "own.glb"};
+  }
+  /// Writes a skull, for a head on it.
+  Job face_job() const {
+    std::filesystem::copy_file(FASCIA_ANATOMY_DATA "/skull.obj", at("skull.obj"),
+                               std::filesystem::copy_options::overwrite_existing);
+    return {"face " + at("skull.obj") + " -o ", "face.glb", true};
   }
 
   /// Names in the folder.

@@ -71,6 +71,17 @@ TEST_F(Materials, OfOtherKindsAndOutsideTheFolderAreLeftOutWithAWarning) {
     EXPECT_FALSE(material.colour_map);
 }
 
+TEST_F(Materials, SeveralOfOneObjectAreSaid) {
+  put("head.obj",
+      "mtllib looks.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\n"
+      "o head\nusemtl lips\nf 1 2 3\nusemtl skin\nf 2 4 3\n");
+  put("looks.mtl", "newmtl lips\nKd 1 0 0\nnewmtl skin\nKd 1 1 1\n");
+  const MaterialLibrary found = library();
+  EXPECT_EQ(found.of_mesh, std::vector<int>{0});
+  ASSERT_EQ(found.warnings.size(), 1u);
+  EXPECT_NE(found.warnings[0].find("object 'head' has 2 materials"), std::string::npos) << found.warnings[0];
+}
+
 TEST_F(Materials, ALibraryOutsideTheFolderIsNotOpenedAndSaid) {
   fs::create_directories(folder_ / "head");
   put("looks.mtl", "newmtl rosy\nKd 1 0 0\n");
@@ -80,6 +91,9 @@ TEST_F(Materials, ALibraryOutsideTheFolderIsNotOpenedAndSaid) {
   ASSERT_EQ(found.warnings.size(), 1u);
   EXPECT_NE(found.warnings[0].find("'../looks.mtl' is left out: lies outside"), std::string::npos)
       << found.warnings[0];
+  const MaterialLibrary allowed = read_materials(read(folder_ / "head" / "head.obj", {Outside::allowed}));
+  EXPECT_EQ(allowed.of_mesh, std::vector<int>{0});
+  EXPECT_TRUE(allowed.warnings.empty());
 }
 
 TEST_F(Materials, ThatAreNotThereLeaveMeshesWithoutOne) {

@@ -209,9 +209,6 @@ size_t warnings_with(const PreparedHead& head, const std::string& text) {
 
 TEST(Prepare, SuggestsTheNearestLandmarkName) {
   formats::LandmarkFile given = landmarks_in(Mat4::Identity(), 1.0, "");
-  given.points["nasionn"] = given.points["nasion"];
-  const PreparedHead head = prepare(scene_in(Mat4::Identity()), given, reference(), {});
-  EXPECT_EQ(warnings_with(head, "'nasionn' is not a name that is known here (did you mean 'nasion'"), 1U);
   given.points["nasionn"] = Vec3(0, 0, 0);
   try {
     prepare(scene_in(Mat4::Identity()), given, reference(), {});

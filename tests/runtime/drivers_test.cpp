@@ -61,6 +61,15 @@ TEST(Csv, ReadsTimeAndColumns) {
   EXPECT_EQ(curves.duration(), 1.0);
 }
 
+TEST(Csv, ATakeIsAsLongAsItsRows) {
+  const Curves curves = read("time,jaw_open\n10,\n11,0.5\n12,1\n13,\n");
+  EXPECT_EQ(curves.start, 10.0);
+  EXPECT_EQ(curves.duration(), 3.0);
+  for (const auto& [seconds, value] :
+       {std::pair{0.0, 0.5F}, {1.0, 0.5F}, {1.5, 0.75F}, {2.0, 1.0F}, {3.0, 1.0F}})
+    EXPECT_FLOAT_EQ(curve(curves, "jaw_open").at(seconds), value) << seconds;
+}
+
 TEST(Csv, ReadsLiveLinkFaceByItsHeader) {
   const std::string text =
       "Timecode,BlendShapeCount,EyeBlinkLeft,JawRight,JawLeft,HeadYaw\n"
