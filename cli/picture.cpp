@@ -14,6 +14,16 @@ namespace {
 
 const Vec3 skin(0.82, 0.62, 0.53), mucosa(0.48, 0.20, 0.19);  // sRGB
 
+/// -1 where most of the surface faces what it surrounds, else 1.
+double outer_side(const TriangleMesh& mesh) {
+  const std::vector<Vec3> areas = vertex_area_vectors(mesh.vertices, mesh.triangles);
+  const Vec3 centre = bounds(mesh.vertices).centre();
+  double outward = 0.0;
+  for (size_t v = 0; v < areas.size(); ++v)
+    outward += areas[v].dot(mesh.vertices[v] - centre);
+  return outward < 0.0 ? -1.0 : 1.0;
+}
+
 /// Skin, and mucosa where at rest the skin itself closes in on all sides: mouth, nostrils, behind the lids.
 std::vector<Vec3> skin_colours(std::span<const float> rest, const std::vector<Triangle>& triangles) {
   TriangleMesh mesh;
@@ -21,11 +31,12 @@ std::vector<Vec3> skin_colours(std::span<const float> rest, const std::vector<Tr
     mesh.vertices.emplace_back(rest[i], rest[i + 1], rest[i + 2]);
   mesh.triangles = triangles;
   const std::vector<Vec3> normals = vertex_normals(mesh);
+  const double side = outer_side(mesh);
   const spatial::SurfaceQuery surface(mesh);
   const double reach = 0.06, start = 0.0003;  // metres: across a mouth, off the surface itself
   std::vector<Vec3> colours(mesh.vertices.size(), skin);
   for (size_t v = 0; v < colours.size(); ++v) {
-    const Vec3& n = normals[v];
+    const Vec3 n = side * normals[v];
     if (n.squaredNorm() < 0.5) continue;
     const Vec3 across = n.unitOrthogonal(), along = n.cross(across);
     int open = 0;

@@ -84,15 +84,20 @@ class MeshCutter {
     }
   }
 
-  /// Removes triangles without height that the welded skin lacks and that would hold both sides of the cut
-  /// together. `skin_triangles`: sorted corners of the old skin's triangles beside the cut, in order.
+  /// Removes triangles that the welded skin lacks, being without height or folded flat onto one another, and
+  /// that would hold both sides of the cut together. `skin_triangles`: sorted corners of the old skin's
+  /// triangles beside the cut, in order.
   void remove_bridges(const std::vector<Triangle>& skin_triangles, const std::set<int>& beside_cut) {
+    std::map<Triangle, int> copies;  // of those that span the cut
+    for (const Triangle& t : scene_.triangles)
+      if (const Triangle corners = skin_corners(t); cut_spans(corners, beside_cut)) ++copies[sorted(corners)];
     size_t kept = 0;
     for (size_t t = 0; t < scene_.triangles.size(); ++t) {
-      const Triangle corners = skin_corners(scene_.triangles[t]);
-      const bool is_bridge =
-          cut_spans(corners, beside_cut) && is_flat(scene_.triangles[t]) &&
-          !std::binary_search(skin_triangles.begin(), skin_triangles.end(), sorted(corners));
+      const Triangle corners = sorted(skin_corners(scene_.triangles[t]));
+      const auto spanning = copies.find(corners);
+      const bool is_bridge = spanning != copies.end() &&
+                             (spanning->second > 1 || is_flat(scene_.triangles[t])) &&
+                             !std::binary_search(skin_triangles.begin(), skin_triangles.end(), corners);
       if (is_bridge) continue;
       scene_.triangles[kept] = scene_.triangles[t];
       extension_.origin[kept++] = extension_.origin[t];
@@ -152,14 +157,16 @@ class MeshCutter {
     return triangle_height(corner(0), corner(1), corner(2)) <= lowest;
   }
 
-  /// Whether of the corners beside the cut some lie below it and others on it or above.
+  /// Whether of the corners beside the cut some lie below it and others on it or above. A corner that the
+  /// skin lacks may lie on either side.
   bool cut_spans(const Triangle& corners, const std::set<int>& beside_cut) const {
-    bool is_below = false, is_above = false;
+    bool is_below = false, is_above = false, is_unknown = false;
     for (const int v : corners) {
+      is_unknown = is_unknown || v < 0;
       if (beside_cut.count(v) == 0) continue;
       (cut_.path.above[static_cast<size_t>(v)] < 0.0 ? is_below : is_above) = true;
     }
-    return is_below && is_above;
+    return (is_below && is_above) || (is_unknown && (is_below || is_above));
   }
 
   static bool runs_against(const Triangle& a, const Triangle& b) {

@@ -136,6 +136,60 @@ TriangleMesh with_slivers_between_lips(TriangleMesh skin, const Vec3& stomion, i
   return skin;
 }
 
+/// Whether an edge leads from a vertex of the skin to one that is no farther than two edges of it.
+class Nearness {
+ public:
+  explicit Nearness(const TriangleMesh& skin) : neighbours_(skin.vertices.size()) {
+    for (const Triangle& t : skin.triangles)
+      for (size_t e = 0; e < 3; ++e)
+        for (size_t k = 1; k < 3; ++k)
+          neighbours_[static_cast<size_t>(t[e])].push_back(t[(e + k) % 3]);
+  }
+  bool operator()(int a, int b) const {
+    for (const int n : neighbours_[static_cast<size_t>(a)])
+      for (const int m : neighbours_[static_cast<size_t>(n)])
+        if (n == b || m == b) return true;
+    return a == b;
+  }
+
+ private:
+  std::vector<std::vector<int>> neighbours_;
+};
+
+TEST(Openings, FoldedTrianglesDoNotHoldTheLipsTogether) {
+  const ClosedHead closed = closed_head(generic());
+  TriangleMesh skin = closed.skin;
+  // Fins across the line of the lips, each of two triangles back to back.
+  const Vec3 stomion = closed.landmarks.at("stomion");
+  const int own = skin.vertex_count();
+  const auto triangles = skin.triangles;
+  int count = 0;
+  for (const Triangle& t : triangles) {
+    const Vec3 &a = skin.vertices[static_cast<size_t>(t[0])], &b = skin.vertices[static_cast<size_t>(t[1])];
+    if ((a.y() - stomion.y()) * (b.y() - stomion.y()) >= 0.0 || (a - stomion).norm() > 0.012) continue;
+    skin.vertices.push_back(0.5 * (a + b) + Vec3(0, 0, 0.002));
+    skin.triangles.push_back({t[0], t[1], skin.vertex_count() - 1});
+    skin.triangles.push_back({t[1], t[0], skin.vertex_count() - 1});
+    ++count;
+  }
+  ASSERT_GT(count, 2);
+  const Case c = open(skin, closed.landmarks);
+  ASSERT_FALSE(c.opened.parted.empty());
+  EXPECT_EQ(c.opened.parted[0].name, "mouth");
+  const std::vector<int>& of = c.head.meshes[0].skin_vertices;
+  const Nearness is_near(c.head.skin);
+  for (const Triangle& t : c.opened.scene.meshes[0].triangles) {
+    std::vector<int> ends;  // of the skin's own vertices
+    bool is_fin = false;
+    for (const int v : t) {
+      is_fin = is_fin || (v >= own && v < own + count);
+      if (v < own || v >= own + count) ends.push_back(of[static_cast<size_t>(v)]);
+    }
+    if (!is_fin || ends.size() != 2 || ends[0] < 0 || ends[1] < 0) continue;
+    EXPECT_TRUE(is_near(ends[0], ends[1])) << ends[0] << " " << ends[1];
+  }
+}
+
 TEST(Openings, TrianglesWithoutAreaDoNotHoldTheLipsTogether) {
   const ClosedHead closed = closed_head(generic());
   int count = 0;
@@ -145,17 +199,7 @@ TEST(Openings, TrianglesWithoutAreaDoNotHoldTheLipsTogether) {
   ASSERT_FALSE(c.opened.parted.empty());
   EXPECT_EQ(c.opened.parted[0].name, "mouth");
   // An edge of the file leads no farther than two edges of the skin that is computed with.
-  std::vector<std::vector<int>> neighbours(c.head.skin.vertices.size());
-  for (const Triangle& t : c.head.skin.triangles)
-    for (size_t e = 0; e < 3; ++e)
-      for (size_t k = 1; k < 3; ++k)
-        neighbours[static_cast<size_t>(t[e])].push_back(t[(e + k) % 3]);
-  const auto is_near = [&](int a, int b) {
-    for (const int n : neighbours[static_cast<size_t>(a)])
-      for (const int m : neighbours[static_cast<size_t>(n)])
-        if (n == b || m == b) return true;
-    return a == b;
-  };
+  const Nearness is_near(c.head.skin);
   const std::vector<int>& of = c.head.meshes[0].skin_vertices;
   const TriangleMesh file{c.opened.scene.meshes[0].positions, c.opened.scene.meshes[0].triangles};
   for (int i = 0; i < file.triangle_count(); ++i)
