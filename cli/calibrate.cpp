@@ -129,6 +129,8 @@ void add_shapes(const Common& common, const CalibrateRequest& request, const fit
   const FitTargets shapes = open_fit_targets(common, request.scans, subject, options);
   for (size_t i = 0; i < shapes.names.size(); ++i) {
     std::vector<float> row = tables.row(shapes.names[i]);
+    // Alone it draws the lips through each other: it is made to be added to an open jaw.
+    if (lower_case(shapes.names[i]).find("mouthclose") != std::string::npos) row.clear();
     fit::Target target = row.empty() ? fit::Target{} : shapes.target(i);
     if (row.empty() || !(target.displacements.squaredNorm() > 0.0))
       unknown.push_back(shapes.names[i]);

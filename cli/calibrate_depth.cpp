@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "builder/prepare/prepare.h"
+#include "builder/spatial/surface_query.h"
 #include "cli/rig_build.h"
 #include "formats/files.h"
 #include "formats/scene.h"
@@ -94,9 +96,15 @@ rig::Rig RebuiltRig::build(const fit::Physique& physique, const std::string& det
   const ScratchFile head(is_made ? record.format : "glb", is_made ? record.bytes : glb);
   const formats::Scene scene = formats::read(head.path());
   const Mat4 to_file = file_.rig.input_to_metres.cast<double>().inverse();
+  // Landmarks that were completed beyond the mesh, as on a neck that ends above them, are completed again.
+  constexpr double on_skin = 0.008;  // metres
+  const spatial::SurfaceQuery surface(prepare::joined_meshes(scene));
+  const double reach = on_skin * to_file.topLeftCorner<3, 1>().norm();
   formats::LandmarkFile landmarks;
-  for (const rig::Landmark& landmark : file_.rig.skull.landmarks)
-    landmarks.points[landmark.name] = transform_point(to_file, landmark.skin.cast<double>());
+  for (const rig::Landmark& landmark : file_.rig.skull.landmarks) {
+    const Vec3 place = transform_point(to_file, landmark.skin.cast<double>());
+    if (surface.closest(place, reach).found()) landmarks.points[landmark.name] = place;
+  }
   const anatomy::GenericAnatomy anatomy = anatomy_for({});
   const std::vector<size_t> third = fit::thirds_of_face(file_.rig);
   for (size_t m = 0; m < third.size(); ++m)

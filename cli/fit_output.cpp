@@ -172,7 +172,7 @@ std::string report_text(const fit::Subject& subject, const FitTargets& targets,
     if (in_use(subject, result, c))
       text += "| " + subject.channels()[c].name + " | " +
               number(static_cast<double>(result.activations[c]), "%.3f") + " | " +
-              number(result.spread[c], "%.3f") + " |\n";
+              (result.spread.empty() ? "not estimated" : number(result.spread[c], "%.3f")) + " |\n";
   if (!result.alike.empty()) text += "\nHardly told apart by this target:\n\n";
   for (const auto& [a, b] : result.alike)
     text += "- " + subject.channels()[a].name + ", " + subject.channels()[b].name + "\n";
@@ -191,6 +191,7 @@ nlohmann::ordered_json fitted_activations(const fit::Subject& subject, const fit
 
 void add_certainty(const fit::Subject& subject, const fit::FitResult& result,
                    nlohmann::ordered_json& report) {
+  if (result.spread.empty()) return;  // fitted by other means
   report["spread"] = nlohmann::ordered_json::object();
   for (size_t c = 0; c < result.spread.size(); ++c)
     if (in_use(subject, result, c)) report["spread"][subject.channels()[c].name] = result.spread[c];

@@ -100,7 +100,6 @@ PictureFrame measured(fit::Subject& subject, const SeenLandmarks& landmarks, con
   result.activations = tracked.activations;
   subject.pose(result.activations, is_next);
   result.displacements = subject.displacements(result.activations);
-  result.spread.assign(result.activations.size(), 0.0);
   out.target = {result.displacements, std::vector<double>(subject.vertex_count(), 0.0), {}};
   fit::Misses misses;
   for (size_t l = 0; l < landmarks.places.size(); ++l) {

@@ -9,6 +9,7 @@
 #include "cli/fit_match.h"
 #include "cli/still_landmarks.h"
 #include "geometry/alignment.h"
+#include "geometry/connectivity.h"
 #include "geometry/error.h"
 
 namespace fascia::cli {
@@ -47,9 +48,14 @@ rigging::FoundLandmarks face_of(const formats::Scene& scene) {
 PlacedScan place_scan(const fit::Subject& subject, const formats::Scene& scene, bool may_search) {
   PlacedScan out;
   out.mesh = prepare::joined_meshes(scene);
+  const bool is_unwelded = out.mesh.vertex_count() == 3 * out.mesh.triangle_count();
   const Mat4 map = scene_to_metres(subject, scene);
   for (Vec3& p : out.mesh.vertices)
     p = transform_point(map, p);
+  if (is_unwelded) {  // STL: without it every edge would be one of the scan's border
+    std::vector<int> ignored;
+    out.mesh = weld(out.mesh, 1e-6, &ignored);
+  }
   if (!may_search || share_near(subject, spatial::SurfaceQuery(out.mesh)) > 0.7) return out;
   const rigging::FoundLandmarks found = face_of(scene);
   std::vector<Vec3> from, to;

@@ -35,6 +35,30 @@ FitTargets cache_targets(const std::filesystem::path& path, const TargetMaker& m
   return targets;
 }
 
+/// Names in the order of the numbers in them: frame_2 before frame_10.
+bool comes_before(const std::filesystem::path& first, const std::filesystem::path& second) {
+  const std::string a = first.filename().string(), b = second.filename().string();
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  for (size_t i = 0, j = 0; i < a.size() && j < b.size();) {
+    if (!is_digit(a[i]) || !is_digit(b[j])) {
+      if (a[i] != b[j]) return a[i] < b[j];
+      ++i, ++j;
+      continue;
+    }
+    const auto number = [&](const std::string& text, size_t& at) {
+      while (at + 1 < text.size() && text[at] == '0' && is_digit(text[at + 1]))
+        ++at;
+      const size_t from = at;
+      while (at < text.size() && is_digit(text[at]))
+        ++at;
+      return text.substr(from, at - from);
+    };
+    const std::string m = number(a, i), n = number(b, j);
+    if (m != n) return m.size() != n.size() ? m.size() < n.size() : m < n;
+  }
+  return a.size() != b.size() ? a.size() < b.size() : a < b;
+}
+
 FitTargets sequence_targets(const std::filesystem::path& folder, const TargetMaker& maker,
                             const FitTargetOptions& options) {
   std::vector<std::filesystem::path> files;
@@ -44,7 +68,7 @@ FitTargets sequence_targets(const std::filesystem::path& folder, const TargetMak
       files.push_back(entry.path());
   }
   if (files.empty()) throw Error("the folder '" + folder.string() + "' holds no OBJ, PLY or GLB frames");
-  std::sort(files.begin(), files.end());
+  std::sort(files.begin(), files.end(), comes_before);
   FitTargets targets;
   targets.kind = FitTargets::Kind::take;
   for (size_t f = 0; f < files.size(); ++f) {

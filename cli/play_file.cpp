@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "builder/rigging/gltf_source.h"
 #include "cli/gltf_edit.h"
 #include "cli/take/point_cache.h"
 #include "cli/take/take_animation.h"
@@ -30,6 +31,14 @@ void write_caches(const Common& common, const PlayRequest& request, CacheKind ki
   std::vector<float> times;
   for (size_t f = 0; f < take.frames(); ++f)
     times.push_back(static_cast<float>(take.time(f)));
+  if (const Vec3 offset = rigging::input_offset(rig::read(face.file()).source); !offset.isZero(0)) {
+    char line[200];
+    std::snprintf(line, sizeof line,
+                  "the head lies far off: a cache, in single precision, is written at the origin; move it by "
+                  "%.9g %.9g %.9g",
+                  offset.x(), offset.y(), offset.z());
+    common.warn(line);
+  }
   PointCaches caches(request.output, kind, cached_objects(request.rig, face), times);
   {
     Progress progress(common, "frame", take.frames());
@@ -141,7 +150,7 @@ PlayFigures play_file(const Common& common, const PlayRequest& request) {
   const MatchedNames names = match(common, curves, face, request.curves);
   figures.matched = names.matched;
   figures.unmatched = names.unmatched;
-  if (curves.turns_head() && !request.keeps_head && !wants_cache)
+  if (!request.keeps_head && !wants_cache && curves.head_moves())
     common.warn("the curves turn the head, which is left out; --head keeps it as motion of the file's nodes");
   if (request.keeps_head && (wants_cache || !curves.turns_head()))
     throw Error("--head: " + std::string(wants_cache

@@ -161,7 +161,7 @@ class Calibrator {
   /// them (cross-validation: Stone 1974).
   void take_caution(const std::vector<Evidence>& all, const Eigen::VectorXd& at) {
     double best = std::numeric_limits<double>::infinity(), chosen = 1.0;
-    for (const double caution : {1.0, 3.0, 10.0, 30.0, 100.0, 1000.0}) {
+    for (const double caution : {1.0, 0.001, 0.01, 0.1, 0.3, 3.0, 10.0, 30.0, 100.0, 1000.0}) {
       caution_ = caution;
       double left = 0.0;
       for (size_t i = 0; i < all.size(); ++i) {
@@ -287,13 +287,11 @@ void sum_up(const std::vector<double>& motion, Calibration& out) {
   out.left_out_share = 1.0 - left_out / whole;
 }
 
-}  // namespace
-
-Calibration calibrate(Subject& subject, const std::vector<CalibrationCase>& cases,
-                      const CalibrationOptions& options, const Remake& remake) {
-  if (cases.empty()) throw Error("there is no expression to calibrate by");
-  std::vector<Physique> physiques(cases.size() + 1);
-  if (remake) physiques = physiques_of(cases, options, remake);
+/// The calibration with the physique that each case's others ask for and, last in `physiques`, the one that
+/// all ask for.
+Calibration calibrated_with(const std::vector<Physique>& physiques, Subject& subject,
+                            const std::vector<CalibrationCase>& cases, const CalibrationOptions& options,
+                            const Remake& remake) {
   const Physique own = physiques.back();
   // The person's own, then those that the cases left out ask for, each once.
   std::vector<Physique> distinct = {own};
@@ -325,6 +323,21 @@ Calibration calibrate(Subject& subject, const std::vector<CalibrationCase>& case
   }
   sum_up(as_built.motion(), out);
   return out;
+}
+
+}  // namespace
+
+Calibration calibrate(Subject& subject, const std::vector<CalibrationCase>& cases,
+                      const CalibrationOptions& options, const Remake& remake) {
+  if (cases.empty()) throw Error("there is no expression to calibrate by");
+  const std::vector<Physique> as_built(cases.size() + 1);
+  Calibration gains = calibrated_with(as_built, subject, cases, options, remake);
+  if (!remake) return gains;
+  const std::vector<Physique> physiques = physiques_of(cases, options, remake);
+  if (physiques == as_built) return gains;
+  // A physique is kept only where it serves expressions that were left out better than gains alone.
+  Calibration both = calibrated_with(physiques, subject, cases, options, remake);
+  return both.left_out_share > gains.left_out_share ? both : gains;
 }
 
 }  // namespace fascia::fit

@@ -75,12 +75,21 @@ FitResult Fitter::follow(const Target& target) {
   return solve(target, is_next);
 }
 
+double Fitter::price(double of_common, size_t i) const {
+  return of_common * dearness_[fitted_[i]] * visibility_.share(static_cast<Eigen::Index>(i));
+}
+
+double Fitter::price_of_change(size_t i) const {
+  return last_.empty() ? 0.0 : options_.smoothness * visibility_.hold(static_cast<Eigen::Index>(i));
+}
+
 double Fitter::cost(const std::vector<float>& values) const {
   double sum = 0.0;
-  for (const uint32_t c : fitted_) {
+  for (size_t i = 0; i < fitted_.size(); ++i) {
+    const uint32_t c = fitted_[i];
     const double value = values[c];
-    sum += dearness_[c] * (options_.ridge * value * value + options_.sparsity * std::abs(value));
-    if (!last_.empty()) sum += options_.smoothness * std::pow(value - static_cast<double>(last_[c]), 2);
+    sum += price(options_.ridge, i) * value * value + price(options_.sparsity, i) * std::abs(value);
+    if (!last_.empty()) sum += price_of_change(i) * std::pow(value - static_cast<double>(last_[c]), 2);
   }
   return sum;
 }
@@ -138,23 +147,29 @@ bool Fitter::linearise(const std::vector<float>& values) {
     hessian_ *= square_mm;
     return true;
   }
+  hessian_ = square_mm * gathered(vertex_weights_);
+  if (!visibility_.is_whole())
+    visibility_.find(hessian_.diagonal() / square_mm, gathered(visibility_.ever() / confidence_).diagonal());
+  return true;
+}
+
+Eigen::MatrixXd Fitter::gathered(const Eigen::VectorXd& vertex_weights) const {
   const auto& weights = subject_->weights();
-  const Eigen::SparseMatrix<double> weighted = weights.transpose() * vertex_weights_.asDiagonal();
+  const Eigen::SparseMatrix<double> weighted = weights.transpose() * vertex_weights.asDiagonal();
   const Eigen::SparseMatrix<double> between = weighted * weights;
   const auto count = node_columns_.cols();
-  hessian_.setZero(count, count);
+  Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(count, count);
   for (int axis = 0; axis < 3; ++axis) {
     const Eigen::MatrixXd columns = axis_rows(node_columns_, axis), jaw = axis_rows(jaw_slopes_, axis);
-    const Eigen::MatrixXd gathered = between * columns;
-    dense::add_transposed_product(1.0, columns, gathered, hessian_);
+    const Eigen::MatrixXd across_nodes = between * columns;
+    dense::add_transposed_product(1.0, columns, across_nodes, hessian);
     const Eigen::MatrixXd pulled = weighted * jaw;
     const Eigen::MatrixXd across = dense::transposed_product(columns, pulled);
-    hessian_.rightCols<3>() += across;
-    hessian_.bottomRows<3>() += across.transpose();
-    hessian_.bottomRightCorner<3, 3>() += jaw.transpose() * vertex_weights_.asDiagonal() * jaw;
+    hessian.rightCols<3>() += across;
+    hessian.bottomRows<3>() += across.transpose();
+    hessian.bottomRightCorner<3, 3>() += jaw.transpose() * vertex_weights.asDiagonal() * jaw;
   }
-  hessian_ *= square_mm;
-  return true;
+  return hessian;
 }
 
 /// Turns each eye as its vertices turn, by the rotation of least squares about its centre (Kabsch 1976). One
@@ -197,14 +212,13 @@ Eigen::VectorXd Fitter::step(const Eigen::VectorXd& slope, const std::vector<flo
   const auto count = static_cast<Eigen::Index>(fitted_.size());
   Eigen::MatrixXd curvature = hessian_;
   for (Eigen::Index i = 0; i < count; ++i)
-    curvature(i, i) += damping * hessian_(i, i) +
-                       options_.ridge * dearness_[fitted_[static_cast<size_t>(i)]] +
-                       (last_.empty() ? 0.0 : options_.smoothness) + 1e-12;
+    curvature(i, i) += damping * hessian_(i, i) + price(options_.ridge, static_cast<size_t>(i)) +
+                       price_of_change(static_cast<size_t>(i)) + 1e-12;
   std::vector<StepBound> bounds(fitted_.size());
   for (size_t i = 0; i < bounds.size(); ++i) {
     const rig::Channel& channel = subject_->channels()[fitted_[i]];
     bounds[i] = {static_cast<double>(channel.minimum), static_cast<double>(channel.maximum),
-                 options_.sparsity * dearness_[fitted_[i]], is_held_[fitted_[i]]};
+                 price(options_.sparsity, i), is_held_[fitted_[i]]};
   }
   Eigen::VectorXd move(count), pull;
   bounded_step(
@@ -214,12 +228,14 @@ Eigen::VectorXd Fitter::step(const Eigen::VectorXd& slope, const std::vector<flo
   return move;
 }
 
-void Fitter::take_weights(const Target& target) {
+void Fitter::take_weights(const Target& target, bool is_next) {
   Eigen::VectorXd weights = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(subject_->vertex_count()));
   for (size_t v = 0; v < subject_->vertex_count(); ++v)
     if (subject_->follows(v)) weights[static_cast<Eigen::Index>(v)] = target.confidence[v];
-  if (!(weights.sum() > 0.0)) throw Error("the target contains no vertices that the muscles move");
-  weights /= weights.sum();
+  confidence_ = weights.sum();
+  if (!(confidence_ > 0.0)) throw Error("the target contains no vertices that the muscles move");
+  visibility_.begin(weights, is_next);
+  weights /= confidence_;
   if (vertex_weights_.size() != weights.size() || vertex_weights_ != weights) linear_at_.clear();
   if (target.normals.size() > 0 || slide_normals_.size() > 0) linear_at_.clear();
   vertex_weights_ = weights;
@@ -242,7 +258,7 @@ Eigen::VectorXd Fitter::slope_of(const Eigen::VectorXd& difference, bool by_colu
 }
 
 Linearised Fitter::linearised(const Target& target, const std::vector<float>& values) {
-  take_weights(target);
+  take_weights(target, false);
   last_.clear();
   is_sequence_ = false;
   Eigen::VectorXd difference;
@@ -261,7 +277,7 @@ Linearised Fitter::linearised(const Target& target, const std::vector<float>& va
 }
 
 FitResult Fitter::solve(const Target& target, bool is_next) {
-  take_weights(target);
+  take_weights(target, is_next);
   std::vector<float> values;
   for (const rig::Channel& channel : subject_->channels())
     values.push_back(channel.rest);
@@ -279,15 +295,18 @@ FitResult Fitter::solve(const Target& target, bool is_next) {
     for (size_t c = 0; c < linear_at_.size(); ++c)
       away = std::max(away, static_cast<double>(std::abs(linear_at_[c] - values[c])));
     const bool is_fresh = away > (is_next ? 0.15 : 0.25);
+    const double cost_before = cost(values);
     const bool is_linear =
         is_fresh ? linearise(values)
                  : is_next || sensitivity_.linearise(subject_->controls(values), subject_->nodes(), true);
     if (!is_linear) break;
+    value += cost(values) - cost_before;  // which depends on what of each channel is seen
     Eigen::VectorXd slope = slope_of(difference, is_next);
     for (Eigen::Index i = 0; i < slope.size(); ++i) {
       const uint32_t c = fitted_[static_cast<size_t>(i)];
-      slope[i] += options_.ridge * dearness_[c] * static_cast<double>(values[c]);
-      if (!last_.empty()) slope[i] += options_.smoothness * static_cast<double>(values[c] - last_[c]);
+      slope[i] += price(options_.ridge, static_cast<size_t>(i)) * static_cast<double>(values[c]);
+      if (!last_.empty())
+        slope[i] += price_of_change(static_cast<size_t>(i)) * static_cast<double>(values[c] - last_[c]);
     }
     bool fell = false;
     double moved = 0.0, gain = 0.0;
@@ -331,26 +350,6 @@ FitResult Fitter::solve(const Target& target, bool is_next) {
   if (is_sequence_) last_ = values;
   finish(target, result);
   return result;
-}
-
-void Misses::add(double left, double moved, double confidence) {
-  constexpr double moves = 5e-4;  // metres
-  left_ += confidence * left * left;
-  whole_ += confidence * moved * moved;
-  confidence_ += confidence;
-  miss_ += left;
-  ++count_;
-  if (moved > moves) {
-    miss_moved_ += left;
-    ++count_moved_;
-  }
-}
-
-void Misses::write(FitResult& result) const {
-  result.share = whole_ > 0.0 ? 1.0 - left_ / whole_ : left_ > 0.0 ? 0.0 : 1.0;
-  result.rms_mm = confidence_ > 0.0 ? 1e3 * std::sqrt(left_ / confidence_) : 0.0;
-  result.error_mm = 1e3 * (count_moved_ > 0 ? miss_moved_ / static_cast<double>(count_moved_)
-                                            : miss_ / static_cast<double>(std::max<size_t>(1, count_)));
 }
 
 void Fitter::finish(const Target& target, FitResult& result) {

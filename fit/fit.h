@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "fit/subject.h"
+#include "fit/visibility.h"
 #include "sim/sensitivity.h"
 
 namespace fascia::fit {
@@ -39,7 +40,7 @@ struct FitResult {
   Eigen::VectorXd
       displacements;  ///< 3 x #vertices, metres: the fitted pose, solved from rest as `pose` would
   /// By channel: change of the activation, with all others re-optimised, that raises the root mean square
-  /// error by 0.05 mm (from the Hessian of the fit); 0 for channels that are not fitted.
+  /// error by 0.05 mm (from the Hessian of the fit); 0 for channels that are not fitted; empty: not known.
   std::vector<double> spread;
   /// Pairs of active channels that the target hardly distinguishes: correlation above 0.9 in the inverse of
   /// that Hessian.
@@ -94,7 +95,13 @@ class Fitter {
 
  private:
   FitResult solve(const Target& target, bool is_next);
-  void take_weights(const Target& target);
+  void take_weights(const Target& target, bool is_next);
+  /// Half the Hessian of the weighted squared distance, square metres; `vertex_weights` by vertex.
+  Eigen::MatrixXd gathered(const Eigen::VectorXd& vertex_weights) const;
+  /// A price of channel `fitted_[i]`, given that of a common channel that is seen whole; and that of its
+  /// change.
+  double price(double of_common, size_t i) const;
+  double price_of_change(size_t i) const;
   /// Half the gradient of the mean squared distance, by the adjoint or by the columns at hand.
   Eigen::VectorXd slope_of(const Eigen::VectorXd& difference, bool by_columns) const;
   /// Mean squared error plus penalties of `values`; poses the subject.
@@ -125,7 +132,9 @@ class Fitter {
   Eigen::MatrixXd jaw_slopes_;      ///< 3 #vertices x 3
   Eigen::MatrixXd hessian_;         ///< #fitted square: of the mean squared error in mm^2, halved
   Eigen::VectorXd vertex_weights_;  ///< #vertices: confidence over its sum
-  Eigen::VectorXd slide_normals_;   ///< of the target; empty: distances count in all directions
+  double confidence_ = 0.0;         ///< sum of the target's confidences
+  Visibility visibility_;
+  Eigen::VectorXd slide_normals_;  ///< of the target; empty: distances count in all directions
   bool is_sequence_ = false;
 };
 

@@ -1,4 +1,5 @@
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <map>
 #include <mutex>
@@ -17,14 +18,17 @@ struct fascia_curves {
   std::array<float, 3> head_share = {};
   CountedHandle counted;
 
-  /// What each curve drives in an asset; found once.
+  /// What each curve drives in an asset; found once. Of several that drive the same, the first does.
   const std::vector<std::vector<Driven>>& driven(const Asset& asset) const {
     const std::lock_guard lock(mutex_);
     auto& found = driven_[asset.serial()];
     if (!found) {
       auto made = std::make_unique<std::vector<std::vector<Driven>>>();
-      for (const Curve& curve : curves.curves)
-        made->push_back(asset.resolve(curve.name));
+      for (const Curve& curve : curves.curves) {
+        std::vector<Driven> targets = asset.resolve(curve.name);
+        if (std::find(made->begin(), made->end(), targets) != made->end()) targets.clear();
+        made->push_back(std::move(targets));
+      }
       found = std::move(made);  // whole, or not at all
     }
     return *found;

@@ -26,6 +26,8 @@ namespace fascia::runtime {
 struct Target {
   enum class Kind : uint8_t { channel, member } kind = Kind::channel;
   uint32_t index = 0;
+
+  bool operator==(const Target&) const = default;
 };
 
 /// One of the things that a name drives.
@@ -33,6 +35,8 @@ struct Driven {
   Target target;
   float share = 1.0F;
   bool overrides = false;  ///< takes the channel from all other names, where it speaks
+
+  bool operator==(const Driven&) const = default;
 };
 
 /// A member of a named set as the channels it adds to. Eyes turn by the weight itself, for a direction of

@@ -28,8 +28,9 @@ if [ "$full" = 1 ]; then
   ASAN_OPTIONS=detect_leaks=0 run_suite asan build/asan
   # Threads share work in the tool, in crowds of faces and in batches.
   cmake --preset tsan >/dev/null
-  cmake --build build/tsan --target test_runtime test_snapshot test_batch
+  cmake --build build/tsan --target fascia test_runtime test_snapshot test_batch
   for program in test_runtime test_snapshot test_batch; do build/tsan/bin/$program; done
+  tests/determinism/same_bytes.sh build/tsan/bin/fascia build/tests/snapshots build/tests/samples
   cmake --preset fuzz >/dev/null
   cmake --build build/fuzz --target fuzz
   tests/fuzz/run.sh build/fuzz/bin 300
@@ -45,6 +46,8 @@ if [ "$full" = 1 ]; then
   ASAN_OPTIONS=detect_leaks=0 xvfb-run -a -s '-screen 0 1600x1000x24' \
     build/asan/bin/fascia view --monkey "$(date +%j)" --seconds 300
   tests/validator/validate.sh build/bin/fascia || [ $? -eq 77 ]
+  cases=${FASCIA_MEASURED:-../shared}/cases
+  if [ -d "$cases" ]; then python3 bench/cases/table.py build/bin/fascia "$cases"; else echo "skipped: no cases at $cases"; fi
   scripts/packages.sh
   scripts/runtime.sh
   scripts/windows.sh || [ $? -eq 77 ]

@@ -1,10 +1,12 @@
 #include "cli/take/curves.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "formats/scene.h"
 #include "geometry/error.h"
+#include "geometry/text.h"
 
 namespace fascia::cli {
 
@@ -49,6 +51,28 @@ std::array<float, 4> Curves::head(double seconds) const {
   return quaternion;
 }
 
+bool Curves::head_moves() const {
+  constexpr double step = 1.0 / 30.0, turned = 1e-6;
+  for (double seconds = 0.0; turns_head() && seconds <= duration() + step; seconds += step)
+    if (const auto q = head(seconds); std::abs(q[0]) + std::abs(q[1]) + std::abs(q[2]) > turned) return true;
+  return false;
+}
+
+namespace {
+
+/// Names that the rig knows although they drive nothing: another spelling of theirs does.
+void refuse_repeated(const std::vector<std::string>& unmatched, const Face& face,
+                     const std::filesystem::path& path) {
+  for (const std::string& name : unmatched) {
+    float value = 0.0F;
+    if (fascia_face_get(face.handle(), name.c_str(), &value) == FASCIA_OK)
+      throw Error("'" + path.string() + "': '" + name +
+                  "' is there twice, once in another spelling, and would count twice: take one of them out");
+  }
+}
+
+}  // namespace
+
 MatchedNames match(const Common& common, const Curves& curves, const Face& face,
                    const std::filesystem::path& path) {
   MatchedNames names;
@@ -56,6 +80,9 @@ MatchedNames match(const Common& common, const Curves& curves, const Face& face,
   const std::set<std::string> unmatched(names.unmatched.begin(), names.unmatched.end());
   for (const std::string& name : curves.names())
     if (unmatched.count(name) == 0) names.matched.push_back(name);
+  const std::string kind = extension_of(path);
+  // Of the meshes of one avatar, which bear the same names, the first speaks.
+  if (kind != ".glb" && kind != ".gltf") refuse_repeated(names.unmatched, face, path);
   for (const std::string& note : curves.notes())
     common.warn("'" + path.filename().string() + "': " + note);
   if (names.matched.empty())

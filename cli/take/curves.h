@@ -24,6 +24,8 @@ class Curves {
   double duration() const { return to_ - from_; }  ///< seconds, of the piece
   double start() const { return info_.start + from_; }
   bool turns_head() const { return info_.has_head != 0; }
+  /// Whether the head is ever turned away from straight ahead.
+  bool head_moves() const;
   const std::vector<std::string>& names() const { return names_; }
   /// How the file was taken and what was mended, a sentence each.
   std::vector<std::string> notes() const { return {info_.notes, info_.notes + info_.note_count}; }

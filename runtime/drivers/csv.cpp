@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -21,11 +22,16 @@ std::string where(std::size_t row, std::string_view column) {
 /// Seconds in one unit of a column of times, by the column's name; 0 when it is none.
 double time_unit(std::string_view name) {
   const std::string key = spelled(name);
-  for (const char* seconds : {"time", "times", "seconds", "sec", "t", "timestamp", "timestamps", "times(s)",
-                              "time(s)", "time[s]", "timesec", "timeseconds", "timestampsec", "timecode"})
+  for (const char* seconds :
+       {"time",          "times",        "seconds",      "sec",          "t",
+        "timestamp",     "timestamps",   "times(s)",     "time(s)",      "time[s]",
+        "timesec",       "timeseconds",  "timestampsec", "timecode",     "time(sec)",
+        "time(seconds)", "timestamp(s)", "elapsed",      "elapsed_time", "elapsed_seconds",
+        "unix_time",     "frame_time"})
     if (key == spelled(seconds)) return 1.0;
-  for (const char* milliseconds : {"time_ms", "timestamp_ms", "ms", "milliseconds", "time(ms)", "time[ms]",
-                                   "time_milliseconds", "timestamp_milliseconds"})
+  for (const char* milliseconds :
+       {"time_ms", "times_ms", "timestamp_ms", "timestamp(ms)", "elapsed_ms", "ms", "milliseconds",
+        "time(ms)", "time[ms]", "time_milliseconds", "timestamp_milliseconds"})
     if (key == spelled(milliseconds)) return 1e-3;
   for (const char* microseconds : {"time_us", "timestamp_us", "microseconds"})
     if (key == spelled(microseconds)) return 1e-6;
@@ -86,6 +92,18 @@ Columns find_columns(const Table& table) {
   return columns;
 }
 
+/// A name in any spelling, but for letters that stand alone: x and X may be pixels and millimetres.
+std::string column_key(std::string_view name) {
+  constexpr std::string_view joints = "_-. :", sides = "lLrR";
+  std::string key = spelled(name) + "|";
+  for (std::size_t begin = 0; begin < name.size();) {
+    const std::size_t end = std::min(name.find_first_of(joints, begin), name.size());
+    if (end == begin + 1 && sides.find(name[begin]) == sides.npos) key += name[begin];
+    begin = end + 1;
+  }
+  return key;
+}
+
 /// Two columns for one thing would count twice.
 void refuse_repeated_columns(const Table& table) {
   std::map<std::string, std::size_t> seen;
@@ -93,7 +111,7 @@ void refuse_repeated_columns(const Table& table) {
     if (table.header[c].empty()) continue;
     const Alias* alias = find_alias(table.header[c]);
     if (alias && alias->measure == Measure::none) continue;
-    const std::string key = alias ? "alias " + alias->name : spelled(readings(table.header[c]).back());
+    const std::string key = alias ? "alias " + alias->name : column_key(table.header[c]);
     const auto [before, is_new] = seen.emplace(key, c);
     if (!is_new)
       throw Error("curves: row 1: columns " + std::to_string(before->second + 1) + " (" +
@@ -231,6 +249,20 @@ void hold_ends(Curve& curve, double first, double last) {
   }
 }
 
+/// Whether a column has cells, and none of them is a number: labels, names of pictures.
+bool is_text(const Table& table, std::size_t column) {
+  bool has_letters = false;
+  for (const auto& row : table.rows) {
+    if (is_missing(row[column])) continue;
+    const auto is_letter = [](char c) {
+      return std::isalpha(static_cast<unsigned char>(c)) != 0 || static_cast<unsigned char>(c) >= 0x80;
+    };
+    if (cell_value(row[column])) return false;
+    has_letters = has_letters || std::any_of(row[column].begin(), row[column].end(), is_letter);
+  }
+  return has_letters;
+}
+
 Curve read_column(const Table& table, std::size_t c, const std::vector<std::size_t>& order,
                   const std::vector<double>& times, const std::vector<bool>& lost, Gaps& gaps) {
   Curve curve;
@@ -293,14 +325,20 @@ Curves read_csv_curves(std::string_view text, const ReadOptions& options) {
     lost[row] = is_lost(table, table.rows[row]);
     gaps.lost += lost[row];
   }
+  std::string texts;
   for (std::size_t c = 0; c < table.header.size(); ++c) {
     if (table.header[c].empty()) continue;
     if (std::find(columns.clocks.begin(), columns.clocks.end(), c) != columns.clocks.end()) continue;
     if (const Alias* alias = find_alias(table.header[c]); alias && alias->measure == Measure::none) continue;
+    if (is_text(table, c)) {
+      texts += (texts.empty() ? "" : ", ") + shown(table.header[c]);
+      continue;
+    }
     Curve curve = read_column(table, c, order, times, lost, gaps);
     if (!curve.times.empty()) result.curves.push_back(std::move(curve));
   }
   if (result.curves.empty()) throw Error("curves: the CSV file has no column of values");
+  if (!texts.empty()) result.notes.push_back("columns without a number are left out: " + texts);
   if (gaps.lost > 0)
     result.notes.push_back(std::to_string(gaps.lost) +
                            " rows without a face found (success, confidence) are bridged");

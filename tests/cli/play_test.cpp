@@ -122,6 +122,17 @@ TEST_F(Play, OtherProgramsNamesDriveTheRigAndTheRestIsOneLine) {
   EXPECT_NE(names.out.find("AU12_r"), std::string::npos);
 }
 
+TEST_F(Play, OneThingInTwoSpellingsIsRefused) {
+  std::ofstream(at("twice.csv")) << "time,jawOpen,blendShapes.JawOpen\n0,0,0\n1,1,1\n";
+  std::ofstream(at("twice.json"))
+      << R"({"fps": 30, "channels": {"jawOpen": [0, 1], "blendShapes.JawOpen": [0, 1]}})";
+  for (const char* name : {"twice.csv", "twice.json"}) {
+    const Outcome outcome = run("play " + at("rig.glb") + " --curves " + at(name) + " -o " + at("out.glb"));
+    EXPECT_EQ(outcome.code, 1) << name;
+    EXPECT_NE(outcome.err.find("is there twice"), std::string::npos) << outcome.err;
+  }
+}
+
 TEST_F(Play, AStillTakeHasAKeyAtItsEndsAndFew) {
   const json report = play("time,jawOpen\n0,0.3\n10,0.3\n", "--fps 60");
   EXPECT_EQ(report["frames"], 601);

@@ -154,6 +154,32 @@ TEST_F(Fit, VerticesWithoutConfidenceAreIgnored) {
   EXPECT_THROW(Fitter(*subject).fit(target), Error);
 }
 
+/// A take whose mouth goes out of sight: what moved it stays, whatever the rest of the face does.
+TEST_F(Fit, WhatIsNoLongerSeenStays) {
+  std::vector<float> values = rest();
+  Fitter fitter(*subject);
+  const auto jaw = static_cast<size_t>(subject->channel("jaw_open")),
+             brow = static_cast<size_t>(subject->channel("frontalis_medial_left")),
+             smile = static_cast<size_t>(subject->channel("zygomaticus_major_superior_left"));
+  const double brow_height =
+      0.5 * (subject->file().rig.skull.eye_left.centre.y() + subject->file().rig.skull.eye_right.centre.y());
+  FitResult seen, result;
+  for (int frame = 0; frame < 12; ++frame) {
+    set(values, "jaw_open", std::min(0.4F, 0.1F * static_cast<float>(frame + 1)));
+    set(values, "zygomaticus_major_superior_left", std::min(0.6F, 0.15F * static_cast<float>(frame + 1)));
+    set(values, "frontalis_medial_left", 0.05F * static_cast<float>(frame));
+    Target target = target_of(values);
+    for (size_t v = 0; frame >= 5 && v < target.confidence.size(); ++v)
+      if (subject->rest()[static_cast<Eigen::Index>(3 * v + 1)] < brow_height) target.confidence[v] = 0.0;
+    result = fitter.follow(target);
+    if (frame == 4) seen = result;
+  }
+  EXPECT_NEAR(seen.activations[jaw], 0.4F, 0.02F);
+  EXPECT_NEAR(result.activations[jaw], seen.activations[jaw], 0.02F);
+  EXPECT_NEAR(result.activations[smile], seen.activations[smile], 0.03F);
+  EXPECT_NEAR(result.activations[brow], values[brow], 0.05F) << "what is seen goes on";
+}
+
 TEST_F(Fit, ToolFitsAPoseOfTheRig) {
   for (const char* kind : {"posed.obj", "posed.glb"}) {
     ASSERT_EQ(
@@ -194,6 +220,24 @@ TEST_F(Fit, ToolFitsShapesAndTakes) {
                                " --shape viseme_aa -o " + at("aa.json") + " --json");
   ASSERT_EQ(one.code, 0) << one.err;
   EXPECT_GT(json::parse(one.out)["share"].get<double>(), 0.98);
+}
+
+TEST_F(Fit, FramesOfASequenceAreInTheOrderOfTheirNumbers) {
+  fs::create_directories(at("sequence"));
+  for (const int frame : {1, 2, 10})
+    ASSERT_EQ(run("pose " + at("rig.glb") + " --set zygomaticus_minor_left=" + std::to_string(0.05 * frame) +
+                  " -o " + at("sequence/frame_" + std::to_string(frame) + ".obj"))
+                  .code,
+              0);
+  const cli::Outcome fitted = run("fit " + at("rig.glb") + " --target " + at("sequence") +
+                                  " --smoothness 0 -o " + at("sequence.json") + " --json");
+  ASSERT_EQ(fitted.code, 0) << fitted.err;
+  std::ifstream file(at("sequence.json"));
+  const json curves = json::parse(file);
+  const json& curve = curves["zygomaticus_minor_left"]["values"];
+  ASSERT_EQ(curve.size(), 3u);
+  EXPECT_LT(curve[0].get<double>(), curve[1].get<double>());
+  EXPECT_NEAR(curve[2].get<double>(), 0.5, 0.05);
 }
 
 /// A head that came as GLB, seen as OBJ: its vertices stand in another order than its faces name them in.

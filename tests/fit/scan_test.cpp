@@ -186,5 +186,26 @@ TEST_F(FitScan, TheToolTakesAScanInAnyPoseAndUnit) {
   EXPECT_GT(share(truth, displacements(values_of(found))), 0.9);
 }
 
+/// In STL no triangle shares a corner with another.
+TEST_F(FitScan, AnStlScanIsFitted) {
+  ASSERT_EQ(run("pose " + at("rig.glb") + " --set jaw_open=0.3 --level low -o " + at("open.glb")).code, 0);
+  const formats::Scene posed = formats::read(at("open.glb"));
+  std::ofstream stl(at("open.stl"));
+  stl << "solid open\n";
+  for (const formats::SceneMesh& mesh : posed.meshes)
+    for (const Triangle& t : mesh.triangles) {
+      stl << "facet normal 0 0 0\nouter loop\n";
+      for (const int v : t)
+        stl << "vertex " << mesh.positions[static_cast<size_t>(v)].transpose() << "\n";
+      stl << "endloop\nendfacet\n";
+    }
+  stl << "endsolid open\n";
+  stl.close();
+  const cli::Outcome fitted = run("fit " + at("rig.glb") + " --target " + at("open.stl") +
+                                  " --as scan --level low -o " + at("stl.json") + " --json");
+  ASSERT_EQ(fitted.code, 0) << fitted.err;
+  EXPECT_GT(json::parse(fitted.out)["share"].get<double>(), 0.8);
+}
+
 }  // namespace
 }  // namespace fascia::fit

@@ -269,6 +269,26 @@ TEST(Values, PercentAndIntensitiesAreScaledWithAWarning) {
   EXPECT_FLOAT_EQ(value(units, "AU4", 1), 0.2F);
 }
 
+TEST(Captures, OpenFaceWithItsLandmarksIsRead) {
+  // Names that differ in case alone are other things: pixels and millimetres.
+  std::string header = "frame,face_id,timestamp,confidence,success", row = ",0,0.04,0.98,1";
+  for (const char* kind :
+       {"eye_lmk_x_", "eye_lmk_y_", "eye_lmk_X_", "eye_lmk_Y_", "x_", "y_", "X_", "Y_", "p_"})
+    for (int i = 0; i < 3; ++i) {
+      header += "," + std::string(kind) + std::to_string(i);
+      row += ",101.5";
+    }
+  const Curves curves = read(header + ",AU12_r\n1" + row + ",2.5\n");
+  EXPECT_FLOAT_EQ(value(curves, "AU12_r", 0), 0.5F);
+}
+
+TEST(Captures, ColumnsOfTextAreLeftOut) {
+  const Curves curves = read("time (seconds),input,jawOpen,label\n0,a.jpg,0.2,happy\n1,b.jpg,0.4,sad\n");
+  ASSERT_EQ(curves.curves.size(), 1U);
+  EXPECT_FLOAT_EQ(value(curves, "jawOpen", 1), 0.4F);
+  EXPECT_TRUE(has_note(curves, "columns without a number are left out"));
+}
+
 TEST(Captures, JsonOfManyProgramsIsRead) {
   const Curves audio2face = read(
       R"({"exportFps":25,"numPoses":2,"numFrames":3,"facsNames":["jawOpen","mouthPucker"],"weightMat":[[0,1],[0.5,0.5],[1,0]]})");
