@@ -106,6 +106,20 @@ std::string states_text(const Snapshot& snapshot) {
   return text;
 }
 
+/// A whole number of 32 bits; a larger one, or a fraction, is an error.
+uint32_t whole(const Json& json) {
+  if (json.is_number_unsigned() && json.get<uint64_t>() <= std::numeric_limits<uint32_t>::max())
+    return json.get<uint32_t>();
+  throw Error(json.dump().substr(0, 40) + " stands where a whole number from 0 to 4294967295 should");
+}
+
+std::vector<uint32_t> whole_numbers(const Json& json) {
+  std::vector<uint32_t> list;
+  for (const Json& number : json)
+    list.push_back(whole(number));
+  return list;
+}
+
 /// `before`: the vertices of the regions before it.
 Region region_from(const Json& json, const std::vector<Mesh>& meshes, size_t before) {
   Region region;
@@ -113,7 +127,7 @@ Region region_from(const Json& json, const std::vector<Mesh>& meshes, size_t bef
   region.tolerance_mm = json.at("tolerance_mm").get<double>();
   if (!(region.tolerance_mm > 0.0))
     throw Error("region '" + region.name + "': tolerance_mm has to be above 0");
-  const auto count = json.at("count").get<size_t>();
+  const size_t count = whole(json.at("count"));
   size_t most = 0;
   for (const Mesh& mesh : meshes)
     most += mesh.vertex_count;
@@ -158,8 +172,7 @@ Snapshot parsed(const Json& json) {
     throw Error("quantum_mm has to lie between 0.000001 and 10");
   snapshot.reasons = json.at("reasons").get<std::vector<std::string>>();
   for (const Json& mesh : json.at("meshes"))
-    snapshot.meshes.push_back(
-        {mesh.at(0).get<uint32_t>(), mesh.at(1).get<uint32_t>(), mesh.at(2).get<uint32_t>()});
+    snapshot.meshes.push_back({whole(mesh.at(0)), whole(mesh.at(1)), whole(mesh.at(2))});
   size_t vertices = 0;
   for (const Json& region : json.at("regions")) {
     snapshot.regions.push_back(region_from(region, snapshot.meshes, vertices));
@@ -204,9 +217,9 @@ WantedRegion wanted_region(const std::string& name, const Json& json) {
   if (json.contains("landmarks"))
     region.landmarks = json["landmarks"].get<std::vector<std::string>>();
   else
-    region.vertices = json["vertices"].get<std::vector<uint32_t>>();
-  if (json.contains("mesh")) region.mesh = json["mesh"].get<uint32_t>();
-  if (json.contains("primitive")) region.primitive = json["primitive"].get<uint32_t>();
+    region.vertices = whole_numbers(json["vertices"]);
+  if (json.contains("mesh")) region.mesh = whole(json["mesh"]);
+  if (json.contains("primitive")) region.primitive = whole(json["primitive"]);
   for (const auto& [key, number] :
        {std::pair{"radius_mm", &region.radius_mm}, std::pair{"tolerance_mm", &region.tolerance_mm}}) {
     if (!json.contains(key)) continue;

@@ -3,7 +3,7 @@
 # under any language, time zone, address space and size of environment.
 #   same_bytes.sh FASCIA FOLDER_OF_THE_EMBEDDED_HEAD FOLDER_OF_THE_SMALL_RIG
 set -euo pipefail
-tool=$1 heads=$2 samples=$3
+tool=$(realpath "$1") heads=$(realpath "$2") samples=$(realpath "$3")
 place=$(mktemp -d)
 trap 'rm -rf "$place"' EXIT
 cp "$heads"/embedded_head.obj "$heads"/embedded_head_landmarks.json "$samples"/tiny.glb "$samples"/smile.csv "$place"
@@ -47,7 +47,7 @@ make_all two --threads 2
 # Another language, time zone, size of environment and order of commands, addresses that are not random.
 (LOCPATH=$place/locales
  [ -e "$LOCPATH/de_DE.UTF-8" ] || unset LOCPATH
- export LC_ALL=de_DE.UTF-8 LANG=tr_TR.UTF-8 TZ=Asia/Kathmandu JUNK=$(head -c 20000 /dev/zero | tr '\0' x) ${LOCPATH:+LOCPATH}
+ export ${LOCPATH:+LOCPATH} LC_ALL=de_DE.UTF-8 LANG=tr_TR.UTF-8 TZ=Asia/Kathmandu JUNK=$(head -c 20000 /dev/zero | tr "\0" x)
  [ "$(locale decimal_point)" = , ] || { echo "de_DE.UTF-8 is not in force"; exit 1; }
  setarch --addr-no-randomize bash -c \
    "set -e; $(declare -f make make_all); tool=$tool; outputs='$(reversed)'; make_all three") ||

@@ -50,7 +50,8 @@ typedef struct fascia_curves_info {
 FASCIA_API fascia_result fascia_curves_get_info(const fascia_curves* curves, fascia_curves_info* info);
 
 /** Counts the curves that drive the asset's channels or members; matched[i] is 1 for those, else 0: where two
- * names mean the same ("jawOpen", "JawOpen") the first drives it. `matched` (as many elements as curves) may be NULL. */
+ * names mean the same ("jawOpen", "JawOpen") the first drives it. `matched` (as many elements as curves) may
+ * be NULL. */
 FASCIA_API fascia_result fascia_curves_match(const fascia_curves* curves, const fascia_asset* asset,
                                              uint32_t* count, uint8_t* matched);
 
