@@ -10,7 +10,7 @@ for name in "$@"; do
   place=$(mktemp -d)
   mkdir -p "$here/corpus/$name"
   echo "fuzz_$name, $seconds seconds"
-  if ! "$programs/fuzz_$name" -max_total_time="$seconds" -timeout=20 -rss_limit_mb=3000 -malloc_limit_mb=2000 \
+  if ! "$programs/fuzz_$name" -max_total_time="$seconds" -timeout=60 -rss_limit_mb=3000 -malloc_limit_mb=2000 \
        -max_len=16384 -print_final_stats=1 -artifact_prefix="$PWD/finding-$name-" "$place" "$here/corpus/$name" \
        >"$place.log" 2>&1; then
     grep -m1 -A12 'ERROR\|runtime error\|terminate' "$place.log" || tail -20 "$place.log"

@@ -3,39 +3,7 @@
 //   node load.mjs FILE.glb SHAPE|- POSE.ply local|world   with SHAPE at 1, vertices agree to 1e-4 of the head's size
 // `local` compares before node transforms (heads that came as OBJ, PLY or STL), `world` after them (GLB, glTF).
 import {readFile} from 'node:fs/promises';
-
-// What the loader expects of a browser; pictures are not looked at.
-globalThis.self = globalThis;
-globalThis.Image = class {
-  set src(_) {
-    this.height = 1;
-    queueMicrotask(() => this.onload?.());
-  }
-};
-globalThis.createImageBitmap = async () => ({width: 1, height: 1, close() {}});
-const {GLTFLoader} = await import('three/examples/jsm/loaders/GLTFLoader.js');
-const {Texture, Vector3} = await import('three');
-// Pictures of KTX2 are not looked at either.
-const pictures = {load: (url, done) => done(new Texture())};
-
-async function load(path) {
-  const bytes = await readFile(path);
-  const buffer = bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength);
-  return new Promise((resolve, reject) => new GLTFLoader().setKTX2Loader(pictures).parse(buffer, '', resolve, reject));
-}
-
-/** Meshes in the order of the file: by mesh, then by primitive. */
-function meshesOf(gltf) {
-  const found = [];
-  gltf.scene.updateMatrixWorld(true);
-  gltf.scene.traverse((object) => {
-    if (!object.isMesh) return;
-    const {meshes, primitives} = gltf.parser.associations.get(object);
-    found.push({object, order: [meshes ?? 0, primitives ?? 0]});
-  });
-  found.sort((a, b) => a.order[0] - b.order[0] || a.order[1] - b.order[1]);
-  return found.map((entry) => entry.object);
-}
+import {load, meshesOf, Vector3} from './loading.mjs';
 
 function pointsOf(mesh, shape, space) {
   if (mesh.morphTargetInfluences && shape !== '-') {
