@@ -256,7 +256,11 @@ void Workspace::update(double seconds) {
       }
     }
   }
-  if (playback.is_recording) playback.recorded.push_back(state().pose);
+  if (playback.is_recording) {
+    playback.recorded_seconds += seconds;
+    while (static_cast<double>(playback.recorded.size()) <= playback.recorded_seconds * recorded_rate)
+      playback.recorded.push_back(state().pose);
+  }
   if (shake_ && (*shake_ += seconds) > 1.2) shake_.reset();
   if (!simulation) return;
   if (coming_reference_.valid() &&

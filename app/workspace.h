@@ -45,11 +45,14 @@ struct Comparison {
   std::string file;
 };
 
+constexpr int recorded_rate = 60;  ///< poses a second
+
 /// The timeline's own state.
 struct Playback {
   bool is_playing = false, is_recording = false;
   double time = 0.0;                                    ///< seconds in the take
-  std::vector<std::map<std::string, double>> recorded;  ///< the pose in every sixtieth of a second
+  std::vector<std::map<std::string, double>> recorded;  ///< the pose, `recorded_rate` times a second
+  double recorded_seconds = 0.0;
 };
 
 /// Skin held by the mouse.

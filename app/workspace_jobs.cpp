@@ -91,6 +91,7 @@ void Workspace::listen(LiveReceiver::Protocol protocol, uint16_t port) {
 
 void Workspace::start_recording() {
   playback.recorded.clear();
+  playback.recorded_seconds = 0.0;
   playback.is_recording = true;
 }
 
@@ -111,7 +112,7 @@ void Workspace::stop_recording() {
       values.push_back(found == pose.end() ? rest : found->second);
     }
   }
-  const Json json = {{"fps", 60}, {"channels", channels}};
+  const Json json = {{"fps", recorded_rate}, {"channels", channels}};
   try {
     const std::filesystem::path folder = places_.state / "recordings";
     std::filesystem::create_directories(folder);

@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "cli/bake_file.h"
 #include "cli/common.h"
@@ -13,13 +15,10 @@ void run(const Common& common, const BakeRequest& request) {
   const auto started = std::chrono::steady_clock::now();
   const BakeFigures figures = bake_file(common, request);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
-  double megabytes = 0.0;
-  for (const double shape : figures.megabytes)
-    megabytes += shape;
   char cost[64] = "";
-  if (!figures.megabytes.empty())
-    std::snprintf(cost, sizeof cost, ", %.2f MB a shape",
-                  megabytes / static_cast<double>(figures.megabytes.size()));
+  if (const auto [least, most] = std::minmax_element(figures.megabytes.begin(), figures.megabytes.end());
+      least != figures.megabytes.end())
+    std::snprintf(cost, sizeof cost, ", %.2f to %.2f MB a shape", *least, *most);
   char time[32];
   std::snprintf(time, sizeof time, "%.2f", seconds);
   common.say("wrote " + request.output.string() + ": " + std::to_string(figures.names.size()) +
@@ -33,7 +32,7 @@ void run(const Common& common, const BakeRequest& request) {
   common.report({{"output", request.output.string()},
                  {"files", files},
                  {"shapes", figures.names},
-                 {"megabytes", megabytes},
+                 {"megabytes", std::accumulate(figures.megabytes.begin(), figures.megabytes.end(), 0.0)},
                  {"megabytes_by_shape", by_shape},
                  {"seconds", seconds}});
 }

@@ -39,12 +39,17 @@ std::string vocabulary(const Face& face, const std::string& word) {
               "; it has " + list);
 }
 
-std::string prefix_of(const std::string& set) {
-  return set == "viseme" ? "viseme_" : set == "au" ? "AU" : "";
+/// A member's name as hosts expect it: viseme_PP, AU12, AU12L.
+std::string shape_name(const std::string& set, const std::string& member) {
+  if (set == "viseme") return "viseme_" + member;
+  if (set != "au") return member;
+  const bool has_side = member.starts_with('L') || member.starts_with('R');
+  return has_side ? "AU" + member.substr(1) + member[0] : "AU" + member;
 }
 
 /// Pairs of shapes, each as what is set and what is taken off again.
-void add_correctives(std::vector<ShapeToBake>& shapes) {
+void add_correctives(const Common& common, std::vector<ShapeToBake>& shapes) {
+  const size_t before = shapes.size();
   const nlohmann::json table = nlohmann::json::parse(anatomy::embedded_file("correctives.json"));
   for (const auto& pair : table.at("pairs")) {
     std::vector<size_t> parts;
@@ -56,9 +61,11 @@ void add_correctives(std::vector<ShapeToBake>& shapes) {
                       {shapes[parts[0]].sets[0], shapes[parts[1]].sets[0]},
                       parts});
   }
+  if (shapes.size() == before)
+    common.warn("--correctives: the shapes contain none of the pairs that have one (they are ARKit's)");
 }
 
-std::vector<ShapeToBake> shapes_of(const Face& face, const BakeRequest& request) {
+std::vector<ShapeToBake> shapes_of(const Common& common, const Face& face, const BakeRequest& request) {
   std::vector<ShapeToBake> shapes;
   std::set<std::string> names;
   const auto add = [&](const std::string& name, const std::string& what) {
@@ -72,9 +79,9 @@ std::vector<ShapeToBake> shapes_of(const Face& face, const BakeRequest& request)
     }
     const std::string set = vocabulary(face, word);
     for (const std::string& member : face.set_members(set))
-      add(prefix_of(set) + member, set + ":" + member);
+      add(shape_name(set, member), set + ":" + member);
   }
-  if (request.correctives) add_correctives(shapes);
+  if (request.correctives) add_correctives(common, shapes);
   return shapes;
 }
 
@@ -166,7 +173,7 @@ BakeFigures bake_file(const Common& common, const BakeRequest& request) {
   const std::string format = format_of(request);
   Face face(request.rig,
             {format == "glb" ? FASCIA_SPACE_MESH : FASCIA_SPACE_INPUT, request.solver, request.level});
-  const std::vector<ShapeToBake> shapes = shapes_of(face, request);
+  const std::vector<ShapeToBake> shapes = shapes_of(common, face, request);
   if (shapes.empty()) throw Error("--shapes names no shape");
   BakeFigures figures;
   for (const ShapeToBake& shape : shapes)

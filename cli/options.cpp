@@ -84,10 +84,10 @@ CLI::Option* declare(CLI::App& app, const std::string& names, const Variable& va
             return app.add_option_function<double>(names, [value](double given) { *value = given; });
           },
           [&](std::vector<std::string>* list) {
-            return app.add_option(names, *list)->take_all()->allow_extra_args(false);
+            return app.add_option(names, *list)->take_all()->allow_extra_args(!names.starts_with('-'));
           },
           [&](std::vector<std::filesystem::path>* list) {
-            return app.add_option(names, *list)->take_all()->allow_extra_args(false);
+            return app.add_option(names, *list)->take_all()->allow_extra_args(!names.starts_with('-'));
           },
           [&](auto* value) { return app.add_option(names, *value); },
       },

@@ -76,11 +76,12 @@ Rectangle covered(const Shot& shot) {
 }
 
 /// Keeps what is drawn inside `at`, times `scale`, until the next call or the end of the picture.
-void keep_inside(const Rectangle& at, double scale, int x, int y) {
+/// `margin`: pixels around, that filters may reach.
+void keep_inside(const Rectangle& at, double scale, int x, int y, int margin = 0) {
   const auto up = [&](int length) { return static_cast<int>(std::ceil(length * scale)); };
   glEnable(GL_SCISSOR_TEST);
-  glScissor(x + static_cast<int>(at.x * scale), y + static_cast<int>(at.y * scale), up(at.width) + 1,
-            up(at.height) + 1);
+  glScissor(x + static_cast<int>(at.x * scale) - margin, y + static_cast<int>(at.y * scale) - margin,
+            up(at.width) + 1 + 2 * margin, up(at.height) + 1 + 2 * margin);
 }
 
 }  // namespace
@@ -380,7 +381,7 @@ void SceneRenderer::draw(const DrawList& list, const Camera& camera, const Targe
   const Rectangle inside = covered(shot);
   s.draw_behind(shot);
   s.copy_to(target, s.behind.colour(), shot);
-  keep_inside(inside, enlargement, 0, 0);
+  keep_inside(inside, enlargement, 0, 0, enlargement > 1.0 ? 3 : 0);
   const GLuint picture = look.samples < 4 ? s.draw_enlarged(shot) : s.draw_multisampled(shot);
   keep_inside(inside, 1.0, target.x, target.y);
   s.copy_to(target, picture, shot);

@@ -120,7 +120,7 @@ void show_timeline(Workspace& work, Screen& screen, const Area& area) {
   ImGui::SameLine(0, scaled(10));
   ImGui::AlignTextToFramePadding();
   if (playback.is_recording) {
-    ImGui::TextColored(p.bad, "Recording %.1f s", static_cast<double>(playback.recorded.size()) / 60.0);
+    ImGui::TextColored(p.bad, "Recording %.1f s", playback.recorded_seconds);
   } else if (has_take) {
     ImGui::Text("%s / %s", clock_text(playback.time).c_str(), clock_text(work.take->duration()).c_str());
     ImGui::SameLine(0, scaled(14));

@@ -9,6 +9,7 @@
 #include "gltf/read/container.h"
 #include "view/environment.h"
 #include "view/face/appearance.h"
+#include "view/face/face_scene.h"
 #include "view/face/fibre_tubes.h"
 #include "view/face/heat_map.h"
 #include "view/face/lattice_layers.h"
@@ -202,6 +203,44 @@ TEST(Scene, TwoSamplesSmoothEdgesAsEightDo) {
   const Image eight = drawn(8);
   EXPECT_LT(distance(drawn(2), eight), 0.7 * distance(drawn(1), eight));
   EXPECT_LT(distance(drawn(4), eight), 0.7 * distance(drawn(1), eight));
+}
+
+/// What surrounds the surfaces is drawn by itself: no line shows where the two meet.
+TEST(Scene, NoFrameShowsAroundTheSurfaces) {
+  DrawList list;
+  list.surfaces = {sphere(0.03, Shading::plain)};
+  Look look;
+  look.background = {200, 200, 200};
+  const auto drawn = [&](int samples) {
+    look.samples = samples;
+    return renderer().draw_with(list, near_camera(), look);
+  };
+  for (const int samples : {1, 2, 4, 8}) {
+    const Image image = drawn(samples);
+    for (int y = 0; y < size; ++y)
+      for (int x = 0; x < size; ++x)
+        if (std::hypot(x - 0.5 * size, y - 0.5 * size) > 0.3 * size) {
+          ASSERT_NEAR(brightness(image, x, y), brightness(image, 0, 0), 6.0)
+              << samples << " " << x << " " << y;
+        }
+  }
+}
+
+/// Lashes that are hairs are drawn without a texture; cards, which would be opaque, are not.
+TEST(Scene, HairsAreDrawnAndBareCardsAreNot) {
+  rig::Rig rig;
+  const auto lashes = [](double width) {
+    FacePart part{0, 0, "lashes", {{0, 1, 2}}, {Vec3(0, 0, 0), Vec3(width, 0, 0), Vec3(0, 0.008, 0)}, {}};
+    return part;
+  };
+  for (const auto& [width, count] : {std::pair{0.0002, 1U}, {0.006, 0U}}) {
+    FaceScene scene(rig, {lashes(width)}, Appearance());
+    const auto w = static_cast<float>(width);
+    const std::vector<float> places = {0, 0, 0, w, 0, 0, 0, 0.008F, 0};
+    FaceState state;
+    state.positions = {places};
+    EXPECT_EQ(scene.list(state, {}).surfaces.size(), count) << width;
+  }
 }
 
 TEST(Scene, MapsColourAndCutHoles) {

@@ -44,6 +44,20 @@ bool is_card(const std::string& part) {
   return part == "eye_surround" || part == "lashes" || part == "hair";
 }
 
+/// Whether the part's triangles are as thin as hairs: the cards of a texture are broad.
+bool has_strands(const FacePart& part) {
+  constexpr double broad = 5e-4;  // metres
+  std::vector<double> heights;
+  for (const Triangle& t : part.triangles)
+    heights.push_back(triangle_height(part.rest[static_cast<size_t>(t[0])],
+                                      part.rest[static_cast<size_t>(t[1])],
+                                      part.rest[static_cast<size_t>(t[2])]));
+  if (heights.empty()) return false;
+  const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
+  std::nth_element(heights.begin(), middle, heights.end());
+  return *middle < broad;
+}
+
 bool is_drawn(const std::string& part, const std::set<std::string>& layers) {
   const bool has_skin = layers.count("skin") || layers.count("strain");
   if (is_eyeball(part)) return layers.count("eyes") || has_skin;
@@ -174,6 +188,7 @@ const std::set<std::string>& FaceScene::layer_names() {
 FaceScene::FaceScene(const rig::Rig& rig, std::vector<FacePart> parts, Appearance appearance)
     : rig_(&rig), parts_(std::move(parts)), appearance_(std::move(appearance)) {
   for (const FacePart& part : parts_) {
+    has_strands_.push_back(is_card(part.part) && has_strands(part));
     seams_.push_back(std::make_shared<const std::vector<int>>(seams_of(part.rest)));
     eye_coordinates_.push_back(
         is_eyeball(part.part)
@@ -237,7 +252,7 @@ void FaceScene::add_parts(const FaceState& state, const FaceView& view, DrawList
     const bool needs_map = is_eyeball(part.part) || is_card(part.part);
     const bool has_look = needs_map ? look.colour_map != nullptr : look.has_material;
     const bool is_painted = view.has_textures && (has_look || look.colours.size() == part.rest.size());
-    if (is_card(part.part) && !is_painted) continue;
+    if (is_card(part.part) && !is_painted && !has_strands_[m]) continue;
     if (is_glass && (is_card(part.part) || part.part == "brows" || part.part == "other")) continue;
     DrawSurface surface;
     surface.positions = positions[m];

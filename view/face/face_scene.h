@@ -74,6 +74,7 @@ class FaceScene {
   Appearance appearance_;
   std::vector<std::shared_ptr<const std::vector<int>>> seams_;
   std::vector<std::vector<Vec3>> eye_coordinates_;
+  std::vector<bool> has_strands_;  ///< one per part: hairs rather than cards
   std::vector<size_t> skin_parts_;
   std::optional<JointNormals> skin_normals_;  ///< of `skin_parts_`
 };
