@@ -44,6 +44,7 @@ struct DrawSurface {
   double opacity = 1.0;               ///< below 1 the surface is drawn last and blended
   double shine = 0.2;                 ///< strength of the highlight of plain surfaces
   bool is_two_sided = true;           ///< else the back is not drawn
+  bool is_fine = false;  ///< finer than a pixel: left out below four samples, where it would be dots
 
   Shading shading = Shading::plain;
   double roughness = -1.0;  ///< 0 mirror .. 1 chalk; below 0: what is usual for `shading`

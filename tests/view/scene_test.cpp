@@ -226,6 +226,19 @@ TEST(Scene, NoFrameShowsAroundTheSurfaces) {
   }
 }
 
+TEST(Scene, HairsFinerThanAPixelAreLeftOutBelowFourSamples) {
+  DrawList none, list;
+  list.surfaces = {square(0, 0.1)};
+  list.surfaces[0].is_fine = true;
+  Look look;
+  for (const int samples : {1, 2, 4, 8}) {
+    look.samples = samples;
+    const bool is_left_out = renderer().draw_with(list, near_camera(), look).pixels ==
+                             renderer().draw_with(none, near_camera(), look).pixels;
+    EXPECT_EQ(is_left_out, samples < 4) << samples;
+  }
+}
+
 /// Lashes that are hairs are drawn without a texture; cards, which would be opaque, are not.
 TEST(Scene, HairsAreDrawnAndBareCardsAreNot) {
   rig::Rig rig;

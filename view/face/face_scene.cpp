@@ -259,6 +259,7 @@ void FaceScene::add_parts(const FaceState& state, const FaceView& view, DrawList
     surface.normals = std::move(normals[m]);
     surface.triangles = part.triangles;
     surface.seams = seams_[m];
+    surface.is_fine = has_strands_[m];
     const Substance substance = substance_of(part.part);
     surface.shading = substance.shading;
     surface.colour = substance.colour;
