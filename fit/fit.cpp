@@ -80,7 +80,9 @@ double Fitter::price(double of_common, size_t i) const {
 }
 
 double Fitter::price_of_change(size_t i) const {
-  return last_.empty() ? 0.0 : options_.smoothness * visibility_.hold(static_cast<Eigen::Index>(i));
+  if (last_.empty()) return 0.0;
+  const double to_hold = std::max(options_.smoothness, FitOptions().smoothness);
+  return options_.smoothness + to_hold * visibility_.hold(static_cast<Eigen::Index>(i));
 }
 
 double Fitter::cost(const std::vector<float>& values) const {

@@ -7,7 +7,7 @@ namespace fascia::fit {
 namespace {
 
 constexpr double little_seen = 0.2;  // of what a channel moves: below, it begins to hold
-constexpr double held = 1e3;         // how much dearer change is for a channel that nothing is seen of
+constexpr double held = 1e3;         // of a channel that nothing is seen of, in usual prices of change
 
 }  // namespace
 
@@ -26,7 +26,7 @@ void Visibility::find(const Eigen::VectorXd& shown, const Eigen::VectorXd& whole
 
 double Visibility::hold(Eigen::Index i) const {
   const double unseen = std::max(0.0, 1.0 - share(i) / little_seen);
-  return 1.0 + held * unseen * unseen;
+  return held * unseen * unseen;
 }
 
 }  // namespace fascia::fit

@@ -21,7 +21,7 @@ class Visibility {
 
   /// 0 to 1: the share of channel `i`'s motion that is seen, by which its price counts.
   double share(Eigen::Index i) const { return shares_.size() > 0 ? shares_[i] : 1.0; }
-  /// 1 where channel `i` is seen, much more where hardly anything is: by which the price of change counts.
+  /// 0 where channel `i` is seen, up to 1000 where hardly anything is: how dear change is for that.
   double hold(Eigen::Index i) const;
 
  private:

@@ -363,14 +363,13 @@ GLuint SceneRenderer::State::draw_multisampled(const Shot& shot) {
   return rounds == 1 ? resolved.colour() : gathered.colour();
 }
 
-void SceneRenderer::draw(const DrawList& all, const Camera& camera, const Target& target, const Look& look) {
+void SceneRenderer::draw(const DrawList& list, const Camera& camera, const Target& target, const Look& look) {
   const auto is_fine = [](const DrawSurface& surface) { return surface.is_fine; };
-  if (look.samples < 4 && std::any_of(all.surfaces.begin(), all.surfaces.end(), is_fine)) {
-    DrawList coarse = all;
+  if (look.samples < 4 && std::any_of(list.surfaces.begin(), list.surfaces.end(), is_fine)) {
+    DrawList coarse = list;
     std::erase_if(coarse.surfaces, is_fine);
     return draw(coarse, camera, target, look);
   }
-  const DrawList& list = all;
   State& s = *state_;
   const int width = target.width, height = target.height;
   if (width < 1 || height < 1) return;
