@@ -26,7 +26,7 @@ check_head() {  # head file, local|world: everything that can be made from it; 1
     return 1
   fi
   printf 'time,jaw_open\n0,0\n0.1,0.6\n' >"$out/curves.csv"
-  { "$fascia" play "$out/rig.glb" --curves "$out/curves.csv" -o "$out/play.glb" --quiet &&
+  { "$fascia" play "$out/rig.glb" --curves "$out/curves.csv" --fps 30 -o "$out/play.glb" --quiet &&
     "$fascia" bake "$out/rig.glb" --shapes arkit -o "$out/arkit.glb" --quiet &&
     "$fascia" bake "$out/rig.glb" --shapes arkit,visemes --correctives --keep-rig -o "$out/both.glb" --quiet &&
     "$fascia" bake "$out/both.glb" --shapes arkit --replace -o "$out/again.glb" --quiet &&
@@ -45,8 +45,7 @@ check_head() {  # head file, local|world: everything that can be made from it; 1
 played_of() {
   case "$1" in *.glb) ;; *) return 0 ;; esac
   "$fascia" play "$2/rig.glb" --curves "$2/curves.csv" --fps 30 -o "$2/take.pc2" --quiet &&
-    "$fascia" play "$2/rig.glb" --curves "$2/curves.csv" --fps 30 -o "$2/play30.glb" --quiet &&
-    node played.mjs "$2/play30.glb" 30 "$2"/take*.pc2
+    node played.mjs "$2/play.glb" 30 "$2"/take*.pc2
 }
 
 space_of() { case "$1" in *.glb | *.gltf | *.vrm) echo world ;; *) echo local ;; esac; }
