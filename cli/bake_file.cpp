@@ -155,7 +155,7 @@ void write_cache(const Common& common, const BakeRequest& request, Face& face,
   std::vector<float> times;
   for (size_t s = 0; s <= shapes.size(); ++s)
     times.push_back(static_cast<float>(s));
-  PointCaches caches(request.output, CacheKind::pc2, cached_objects(request.rig, face), times);
+  PointCaches caches(request.output, CacheKind::pc2, cached_objects(common, request.rig, face), times);
   caches.add(face);
   Progress progress(common, "bake", shapes.size());
   for (const ShapeToBake& shape : shapes) {

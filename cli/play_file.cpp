@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "builder/rigging/gltf_source.h"
 #include "cli/gltf_edit.h"
 #include "cli/take/point_cache.h"
 #include "cli/take/take_animation.h"
@@ -31,15 +30,7 @@ void write_caches(const Common& common, const PlayRequest& request, CacheKind ki
   std::vector<float> times;
   for (size_t f = 0; f < take.frames(); ++f)
     times.push_back(static_cast<float>(take.time(f)));
-  if (const Vec3 offset = rigging::input_offset(rig::read(face.file()).source); !offset.isZero(0)) {
-    char line[200];
-    std::snprintf(line, sizeof line,
-                  "the head lies far off: a cache, in single precision, is written at the origin; move it by "
-                  "%.9g %.9g %.9g",
-                  offset.x(), offset.y(), offset.z());
-    common.warn(line);
-  }
-  PointCaches caches(request.output, kind, cached_objects(request.rig, face), times);
+  PointCaches caches(request.output, kind, cached_objects(common, request.rig, face), times);
   {
     Progress progress(common, "frame", take.frames());
     const PerformanceFigures played = perform(take, face, progress, [&](size_t) { caches.add(face); });

@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "builder/rigging/gltf_source.h"
 #include "formats/scene.h"
 #include "geometry/error.h"
 #include "geometry/text.h"
@@ -44,7 +45,8 @@ void in_source_order(const formats::SceneMesh& mesh, CachedObject& object) {
 
 }  // namespace
 
-std::vector<CachedObject> cached_objects(const std::filesystem::path& rig, const Face& face) {
+std::vector<CachedObject> cached_objects(const Common& common, const std::filesystem::path& rig,
+                                         const Face& face) {
   std::map<uint32_t, CachedObject> by_mesh;
   for (size_t m = 0; m < face.meshes().size(); ++m) {
     CachedObject& object = by_mesh[face.meshes()[m].mesh];
@@ -53,6 +55,14 @@ std::vector<CachedObject> cached_objects(const std::filesystem::path& rig, const
       object.points.push_back({m, v});
   }
   const rig::RigFile file = rig::read(formats::read_bytes(rig), rig.string());
+  if (const Vec3 offset = rigging::input_offset(file.source); !offset.isZero(0)) {
+    char line[200];
+    std::snprintf(line, sizeof line,
+                  "the head lies far off: a cache, in single precision, is written at the origin; move it by "
+                  "%.9g %.9g %.9g",
+                  offset.x(), offset.y(), offset.z());
+    common.warn(line);
+  }
   if (file.source.format == "obj") {
     const formats::Scene scene = formats::read("source.obj", file.source.bytes);
     for (auto& [mesh, object] : by_mesh)

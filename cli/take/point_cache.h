@@ -21,8 +21,10 @@ struct CachedObject {
   std::vector<Point> points;
 };
 
-/// The objects of a rig's file that its face moves. Throws fascia::Error when the rig cannot be read.
-std::vector<CachedObject> cached_objects(const std::filesystem::path& rig, const Face& face);
+/// The objects of a rig's file that its face moves; warns where the head lay far from the origin, at which
+/// caches, in single precision, are written. Throws fascia::Error when the rig cannot be read.
+std::vector<CachedObject> cached_objects(const Common& common, const std::filesystem::path& rig,
+                                         const Face& face);
 
 enum class CacheKind { pc2, mdd };
 
