@@ -8,7 +8,6 @@
 #include "cli/gltf_edit.h"
 #include "cli/motion.h"
 #include "cli/posed_output.h"
-#include "cli/progress.h"
 #include "cli/take/point_cache.h"
 #include "formats/partial.h"
 #include "formats/scene.h"
@@ -131,38 +130,28 @@ void write_glb(const Common& common, const BakeRequest& request, const Face& fac
                                         : 0.0);
 }
 
-void write_sequence(const Common& common, const BakeRequest& request, Face& face,
+void write_sequence(const Common& common, const BakeRequest& request, const Face& face,
                     const std::vector<ShapeToBake>& shapes, BakeFigures& figures) {
   formats::PartialGroup together;
   make_output_folder(request.output, &together);
-  const auto write = [&](const std::string& name) {
+  const auto write = [&](const std::string& name, const Face& posed) {
     figures.files.push_back(request.output / (name + ".obj"));
     together.add(figures.files.back());
-    write_posed_mesh(request.rig, face, figures.files.back());
+    write_posed_mesh(request.rig, posed, figures.files.back());
   };
-  write("rest");
-  Progress progress(common, "bake", shapes.size());
-  for (const ShapeToBake& shape : shapes) {
-    progress.step();
-    pose_shape(face, shape);
-    write(shape.name);
-  }
+  write("rest", face);
+  for_each_shape(common, face, shapes, [&](size_t s, const Face& posed) { write(shapes[s].name, posed); });
   together.keep();
 }
 
-void write_cache(const Common& common, const BakeRequest& request, Face& face,
+void write_cache(const Common& common, const BakeRequest& request, const Face& face,
                  const std::vector<ShapeToBake>& shapes, BakeFigures& figures) {
   std::vector<float> times;
   for (size_t s = 0; s <= shapes.size(); ++s)
     times.push_back(static_cast<float>(s));
   PointCaches caches(request.output, CacheKind::pc2, cached_objects(common, request.rig, face), times);
   caches.add(face);
-  Progress progress(common, "bake", shapes.size());
-  for (const ShapeToBake& shape : shapes) {
-    progress.step();
-    pose_shape(face, shape);
-    caches.add(face);
-  }
+  for_each_shape(common, face, shapes, [&](size_t, const Face& posed) { caches.add(posed); });
   figures.files = caches.finish();
 }
 

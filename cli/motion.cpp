@@ -1,10 +1,11 @@
 #include "cli/motion.h"
 
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
+#include <tbb/concurrent_queue.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_pipeline.h>
 
 #include <algorithm>
-#include <mutex>
+#include <memory>
 
 #include "cli/progress.h"
 
@@ -56,21 +57,47 @@ void pose_shape(Face& face, const ShapeToBake& shape) {
   face.pose();
 }
 
+void for_each_shape(const Common& common, const Face& face, const std::vector<ShapeToBake>& shapes,
+                    const std::function<void(size_t shape, const Face& posed)>& visit) {
+  struct Posed {
+    size_t shape = 0;
+    std::shared_ptr<Face> face;
+  };
+  Progress progress(common, "bake", shapes.size());
+  tbb::concurrent_queue<std::shared_ptr<Face>> idle;
+  size_t next = 0;
+  const auto take = [&](tbb::flow_control& flow) {
+    if (next == shapes.size()) {
+      flow.stop();
+      return Posed();
+    }
+    Posed posed{next++, nullptr};
+    if (!idle.try_pop(posed.face)) posed.face = std::make_shared<Face>(face.sibling());
+    return posed;
+  };
+  const auto pose = [&](Posed posed) {
+    pose_shape(*posed.face, shapes[posed.shape]);
+    return posed;
+  };
+  const auto show = [&](const Posed& posed) {
+    visit(posed.shape, *posed.face);
+    progress.step();
+    idle.push(posed.face);
+  };
+  // Shapes take unequal times: twice as many are under way as threads can work on.
+  const size_t most = 2 * tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  tbb::parallel_pipeline(most, tbb::make_filter<void, Posed>(tbb::filter_mode::serial_in_order, take) &
+                                   tbb::make_filter<Posed, Posed>(tbb::filter_mode::parallel, pose) &
+                                   tbb::make_filter<Posed, void>(tbb::filter_mode::serial_in_order, show));
+}
+
 BakedShapes bake_shapes(const Common& common, const Face& face, const std::vector<ShapeToBake>& shapes) {
   BakedShapes baked;
   baked.shapes.resize(shapes.size());
   for (const ShapeToBake& shape : shapes)
     baked.names.push_back(shape.name);
-  Progress progress(common, "bake", shapes.size());
-  std::mutex progress_mutex;
-  tbb::enumerable_thread_specific<Face> faces([&] { return face.sibling(); });
-  tbb::parallel_for(size_t{0}, shapes.size(), [&](size_t s) {
-    Face& own = faces.local();
-    pose_shape(own, shapes[s]);
-    baked.shapes[s] = motion_from_rest(own);
-    const std::lock_guard lock(progress_mutex);
-    progress.step();
-  });
+  for_each_shape(common, face, shapes,
+                 [&](size_t s, const Face& posed) { baked.shapes[s] = motion_from_rest(posed); });
   for (size_t s = shapes.size(); s-- > 0;)
     for (const size_t part : shapes[s].corrects)
       subtract(baked.shapes[s], baked.shapes[part]);

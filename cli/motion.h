@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -28,8 +29,12 @@ struct BakedShapes {
 /// Poses `face` as the shape has it, from rest: the order in which shapes are posed leaves no trace.
 void pose_shape(Face& face, const ShapeToBake& shape);
 
-/// Poses a sibling of `face` for each of `shapes`, as many at a time as there are threads; the same whatever
-/// their number.
+/// Poses a sibling of `face` for each of `shapes`, as many at a time as there are threads, and shows them to
+/// `visit` one after the other in the list's order; the same whatever the number of threads.
+void for_each_shape(const Common& common, const Face& face, const std::vector<ShapeToBake>& shapes,
+                    const std::function<void(size_t shape, const Face& posed)>& visit);
+
+/// What each of `shapes` moves; of a corrective, what it moves beyond the sum of its parts.
 BakedShapes bake_shapes(const Common& common, const Face& face, const std::vector<ShapeToBake>& shapes);
 
 }  // namespace fascia::cli

@@ -24,6 +24,13 @@ Json& array_of(Json& root, const char* name) {
   return root[name];
 }
 
+void put_entry(Json& list, std::size_t number, Json entry) {
+  if (number < list.size())
+    list[number] = std::move(entry);
+  else
+    list.push_back(std::move(entry));
+}
+
 template <class T>
 Json accessor_over(std::size_t view, int component_type, std::span<const T> numbers, std::size_t components,
                    bool bounds) {
@@ -64,20 +71,70 @@ std::size_t Appendix::add_view(std::span<const uint8_t> bytes, int target) {
         std::equal(bytes.begin(), bytes.end(), bin_.begin() + static_cast<std::ptrdiff_t>(begin)))
       return at->second;
   }
-  bin_.resize((bin_.size() + 7) / 8 * 8, 0);
-  Json view = {{"buffer", 0}, {"byteOffset", bin_.size()}, {"byteLength", bytes.size()}};
+  const std::size_t begin = place_for(bytes.size());
+  std::copy(bytes.begin(), bytes.end(), bin_.begin() + static_cast<std::ptrdiff_t>(begin));
+  Json view = {{"buffer", 0}, {"byteOffset", begin}, {"byteLength", bytes.size()}};
   if (target != 0) view["target"] = target;
-  views.push_back(std::move(view));
-  bin_.insert(bin_.end(), bytes.begin(), bytes.end());
-  views_.emplace(hash, views.size() - 1);
-  return views.size() - 1;
+  const std::size_t number = free_entry(free_views_, views);
+  put_entry(views, number, std::move(view));
+  views_.emplace(hash, number);
+  return number;
+}
+
+/// Where `size` bytes go: the smallest free room they fit in, aligned to eight, or the end of the file.
+std::size_t Appendix::place_for(std::size_t size) {
+  const auto begin_in = [](const ByteRange& room) { return (room.begin + 7) / 8 * 8; };
+  const auto fits = [&](const ByteRange& room) { return begin_in(room) + size <= room.end; };
+  auto best = free_bytes_.end();
+  for (auto room = free_bytes_.begin(); room != free_bytes_.end(); ++room)
+    if (fits(*room) && (best == free_bytes_.end() || room->size() < best->size())) best = room;
+  if (best != free_bytes_.end()) {
+    const std::size_t begin = begin_in(*best);
+    best->begin = begin + size;
+    return begin;
+  }
+  const std::size_t begin = (bin_.size() + 7) / 8 * 8;
+  bin_.resize(begin + size, 0);
+  return begin;
+}
+
+/// The number of an entry of `list` that may be overwritten, or of one to be put behind the last.
+std::size_t Appendix::free_entry(std::vector<std::size_t>& free, const Json& list) {
+  if (free.empty()) return list.size();
+  const std::size_t number = free.back();
+  free.pop_back();
+  return number;
 }
 
 std::size_t Appendix::add_accessor(Json accessor) {
   Json& accessors = array_of(root_, "accessors");
-  const auto [known, is_new] = accessors_.try_emplace(accessor.dump(), accessors.size());
-  if (is_new) accessors.push_back(std::move(accessor));
-  return known->second;
+  const std::string text = accessor.dump();
+  if (const auto known = accessors_.find(text); known != accessors_.end()) return known->second;
+  const std::size_t number = free_entry(free_accessors_, accessors);
+  put_entry(accessors, number, std::move(accessor));
+  accessors_.emplace(text, number);
+  return number;
+}
+
+void Appendix::give_back(std::size_t accessor) {
+  if (uses_of(root_, accessor) > 0) return;
+  const OwnRoom own = own_room(root_, accessor);
+  for (const ByteRange& bytes : own.bytes) {
+    // Neighbours become one room.
+    const auto before = std::find_if(free_bytes_.begin(), free_bytes_.end(),
+                                     [&](const ByteRange& room) { return room.end == bytes.begin; });
+    if (before != free_bytes_.end())
+      before->end = bytes.end;
+    else
+      free_bytes_.push_back(bytes);
+  }
+  for (const std::size_t view : own.views) {
+    root_["bufferViews"][view] = {{"buffer", 0}, {"byteOffset", 0}, {"byteLength", 1}};
+    free_views_.push_back(view);
+  }
+  root_["accessors"][accessor] = {
+      {"componentType", component_float}, {"count", 1}, {"type", element_type(1)}};
+  free_accessors_.push_back(accessor);
 }
 
 std::size_t Appendix::add_floats(std::span<const float> numbers, std::size_t components, bool bounds,

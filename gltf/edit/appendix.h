@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "gltf/edit/document.h"
+#include "gltf/edit/room.h"
 
 namespace fascia::gltf {
 
@@ -18,7 +19,8 @@ using Vec3f = Eigen::Vector3f;
 inline constexpr int vertex_target = 34962, index_target = 34963;
 
 /// Accessors, buffer views and bytes appended to a glTF file; nothing that was there moves. What is appended
-/// twice with the same content is stored once, so that data shared in the source stay shared.
+/// twice with the same content is stored once, so that data shared in the source stay shared. Room that was
+/// given back is used before the file grows.
 class Appendix {
  public:
   /// Everything goes behind what `root` and `bin` hold already; both must outlive this.
@@ -42,7 +44,13 @@ class Appendix {
   /// is sparse with a single zero in it, since accessors without any data are not read everywhere.
   std::size_t add_vectors(std::span<const Vec3f> vectors, bool bounds);
 
+  /// Gives back the room of an accessor of the file that nothing refers to any more: the bytes, views and the
+  /// accessor's own number are used for what is added next. Nothing happens while something refers to it.
+  void give_back(std::size_t accessor);
+
  private:
+  std::size_t place_for(std::size_t size);
+  std::size_t free_entry(std::vector<std::size_t>& free, const Json& list);
   std::size_t add_accessor(Json accessor);
   std::size_t add_sparse(std::span<const Vec3f> vectors, const std::vector<uint32_t>& moved, bool bounds);
 
@@ -50,6 +58,8 @@ class Appendix {
   std::vector<uint8_t>& bin_;
   std::multimap<uint64_t, std::size_t> views_;    ///< hash of the content -> view
   std::map<std::string, std::size_t> accessors_;  ///< JSON -> accessor
+  std::vector<ByteRange> free_bytes_;
+  std::vector<std::size_t> free_views_, free_accessors_;
 };
 
 }  // namespace fascia::gltf

@@ -40,7 +40,10 @@ class MeshMorphs {
     if (exists) renamed.insert(name);
     const bool replaces = exists && options.existing == MorphOptions::Existing::replace;
     const std::size_t index = replaces ? static_cast<std::size_t>(known - names_.begin()) : names_.size();
-    if (!replaces) names_.push_back(exists ? free_name(name) : name);
+    if (replaces)
+      clear(index);
+    else
+      names_.push_back(exists ? free_name(name) : name);
     put(index, displacements, turned(displacements, options));
     return static_cast<int>(index);
   }
@@ -119,6 +122,19 @@ class MeshMorphs {
         for (std::size_t v = 0; v < (*to)[p].size(); ++v)
           (*to)[p][v] = scale * ((*to)[p][v] - (*from)[p][v]);
     return a;
+  }
+
+  /// Takes a target's data out of the file; its number stays.
+  void clear(std::size_t index) {
+    std::set<std::size_t> accessors;
+    for (Json& primitive : json()["primitives"]) {
+      if (!primitive.contains("targets") || index >= primitive["targets"].size()) continue;
+      for (const Json& accessor : primitive["targets"][index])
+        accessors.insert(accessor.get<std::size_t>());
+      primitive["targets"][index] = Json::object();
+    }
+    for (const std::size_t accessor : accessors)
+      edit_.data().give_back(accessor);
   }
 
   void put(std::size_t index, const std::vector<std::vector<Vec3f>>& displacements,

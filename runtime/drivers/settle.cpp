@@ -135,6 +135,19 @@ void prefer_intensity(Curves& curves) {
   });
 }
 
+/// Whether a column is percent though the others are shares: it goes beyond 10, and most of what is not zero
+/// in it is beyond 1.5; a single value that high is a fault of the capture.
+bool is_percent(const Curve& curve) {
+  const float most = peak(curve);
+  if (!(most > 10.0F && most <= 101.0F)) return false;
+  std::size_t active = 0, beyond = 0;
+  for (const float value : curve.values) {
+    active += std::abs(value) > 0.02F;
+    beyond += std::abs(value) > 1.5F;
+  }
+  return beyond > 1 && 2 * beyond >= active;
+}
+
 /// Shares beyond 1: action units from 0 to 5, percent, or a value that will be clamped.
 void scale_to_shares(Curves& curves) {
   std::vector<Curve*> shares, units;
@@ -171,11 +184,20 @@ void scale_to_shares(Curves& curves) {
       scale(*curve, 0.01F);
     return;
   }
-  std::vector<std::string> names;
-  for (const Curve* curve : shares)
-    if (peak(*curve) > 1.001F) names.push_back(curve->name);
+  std::vector<std::string> names, percent;
+  for (Curve* curve : shares) {
+    if (is_percent(*curve)) {
+      percent.push_back(curve->name);
+      scale(*curve, 0.01F);
+    } else if (peak(*curve) > 1.001F) {
+      names.push_back(curve->name);
+    }
+  }
+  if (!percent.empty())
+    curves.notes.push_back("values reach " + rounded(most) + " in some columns: taken as percent in " +
+                           some(percent));
   if (!names.empty())
-    curves.notes.push_back("values beyond 1, up to " + rounded(most) +
+    curves.notes.push_back("values beyond 1, up to " + rounded(largest(shares)) +
                            ", are cut off at the channels' ends: " + some(names));
 }
 

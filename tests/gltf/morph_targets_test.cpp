@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 
 #include "gltf/edit/instances.h"
+#include "gltf/edit/room.h"
 #include "tests/gltf/sheet.h"
 
 namespace fascia::gltf {
@@ -130,6 +132,72 @@ TEST(MorphTargets, AShapeTakesAnOldOnesPlaceOnRequest) {
   EXPECT_EQ(element(floats(result.document, mesh["primitives"][0]["targets"][1]["POSITION"]), 12),
             Vec3f(0, 0, 1));
   EXPECT_EQ(result.targets[0].targets, std::vector<int>{1});
+}
+
+TEST(MorphTargets, AReplacedShapesRoomIsUsedAgain) {
+  SheetOptions with;
+  with.weights = {0.8F, 0};
+  with.primitives = 3;
+  MorphOptions replace;
+  replace.existing = MorphOptions::Existing::replace;
+  const Document before = sheet(with);
+  const Result result = morphed(with, {"jawOpen"}, {bump(1, 3)}, replace);
+  const Json old = Json::parse(before.json)["meshes"][0]["primitives"][0]["targets"];
+  for (const Json& primitive : result.json["meshes"][0]["primitives"]) {
+    EXPECT_EQ(primitive["targets"][1]["POSITION"], old[1]["POSITION"]);
+    EXPECT_EQ(element(floats(result.document, primitive["targets"][1]["POSITION"]), 12), Vec3f(0, 0, 1));
+    EXPECT_EQ(element(floats(result.document, primitive["targets"][0]["POSITION"]), 12), Vec3f(0, 0, 1));
+    EXPECT_EQ(element(floats(result.document, primitive["targets"][0]["POSITION"]), 3), Vec3f(0, 0, 1));
+  }
+  const Json accessor = result.json["accessors"][old[1]["POSITION"].get<std::size_t>()];
+  EXPECT_EQ(accessor["min"], Json({0, 0, 0}));
+  EXPECT_EQ(accessor["max"], Json({0, 0, 1}));
+  std::size_t unused = 0;
+  for (std::size_t a = 0; a < result.json["accessors"].size(); ++a)
+    unused += uses_of(result.json, a) == 0 ? 1 : 0;
+  EXPECT_EQ(unused, 0U);
+}
+
+TEST(MorphTargets, RoomThatOthersUseIsNotGivenBack) {
+  SheetOptions with;
+  with.weights = {0.8F, 0};
+  MorphOptions replace;
+  replace.existing = MorphOptions::Existing::replace;
+  const auto replaced = [&](const std::function<void(Json&)>& change) {
+    Document document = sheet(with);
+    Json json = Json::parse(document.json);
+    change(json);
+    document.json = json.dump();
+    Edit edit(document);
+    add_morph_targets(edit, {"jawOpen"}, {bump(1)}, replace);
+    return glb_document(edit.bytes(), "result");
+  };
+  const auto corner_of_lift = [](const Document& document) {
+    return element(
+        floats(document, Json::parse(document.json)["meshes"][0]["primitives"][0]["targets"][0]["POSITION"]),
+        3);
+  };
+  // "lift" has the accessor of "jawOpen"; or one of its own over the same buffer view, or the same bytes.
+  const Vec3f slide(1, 0, 0);
+  EXPECT_EQ(corner_of_lift(replaced([](Json& json) {
+              Json& targets = json["meshes"][0]["primitives"][0]["targets"];
+              targets[0] = targets[1];
+            })),
+            slide);
+  EXPECT_EQ(corner_of_lift(replaced([](Json& json) {
+              const Json& targets = json["meshes"][0]["primitives"][0]["targets"];
+              json["accessors"][targets[0]["POSITION"].get<std::size_t>()] =
+                  json["accessors"][targets[1]["POSITION"].get<std::size_t>()];
+            })),
+            slide);
+  EXPECT_EQ(corner_of_lift(replaced([](Json& json) {
+              const Json& targets = json["meshes"][0]["primitives"][0]["targets"];
+              const Json& slides = json["accessors"][targets[1]["POSITION"].get<std::size_t>()];
+              Json& lifts = json["accessors"][targets[0]["POSITION"].get<std::size_t>()];
+              json["bufferViews"].push_back(json["bufferViews"][slides["bufferView"].get<std::size_t>()]);
+              lifts["bufferView"] = json["bufferViews"].size() - 1;
+            })),
+            slide);
 }
 
 TEST(MorphTargets, WeightChannelsKeepDefaultWeights) {

@@ -254,6 +254,13 @@ TEST(Values, PercentAndIntensitiesAreScaledWithAWarning) {
   const Curves shares = read("time,jawOpen,a,b,c\n0,0,1,1,1\n1,1.3,0,0,0\n");
   EXPECT_FLOAT_EQ(value(shares, "jawOpen", 1), 1.3F);
   EXPECT_TRUE(has_note(shares, "up to 1.3"));
+  // A column of percent beside shares is scaled alone; a spike among shares is cut off as it is.
+  const Curves mixed = read("time,jawOpen,a,b,c,d\n0,0,1,1,0,1\n1,30,0,40,0.5,1\n2,60,0.5,0.5,1,1\n");
+  EXPECT_FLOAT_EQ(value(mixed, "jawOpen", 1), 0.3F);
+  EXPECT_FLOAT_EQ(value(mixed, "a", 0), 1.0F);
+  EXPECT_FLOAT_EQ(value(mixed, "b", 1), 40.0F);
+  EXPECT_TRUE(has_note(mixed, "taken as percent in jawOpen"));
+  EXPECT_TRUE(has_note(mixed, "up to 40"));
   // OpenFace: intensities from 0 to 5, presences only where there is no intensity, rows without a face
   // bridged.
   const Curves openface = read(

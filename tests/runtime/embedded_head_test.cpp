@@ -69,4 +69,30 @@ TEST(EmbeddedHeadRuntime, CompressionOfOneMeshStaysInPlaceWhileOthersAreAskedFor
   EXPECT_EQ(first.data, again.data);
 }
 
+TEST(EmbeddedHeadRuntime, RotationsOfTheEyesReplaceTheirLookShapes) {
+  const std::vector<uint8_t> bytes = embedded_rig();
+  if (bytes.empty()) GTEST_SKIP() << "FASCIA_EMBEDDED_RIG is not there";
+  const Loaded rig(bytes);
+  const auto played = [&](const std::string& csv, const char* channel) {
+    fascia_curves* curves = nullptr;
+    EXPECT_EQ(fascia_curves_load(csv.data(), csv.size(), &curves), FASCIA_OK) << fascia_last_message();
+    const Face face(rig.asset);
+    EXPECT_EQ(fascia_curves_apply(curves, 0.0, 1.0F, face.face), FASCIA_OK);
+    EXPECT_EQ(fascia_face_pose(face.face), FASCIA_OK);
+    const float value =
+        fascia_face_effective_values(face.face)[fascia_asset_find_channel(rig.asset, channel)];
+    fascia_curves_release(curves);
+    return value;
+  };
+  // Both say where an eye looks: their sum would turn it twice. ARKit's yaw is positive to the subject's
+  // left, its pitch downward; the rig's upward.
+  const std::string both = "time,EyeLookDownLeft,EyeLookOutLeft,LeftEyePitch,LeftEyeYaw\n0,1,1,0.1,0.25\n";
+  EXPECT_FLOAT_EQ(played(both, "eye_pitch_left"), -0.1F);
+  EXPECT_FLOAT_EQ(played(both, "eye_yaw_left"), 0.25F);
+  EXPECT_EQ(played(both, "eye_pitch_right"), 0.0F);
+  const std::string shapes = "time,EyeLookDownLeft,EyeLookOutLeft\n0,1,1\n";
+  EXPECT_FLOAT_EQ(played(shapes, "eye_pitch_left"), -0.42F);
+  EXPECT_GT(played(shapes, "eye_yaw_left"), 0.3F);
+}
+
 }  // namespace
