@@ -62,8 +62,8 @@ Piece piece(const Json& root, const Json& place, std::size_t count, std::size_t 
 
 std::vector<Piece> pieces_of(const Json& root, std::size_t accessor) {
   const Json& entry = root.at("accessors").at(accessor);
-  const std::size_t size =
-      size_of_component(entry.value("componentType", 0)) * most_components(entry.value("type", std::string()));
+  const std::size_t size = size_of_component(entry.value("componentType", 0)) *
+                           most_components(entry.value("type", std::string()));
   std::vector<Piece> pieces;
   if (entry.contains("bufferView"))
     pieces.push_back(piece(root, entry, entry.value("count", std::size_t{0}), size));
