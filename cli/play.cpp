@@ -63,7 +63,10 @@ void add_play(const Command& tool, Common& common) {
   command.option("--from", &request->from, "Start of the range to play, seconds from the first key")
       .range(0.0, 1e6);
   command.option("--to", &request->to, "Where it ends").default_text("the last key");
-  command.option("--targets", &request->most_targets, "Morph targets a mesh at most").range(1, 4096);
+  command
+      .option("--targets", &request->most_targets,
+              "Morph targets a mesh at most; fewer make a smaller file, which is less exact")
+      .range(1, 4096);
   command.flag("--head", request->keeps_head,
                "Write the captured rotation of the head as animation of the file's nodes");
   add_solver_option(command, request->solver);

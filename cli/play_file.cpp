@@ -44,9 +44,9 @@ void write_caches(const Common& common, const PlayRequest& request, CacheKind ki
 void look_at_errors(const Take& take, const Recording& recording, double millimetres, PlayFigures& figures) {
   bool is_known = true;
   for (const MeshMotion& motion : recording.meshes) {
-    figures.components = std::max(figures.components, static_cast<size_t>(motion.components.weights.rows()));
-    if (motion.components.wanted == 0) is_known = false;
-    figures.wanted = std::max(figures.wanted, motion.components.wanted);
+    figures.components = std::max(figures.components, static_cast<size_t>(motion.weights.rows()));
+    if (motion.wanted == 0) is_known = false;
+    figures.wanted = std::max(figures.wanted, motion.wanted);
     figures.keys = std::max(figures.keys, motion.keys.size());
     if (millimetres * motion.largest_error <= figures.largest_error_mm) continue;
     figures.largest_error_mm = millimetres * motion.largest_error;
@@ -72,27 +72,10 @@ std::vector<NodeMotion> turned_nodes(const PlayRequest& request, const Take& tak
   return head_motion(edit.json, take, meshes, axes, pivot);
 }
 
-/// Records the take with its errors. Vertices outside the sample may be off farther than those in it: then
-/// once more, aiming lower, as long as more targets are free.
-Recording record_within(const Common& common, const PlayRequest& request, const Take& take, const Face& face,
-                        double tolerance) {
-  double aim = tolerance;
-  for (int attempt = 0;; ++attempt) {
-    Face fresh = face.sibling();
-    Recording recording = record(common, take, fresh, {request.most_targets, aim});
-    double largest = 0.0;
-    for (const MeshMotion& motion : recording.meshes)
-      if (motion.components.weights.rows() < static_cast<Eigen::Index>(request.most_targets))
-        largest = std::max(largest, motion.largest_error);
-    if (largest <= tolerance || attempt == 2) return recording;
-    aim *= 0.8 * tolerance / largest;
-  }
-}
-
 void write_animation(const Common& common, const PlayRequest& request, const Take& take, Face& face,
                      PlayFigures& figures) {
   const double metres = metres_in_a_unit(face);
-  Recording recording = record_within(common, request, take, face, 1e-3 * tolerance_mm / metres);
+  Recording recording = record(common, take, face, {request.most_targets, 1e-3 * tolerance_mm / metres});
   look_at_errors(take, recording, 1e3 * metres, figures);
   figures.resets = recording.figures.resets;
   figures.milliseconds_a_frame = recording.figures.milliseconds_a_frame;
@@ -151,9 +134,11 @@ PlayFigures play_file(const Common& common, const PlayRequest& request) {
   figures.frames = take.frames();
   figures.duration = take.time(take.frames() - 1);
   figures.start = curves.start();
-  Progress progress(
-      common, "play",
-      {{"simulation", 1.0}, {"principal components", wants_cache ? 0.0 : 0.2}, {"writing", 0.2}});
+  Progress progress(common, "play",
+                    {{"simulation", 1.0},
+                     {"principal components", wants_cache ? 0.0 : 0.2},
+                     {"weights", wants_cache ? 0.0 : 1.0},
+                     {"writing", 0.2}});
   progress.begin("simulation");
   if (wants_cache)
     write_caches(common, request, kind, take, face, figures);

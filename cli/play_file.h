@@ -14,7 +14,7 @@ struct PlayRequest {
   double curve_frames_per_second = 0.0;  ///< of the curves' rows; 0: as their file says
   double time_unit = 0.0;                ///< seconds in one unit of the curves' times; 0: as their file says
   double from = 0.0, to = -1.0;          ///< seconds from the curves' first key; below 0: to the last
-  size_t most_targets = 64;              ///< morph targets a mesh
+  size_t most_targets = 1024;            ///< morph targets a mesh
   bool keeps_head = false;               ///< whether captured rotations of the head turn its nodes
   std::string solver = "own", level;
 };

@@ -8,7 +8,6 @@
 #include <numeric>
 
 #include "cli/take/product.h"
-#include "geometry/smoothstep.h"
 
 namespace fascia::cli {
 
@@ -31,9 +30,9 @@ struct Errors {
   double largest = 0.0;
 };
 
-/// Of what is `left` over, #directions x #frames, at the judged vertices, whose rows of the directions are
-/// `rows`.
-Errors errors_of(const MatrixXf& rows, const MatrixXf& left) {
+/// What `fit` leaves at the judged vertices, whose rows of the directions are `rows`.
+Errors errors(const MatrixXf& rows, const MatrixXf& coefficients, const Fit& fit) {
+  const MatrixXf left = coefficients - fit.mix * (fit.read * coefficients);
   constexpr Index block = 64;
   const Index vertices = rows.rows() / 3, blocks = (left.cols() + block - 1) / block;
   Errors result;
@@ -54,10 +53,6 @@ Errors errors_of(const MatrixXf& rows, const MatrixXf& left) {
   return result;
 }
 
-Errors errors(const MatrixXf& rows, const MatrixXf& coefficients, const Fit& fit) {
-  return errors_of(rows, coefficients - fit.mix * (fit.read * coefficients));
-}
-
 /// Frames to judge by: those that principal components leave most of, and an even sample of the rest.
 std::vector<Index> telling_frames(const MatrixXf& coefficients, const Fit& fit) {
   VectorXf left(coefficients.cols());
@@ -66,7 +61,7 @@ std::vector<Index> telling_frames(const MatrixXf& coefficients, const Fit& fit) 
   std::vector<Index> order(static_cast<size_t>(left.size()));
   std::iota(order.begin(), order.end(), Index{0});
   std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return left[a] > left[b]; });
-  constexpr size_t most = 300;
+  constexpr size_t most = 600;
   if (order.size() <= 2 * most) return order;
   std::vector<Index> chosen(order.begin(), order.begin() + most);
   for (size_t i = most; i < order.size(); i += (order.size() - most) / most + 1)
@@ -113,8 +108,8 @@ MatrixXd metric_of(const MatrixXf& rows, const VectorXf& vertex_weights) {
 
 /// Weighs up what is off most, round by round, and keeps the best. `gram` is that of all coefficients.
 Fit with_least_largest_error(const MatrixXf& rows, const MatrixXf& coefficients, const MatrixXd& gram,
-                             const Fit& plain, Index count, double tolerance) {
-  constexpr int rounds = 12;
+                             const Fit& plain, Index count, double tolerance, VectorXf& weights_of_best) {
+  constexpr int rounds = 8;
   const std::vector<Index> telling = telling_frames(coefficients, plain);
   const MatrixXf judged = columns(coefficients, telling);
   Fit best = plain;
@@ -131,92 +126,20 @@ Fit with_least_largest_error(const MatrixXf& rows, const MatrixXf& coefficients,
     vertex_weights = vertex_weights.cwiseMax(1e-4F);
     for (Index f = 0; f < frame_weights.size(); ++f)
       frame_weights[f] *= std::sqrt(0.3F + now.by_frame[f] / scale);
-    const MatrixXd more = gram_of(judged, (frame_weights.array().square() - 1.0F).matrix());
-    const Fit fit = weighted_fit(metric_of(rows, vertex_weights), gram + more, count);
+    frame_weights /= frame_weights.mean();
+    // Frames that are not judged are no worse than the best of those.
+    const float least_weight = frame_weights.minCoeff() * frame_weights.minCoeff();
+    const MatrixXd more = gram_of(judged, (frame_weights.array().square() - least_weight).matrix());
+    const MatrixXd weighted = static_cast<double>(least_weight) * gram + more;
+    const Fit fit = weighted_fit(metric_of(rows, vertex_weights), weighted, count);
     now = errors(rows, judged, fit);
     if (now.largest < least) {
       least = now.largest;
       best = fit;
+      weights_of_best = vertex_weights;
     }
   }
   return best;
-}
-
-/// Weights of single frames on given shapes for a small largest error: iteratively reweighted least squares
-/// towards the 10-norm (Burrus, Barreto & Selesnick 1994).
-class FrameFit {
- public:
-  FrameFit(const MatrixXf& rows, const MatrixXf& mix)
-      : shapes_(product(rows, mix)), gram_(shapes_.transpose() * shapes_) {}
-
-  /// Moves `weights` toward the optimum for a frame with the residuals `off` at the sampled vertices. Only
-  /// frames with large errors change: up to `small` the weights are kept, from `large` on they become the
-  /// optimum, and in between they are blended, so that the motion remains as smooth as it was.
-  void improve(VectorXf off, float small, float large, Eigen::Ref<VectorXf> weights) const {
-    constexpr int rounds = 6;
-    constexpr float norm = 10.0F, over_relaxation = 1.5F, floor = 1e-3F;
-    float least = largest(off);
-    const float share = std::clamp((least - small) / (large - small), 0.0F, 1.0F);
-    if (!(share > 0.0F)) return;
-    const VectorXf start = weights;
-    VectorXf now = start, best = start;
-    for (int round = 0; round < rounds; ++round) {
-      const float most = largest(off);
-      if (!(most > 0.0F)) break;
-      MatrixXf matrix = floor * gram_;
-      VectorXf force = floor * (gram_ * (start - now));
-      for (Index v = 0; 3 * v < off.size(); ++v) {
-        const float length = off.segment<3>(3 * v).norm() / most;
-        if (length < 0.4F) continue;  // to the eighth power it is nothing
-        const auto rows = shapes_.middleRows<3>(3 * v);
-        const float weight = std::pow(length, norm - 2.0F);
-        matrix.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose(), weight);
-        force.noalias() += weight * (rows.transpose() * off.segment<3>(3 * v));
-      }
-      const VectorXf step = (over_relaxation / (norm - 1.0F)) * matrix.llt().solve(force);
-      if (!step.allFinite()) break;
-      now += step;
-      off.noalias() -= shapes_ * step;
-      if (const float error = largest(off); error < least) {
-        least = error;
-        best = now;
-      }
-    }
-    weights = start + smoothstep(share) * (best - start);
-  }
-
- private:
-  static float largest(const VectorXf& off) {
-    float most = 0.0F;
-    for (Index i = 0; i < off.size(); i += 3)
-      most = std::max(most, off.segment<3>(i).squaredNorm());
-    return std::sqrt(most);
-  }
-
-  MatrixXf shapes_;  ///< 3 #judged x #components
-  MatrixXf gram_;
-};
-
-/// Weights of the frames that are off farthest, better than by least squares; all others stay.
-void improve_weights(const MatrixXf& rows, const MatrixXf& coefficients, const Fit& fit, double largest,
-                     MatrixXf& weights) {
-  const FrameFit frames(rows, fit.mix);
-  const auto small = static_cast<float>(0.5 * largest), large = static_cast<float>(0.75 * largest);
-  float gain = 0.0F;
-  for (Index i = 0; i + 2 < rows.rows(); i += 3)
-    gain = std::max(gain, rows.middleRows<3>(i).norm());
-  constexpr Index block = 32;
-  tbb::parallel_for(Index{0}, (weights.cols() + block - 1) / block, [&](Index b) {
-    const Index first = b * block, count = std::min(block, weights.cols() - first);
-    const MatrixXf left = coefficients.middleCols(first, count) - fit.mix * weights.middleCols(first, count);
-    std::vector<Index> far;
-    for (Index f = 0; f < count; ++f)
-      if (gain * left.col(f).norm() > small) far.push_back(f);  // else no vertex is off farther
-    if (far.empty()) return;
-    const MatrixXf off = product(rows, left(Eigen::all, far));
-    for (size_t i = 0; i < far.size(); ++i)
-      frames.improve(off.col(static_cast<Index>(i)), small, large, weights.col(first + far[i]));
-  });
 }
 
 /// The vertices to judge by, by their places among those that move: where `fit` leaves most over the take,
@@ -249,9 +172,6 @@ Components components(const MotionSpace& space, size_t limit, double tolerance) 
   const MatrixXf& coefficients = space.coefficients();
   const Index directions = coefficients.rows();
   if (directions == 0 || coefficients.cols() == 0) {  // nothing moves farther than the space follows
-    result.shapes.resize(static_cast<Index>(3 * space.vertices().size()), 0);
-    result.mix.resize(directions, 0);
-    result.weights.resize(0, static_cast<Index>(space.frames()));
     return result;
   }
   const MatrixXd gram = (coefficients * coefficients.transpose()).cast<double>();
@@ -259,7 +179,9 @@ Components components(const MotionSpace& space, size_t limit, double tolerance) 
   const MatrixXf turn = eigen.eigenvectors().rowwise().reverse().cast<float>();
   const auto plain = [&](Index count) { return Fit{turn.leftCols(count), turn.leftCols(count).transpose()}; };
   const Index most = std::min(directions, static_cast<Index>(limit));
-  const MatrixXf rows = space.directions_at(telling_vertices(space, gram, plain(most)));
+  result.judged = telling_vertices(space, gram, plain(most));
+  result.vertex_weights = VectorXf::Ones(static_cast<Index>(result.judged.size()));
+  const MatrixXf rows = space.directions_at(result.judged);
   const auto error_of = [&](Index count) {
     const Fit fit = plain(count);
     const std::vector<Index> telling = telling_frames(coefficients, fit);
@@ -274,24 +196,13 @@ Components components(const MotionSpace& space, size_t limit, double tolerance) 
   if (space.tolerance() <= tolerance) result.wanted = static_cast<size_t>(high);
   const Index count = std::min(high, most);
   Fit fit = plain(count);
-  if (high > count) fit = with_least_largest_error(rows, coefficients, gram, fit, count, tolerance);
-  result.weights = fit.read * coefficients;
+  if (high > count)
+    fit = with_least_largest_error(rows, coefficients, gram, fit, count, tolerance, result.vertex_weights);
   const std::vector<Index> telling = telling_frames(coefficients, fit);
-  if (high > count) {
-    const double largest = errors(rows, columns(coefficients, telling), fit).largest;
-    improve_weights(rows, coefficients, fit, largest, result.weights);
-  }
-  result.sampled_error =
-      errors_of(rows, columns(coefficients, telling) - fit.mix * columns(result.weights, telling)).largest;
-  // Weights of at most 1, so that a slider in a viewer means something.
-  for (Index k = 0; k < count; ++k) {
-    const float peak = result.weights.row(k).cwiseAbs().maxCoeff();
-    if (!(peak > 0.0F)) continue;
-    result.weights.row(k) /= peak;
-    fit.mix.col(k) *= peak;
-  }
-  result.shapes = space.mixed(fit.mix);
-  result.mix = std::move(fit.mix);
+  result.sampled_error = errors(rows, columns(coefficients, telling), fit).largest;
+  const MatrixXf shapes = space.mixed(fit.mix);
+  for (Index k = 0; k < count; ++k)
+    result.shapes.emplace_back(shapes.col(k));
   return result;
 }
 

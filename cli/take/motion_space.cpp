@@ -1,12 +1,10 @@
 #include "cli/take/motion_space.h"
 
-#include "cli/take/product.h"
-
-#include <tbb/parallel_for.h>
-
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <numeric>
+
+#include "cli/take/frame_fit.h"
+#include "cli/take/product.h"
 
 namespace fascia::cli {
 
@@ -18,22 +16,6 @@ constexpr size_t block_frames = 32;
 constexpr double growth = 1.5;           // of the tolerance, each time there are too many directions
 constexpr double share_given_up = 1.0;   // of the tolerance, that all given up of a frame may be long
 constexpr size_t fewer_directions = 32;  // where less than so many go, there may be as many more
-
-/// The largest length of the 3-vectors in a column.
-float largest_length(const Eigen::Ref<const Eigen::VectorXf>& column) {
-  float most = 0.0F;
-  for (Index i = 0; i + 2 < column.size(); i += 3)
-    most = std::max(most, column.segment<3>(i).squaredNorm());
-  return std::sqrt(most);
-}
-
-/// The largest length of a vertex's rows, of which the squares are given.
-float largest_row(const Eigen::VectorXf& squared) {
-  float most = 0.0F;
-  for (Index i = 0; i + 2 < squared.size(); i += 3)
-    most = std::max(most, squared.segment<3>(i).sum());
-  return std::sqrt(most);
-}
 
 /// How many of the last rows no frame has more of than `budget` in all.
 Index rows_within(const std::vector<Eigen::MatrixXf>& blocks, double budget) {
@@ -64,7 +46,6 @@ MotionSpace::MotionSpace(size_t vertices, const Options& options)
 void MotionSpace::add(std::span<const float> displacement) {
   if (block_.size() <= waiting_) block_.emplace_back();
   block_[waiting_++].assign(displacement.begin(), displacement.end());
-  ++frames_;
   if (waiting_ == block_frames) take_block();
 }
 
@@ -73,7 +54,7 @@ void MotionSpace::finish() {
   block_ = {};
   sampled_frames_ = sampled_left_ = {};
   sampled_directions_.conservativeResize(Eigen::NoChange, static_cast<Index>(directions_.size()));
-  coefficients_.setZero(static_cast<Index>(directions_.size()), static_cast<Index>(frames_));
+  coefficients_.setZero(static_cast<Index>(directions_.size()), static_cast<Index>(kept_frames_));
   Index first = 0;
   for (Eigen::MatrixXf& block : taken_) {
     coefficients_.block(0, first, block.rows(), block.cols()) = block;
@@ -143,8 +124,25 @@ void MotionSpace::take_block() {
     extend(worst);
     loosen_tolerance();
   }
-  measure_block();
+  frames_ += waiting_;
+  kept_frames_ += waiting_;
   waiting_ = 0;
+  keep_fewer_frames();
+}
+
+/// Keeps one frame of `every_` of the block that was taken in last, and of all where there are too many.
+void MotionSpace::keep_fewer_frames() {
+  const auto thin = [&](Eigen::MatrixXf& block, Index every) {
+    const Index kept = (block.cols() + every - 1) / every;
+    kept_frames_ -= static_cast<size_t>(block.cols() - kept);
+    if (kept < block.cols()) block = block(Eigen::all, Eigen::seqN(0, kept, every)).eval();
+  };
+  thin(taken_.back(), static_cast<Index>(every_));
+  while (kept_frames_ > options_.most_frames && every_ < block_frames) {
+    for (Eigen::MatrixXf& block : taken_)
+      thin(block, 2);
+    every_ *= 2;
+  }
 }
 
 /// A motion of many dimensions cannot be stored as accurately as one of few: beyond `fine_directions` the
@@ -155,31 +153,6 @@ void MotionSpace::loosen_tolerance() {
   const size_t before = directions_.size();
   give_up(share_given_up * options_.tolerance, 0);
   if (before - directions_.size() < fewer_directions) options_.fine_directions += fewer_directions;
-}
-
-/// How far the block's frames are off at any vertex.
-void MotionSpace::measure_block() {
-  const auto count = static_cast<Index>(waiting_);
-  const auto length = static_cast<Index>(3 * moving_.size());
-  const Eigen::MatrixXf& coefficients = taken_.back();
-  constexpr Index rows = 3 * 1024;
-  const auto pieces = static_cast<size_t>((length + rows - 1) / rows);
-  Eigen::MatrixXf most = Eigen::MatrixXf::Zero(count, static_cast<Index>(pieces));
-  tbb::parallel_for(size_t{0}, pieces, [&](size_t piece) {
-    const Index first = static_cast<Index>(piece) * rows, here = std::min(rows, length - first);
-    Eigen::MatrixXf off;
-    product(columns(first), here, coefficients, off);
-    for (Index f = 0; f < count; ++f) {
-      const float* frame = block_[static_cast<size_t>(f)].data();
-      for (Index i = 0; i < here; i += 3) {
-        const float* place = frame + 3 * moving_[static_cast<size_t>((first + i) / 3)];
-        off.col(f).segment<3>(i) -= Eigen::Map<const Eigen::Vector3f>(place);
-      }
-      most(f, static_cast<Index>(piece)) = largest_length(off.col(f));
-    }
-  });
-  for (Index f = 0; f < count; ++f)
-    left_.push_back(pieces > 0 ? most.row(f).maxCoeff() : 0.0F);
 }
 
 Eigen::VectorXf MotionSpace::whole(std::span<const float> frame) const {
@@ -223,7 +196,7 @@ std::vector<const float*> MotionSpace::columns(Index row) const {
 }
 
 /// Turns the directions to the take's principal ones so far and gives up those, `least` at least, of which no
-/// frame has more than `budget`. What it had is added to what is left of it.
+/// kept frame has more than `budget`.
 void MotionSpace::give_up(double budget, size_t least) {
   const auto known = static_cast<Index>(directions_.size());
   Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(known, known);
@@ -235,7 +208,6 @@ void MotionSpace::give_up(double budget, size_t least) {
     block = (all.topRows(block.rows()).transpose() * block).eval();
   const Index lost = std::clamp<Index>(rows_within(taken_, budget), static_cast<Index>(least), known - 1),
               kept = known - lost;
-  add_what_is_lost(mixed(all.rightCols(lost)), 0.05 * budget);
   for (Eigen::MatrixXf& block : taken_)
     block = block.topRows(kept).eval();
   const Eigen::MatrixXf turn = all.leftCols(kept);
@@ -252,30 +224,6 @@ void MotionSpace::give_up(double budget, size_t least) {
   directions_.resize(static_cast<size_t>(kept));
 }
 
-/// `directions` (3 #moving vertices x #lost) are given up: the last rows of each block's coefficients. What
-/// is surely less than `little` is added as what it is at most, the rest as it is. The block that is being
-/// taken in is measured when that is done.
-void MotionSpace::add_what_is_lost(const Eigen::MatrixXf& directions, double little) {
-  if (directions.cols() == 0) return;
-  const float gain = largest_row(directions.rowwise().squaredNorm());
-  tbb::parallel_for(size_t{0}, taken_.size() - 1, [&](size_t b) {
-    const auto mix = taken_[b].bottomRows(directions.cols());
-    std::vector<Index> looked_at;
-    for (Index f = 0; f < mix.cols(); ++f) {
-      const float most = gain * mix.col(f).norm();
-      if (static_cast<double>(most) > little)
-        looked_at.push_back(f);
-      else
-        left_[b * block_frames + static_cast<size_t>(f)] += most;
-    }
-    if (looked_at.empty()) return;
-    const Eigen::MatrixXf off = product(directions, mix(Eigen::all, looked_at));
-    for (size_t i = 0; i < looked_at.size(); ++i)
-      left_[b * block_frames + static_cast<size_t>(looked_at[i])] +=
-          largest_length(off.col(static_cast<Index>(i)));
-  });
-}
-
 Eigen::MatrixXf MotionSpace::mixed(const Eigen::MatrixXf& mix) const {
   Eigen::MatrixXf result;
   product(columns(0), static_cast<Index>(3 * moving_.size()), mix, result);
@@ -289,31 +237,6 @@ Eigen::MatrixXf MotionSpace::directions_at(std::span<const Index> which) const {
       result.col(k).segment<3>(static_cast<Index>(3 * i)) =
           directions_[static_cast<size_t>(k)].segment<3>(3 * which[i]);
   return result;
-}
-
-std::vector<float> MotionSpace::largest_of_mixed(const Eigen::MatrixXf& mix) const {
-  const auto length = static_cast<Index>(3 * moving_.size());
-  constexpr Index rows = 3 * 1024;
-  const Index pieces = (length + rows - 1) / rows;
-  Eigen::MatrixXf most = Eigen::MatrixXf::Zero(mix.cols(), std::max<Index>(1, pieces));
-  tbb::parallel_for(Index{0}, pieces, [&](Index piece) {
-    const Index first = piece * rows, here = std::min(rows, length - first);
-    Eigen::MatrixXf moved;
-    product(columns(first), here, mix, moved);
-    for (Index c = 0; c < mix.cols(); ++c)
-      most(c, piece) = largest_length(moved.col(c));
-  });
-  std::vector<float> largest(static_cast<size_t>(mix.cols()));
-  for (Index c = 0; c < mix.cols(); ++c)
-    largest[static_cast<size_t>(c)] = most.row(c).maxCoeff();
-  return largest;
-}
-
-float MotionSpace::largest_gain() const {
-  Eigen::VectorXf squared = Eigen::VectorXf::Zero(static_cast<Index>(3 * moving_.size()));
-  for (const Eigen::VectorXf& direction : directions_)
-    squared += direction.cwiseAbs2();
-  return largest_row(squared);
 }
 
 }  // namespace fascia::cli

@@ -14,9 +14,9 @@ namespace fascia::cli {
 /// that leaves a vertex more than the tolerance off, what is left becomes a new direction (a greedy reduced
 /// basis; Haasdonk 2013, Convergence rates of the POD-greedy method). Both are done at a sample of the
 /// vertices only, on which the directions are orthonormal, and carried over to all: the skin follows a
-/// lattice with far fewer degrees of freedom than the sample has (gappy POD; Everson & Sirovich 1995). How
-/// far a frame is then off at any vertex of all is measured before it is let go, and kept up to date where
-/// directions are given up later. A motion of many directions is followed less closely the more it has.
+/// lattice with far fewer degrees of freedom than the sample has (gappy POD; Everson & Sirovich 1995). A
+/// motion of many directions is followed less closely the more it has, and of a long take every second frame
+/// is kept, every fourth, and so on: the space is where shapes are looked for, not what is written.
 class MotionSpace {
  public:
   struct Options {
@@ -25,6 +25,7 @@ class MotionSpace {
     size_t fine_directions = 224;      ///< beyond, the tolerance grows and those of little weight go
     size_t most_directions = 448;      ///< beyond, the least are given up
     size_t most_bytes = 96 * 1000000;  ///< of directions, the same
+    size_t most_frames = 8192;         ///< beyond, every second one's coefficients are given up
   };
 
   /// `vertices` of the mesh; frames have three numbers for each.
@@ -36,37 +37,30 @@ class MotionSpace {
   /// Ends the take: every frame is in.
   void finish();
 
-  size_t frames() const { return frames_; }
   /// What the frames were followed to: the options' tolerance, or more.
   double tolerance() const { return options_.tolerance; }
   /// The vertices that move at all, in the order of `directions`.
   const std::vector<uint32_t>& vertices() const { return moving_; }
-  /// #directions x #frames.
+  /// #directions x #frames that are kept.
   const Eigen::MatrixXf& coefficients() const { return coefficients_; }
-  /// #frames: how far at most a frame's directions are off it at any vertex, in the frames' unit.
-  const std::vector<float>& left() const { return left_; }
   /// 3 #which x #directions: the directions at some of the vertices, given by their places in `vertices`.
   Eigen::MatrixXf directions_at(std::span<const Eigen::Index> which) const;
   /// 3 #vertices() x #columns: the directions mixed by `mix` (#directions x #columns).
   Eigen::MatrixXf mixed(const Eigen::MatrixXf& mix) const;
-  /// The largest length at any vertex of each column of the same; nothing of that size is made.
-  std::vector<float> largest_of_mixed(const Eigen::MatrixXf& mix) const;
-  /// What a mix of unit length moves any vertex at most.
-  float largest_gain() const;
 
  private:
   void take_block();
   void find_moving();
-  void measure_block();
   void loosen_tolerance();
   void extend(Eigen::Index column);
   void give_up(double budget, size_t least);
-  void add_what_is_lost(const Eigen::MatrixXf& directions, double little);
+  void keep_fewer_frames();
   std::vector<const float*> columns(Eigen::Index row) const;
   Eigen::VectorXf whole(std::span<const float> frame) const;
 
   Options options_;
-  size_t vertex_count_ = 0, stride_ = 0, frames_ = 0;
+  size_t vertex_count_ = 0, stride_ = 0, frames_ = 0, kept_frames_ = 0;
+  size_t every_ = 1;                       ///< one of so many frames is kept
   std::vector<uint8_t> moves_;             ///< by vertex
   std::vector<uint32_t> moving_;           ///< in the order they were seen to move
   std::vector<uint32_t> sampled_;          ///< vertices
@@ -77,7 +71,6 @@ class MotionSpace {
   std::vector<Eigen::MatrixXf> taken_;  ///< coefficients of each block; later directions are zero there
   Eigen::MatrixXf coefficients_;        ///< all of them, once the take has ended
   Eigen::MatrixXf sampled_frames_, sampled_left_;
-  std::vector<float> left_;  ///< by frame
 };
 
 }  // namespace fascia::cli

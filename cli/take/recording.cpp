@@ -4,11 +4,11 @@
 #include <tbb/task_group.h>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
-#include <numeric>
 
 #include "cli/take/keyframes.h"
+#include "cli/take/product.h"
+#include "cli/take/weight_fit.h"
 
 namespace fascia::cli {
 
@@ -17,97 +17,68 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXf;
 
-// Of what the written motion may be off: the part that directions, components and linear weights may each
-// take. Their sum stays below the total, because they rarely have their maxima at the same vertex.
-constexpr double share_of_directions = 0.2, share_of_components = 0.75, share_of_keys = 0.2;
+// Of what the written motion may be off: what shapes may leave at the sample they are chosen by and at any
+// vertex, and what the least change of linear weights is that keys are saved for.
+constexpr double share_of_directions = 0.2, share_of_components = 0.7, share_of_shapes = 0.85,
+                 share_of_keys = 0.15;
+// More principal components than that are hardly better than single frames' own shapes.
+constexpr size_t most_components = 384;
 
-/// Every n-th 3-vector of the shapes' rows, some `most` of them.
-MatrixXf sampled_rows(const MatrixXf& shapes, Index most) {
-  const Index vertices = shapes.rows() / 3, stride = std::max<Index>(1, vertices / most);
+/// The shapes at every n-th vertex, some `most` of them.
+MatrixXf sampled_rows(const std::vector<Eigen::VectorXf>& shapes, Index most) {
+  if (shapes.empty()) return {};
+  const Index vertices = shapes[0].size() / 3, stride = std::max<Index>(1, vertices / most);
   const Index count = (vertices + stride - 1) / stride;
-  MatrixXf rows(3 * count, shapes.cols());
-  for (Index v = 0; v < count; ++v)
-    rows.middleRows<3>(3 * v) = shapes.middleRows<3>(3 * v * stride);
+  MatrixXf rows(3 * count, static_cast<Index>(shapes.size()));
+  for (Index k = 0; k < rows.cols(); ++k)
+    for (Index v = 0; v < count; ++v)
+      rows.col(k).segment<3>(3 * v) = shapes[static_cast<size_t>(k)].segment<3>(3 * v * stride);
   return rows;
 }
 
-/// What is written of the mesh `motion` stands for when shapes may take `aim` of it.
-void write_down(const MotionSpace& space, const RecordingOptions& options, double aim, MeshMotion& motion) {
-  motion.components = components(space, options.most_targets, share_of_components * aim);
-  motion.keys = keys_of_shapes(motion.components.weights, sampled_rows(motion.components.shapes, 600),
-                               share_of_keys * aim);
+/// Adds to `off` (#frames) how far at most linear weights between the keys move a vertex.
+void add_errors_of_keys(const MeshMotion& motion, std::vector<float>& off) {
+  const MatrixXf change = between_keys(motion.weights, motion.keys) - motion.weights;
+  std::vector<Index> changed;
+  for (Index f = 0; f < change.cols(); ++f)
+    if (!change.col(f).isZero(0)) changed.push_back(f);
+  if (changed.empty()) return;
+  std::vector<const float*> columns;
+  for (const Eigen::VectorXf& shape : motion.shapes)
+    columns.push_back(shape.data());
+  constexpr size_t block = 32;
+  tbb::parallel_for(size_t{0}, (changed.size() + block - 1) / block, [&](size_t b) {
+    const std::vector<Index> frames(
+        changed.begin() + static_cast<std::ptrdiff_t>(b * block),
+        changed.begin() + static_cast<std::ptrdiff_t>(std::min(changed.size(), (b + 1) * block)));
+    MatrixXf moved;
+    product(columns, motion.shapes[0].size(), change(Eigen::all, frames), moved);
+    for (size_t i = 0; i < frames.size(); ++i)
+      off[static_cast<size_t>(frames[i])] += largest_length(moved.col(static_cast<Index>(i)));
+  });
 }
 
-/// What shapes and linear weights leave of the directions.
-class Remainder {
- public:
-  Remainder(const MotionSpace& space, const MeshMotion& motion)
-      : space_(space), motion_(motion), weights_(between_keys(motion.components.weights, motion.keys)) {}
-
-  /// #directions.
-  Eigen::VectorXf of(size_t frame) const {
-    const auto f = static_cast<Index>(frame);
-    return space_.coefficients().col(f) - motion_.components.mix * weights_.col(f);
-  }
-
- private:
-  const MotionSpace& space_;
-  const MeshMotion& motion_;
-  MatrixXf weights_;
-};
-
-/// The largest error frame by frame is at most what the directions leave of it and what shapes and linear
-/// weights leave of those. The latter moves a vertex by no more than its length times the largest gain, so
-/// only frames that could be the worst are looked at vertex by vertex.
-void bound_errors(const MotionSpace& space, MeshMotion& motion) {
-  const Remainder remainder(space, motion);
-  const std::vector<float>& left = space.left();
-  const float gain = space.largest_gain();
-  std::vector<float> most(left.size());
-  tbb::parallel_for(size_t{0}, most.size(),
-                    [&](size_t f) { most[f] = left[f] + gain * remainder.of(f).norm(); });
-  std::vector<size_t> order(most.size());
-  std::iota(order.begin(), order.end(), size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return most[a] > most[b]; });
-  motion.left = *std::max_element(left.begin(), left.end());
-  motion.largest_error = 0.0;
-  motion.largest_error_frame = order.front();
-  constexpr size_t block = 64;
-  for (size_t i = 0; i < order.size(); i += block) {
-    if (static_cast<double>(most[order[i]]) <= motion.largest_error) break;
-    const std::span<const size_t> frames(order.data() + i, std::min(block, order.size() - i));
-    MatrixXf mix(space.coefficients().rows(), static_cast<Index>(frames.size()));
-    for (size_t k = 0; k < frames.size(); ++k)
-      mix.col(static_cast<Index>(k)) = remainder.of(frames[k]);
-    const std::vector<float> off = space.largest_of_mixed(mix);
-    for (size_t k = 0; k < frames.size(); ++k) {
-      const auto error = static_cast<double>(left[frames[k]] + off[k]);
-      if (error <= motion.largest_error) continue;
-      motion.largest_error = error;
-      motion.largest_error_frame = frames[k];
-    }
+/// Saves keys as far as the tolerance allows.
+void choose_keys(const std::vector<float>& left, double tolerance, MeshMotion& motion) {
+  double share = share_of_keys;
+  for (int attempt = 0; attempt < 3; ++attempt, share *= 0.5) {
+    motion.keys = keys_of_shapes(motion.weights, sampled_rows(motion.shapes, 600), share * tolerance);
+    std::vector<float> off = left;
+    add_errors_of_keys(motion, off);
+    const auto worst = std::max_element(off.begin(), off.end());
+    motion.largest_error = static_cast<double>(*worst);
+    motion.largest_error_frame = static_cast<size_t>(worst - off.begin());
+    if (motion.largest_error <= tolerance) return;
   }
 }
 
-/// Writes down a mesh's motion; where its errors add up to more than they may, once more, aiming lower.
-void write_down_within(const MotionSpace& space, const RecordingOptions& options, MeshMotion& motion) {
-  double aim = options.tolerance;
-  for (int attempt = 0; attempt < 3; ++attempt) {
-    write_down(space, options, aim, motion);
-    bound_errors(space, motion);
-    const bool is_full = motion.components.weights.rows() >= static_cast<Index>(options.most_targets);
-    const auto left = static_cast<double>(motion.left);
-    if (is_full || motion.largest_error <= options.tolerance || left > 0.5 * options.tolerance) return;
-    aim *= 0.95 * (options.tolerance - left) / (motion.largest_error - left);
-  }
-}
-
-/// Takes the frames of all meshes in while the next ones are simulated, on a thread of its own where there
-/// is one. The same, to the last bit, on any number of them.
+/// Shows the frames of each mesh to its taker while the next ones are simulated, on a thread of its own where
+/// there is one. The same, to the last bit, on any number of them.
+template <class Taker>
 class Intake {
  public:
-  Intake(const std::vector<MeshOfFile>& meshes, std::vector<MotionSpace>& spaces)
-      : meshes_(meshes), spaces_(spaces), arriving_(meshes.size() * batch), taken_(meshes.size() * batch) {}
+  Intake(const std::vector<MeshOfFile>& meshes, std::vector<Taker>& takers)
+      : meshes_(meshes), takers_(takers), arriving_(meshes.size() * batch), taken_(meshes.size() * batch) {}
   Intake(const Intake&) = delete;
   Intake& operator=(const Intake&) = delete;
   ~Intake() { tasks_.wait(); }
@@ -131,17 +102,37 @@ class Intake {
     tasks_.run([this, count = count_] {
       for (size_t m = 0; m < meshes_.size(); ++m)
         for (size_t f = 0; f < count; ++f)
-          spaces_[m].add(taken_[m * batch + f]);
+          takers_[m].add(taken_[m * batch + f]);
     });
     count_ = 0;
   }
 
   const std::vector<MeshOfFile>& meshes_;
-  std::vector<MotionSpace>& spaces_;
+  std::vector<Taker>& takers_;
   std::vector<std::vector<float>> arriving_, taken_;
   size_t count_ = 0;
   tbb::task_group tasks_;
 };
+
+/// Simulates the take and shows its frames to the takers, one for each of `meshes`.
+template <class Taker>
+PerformanceFigures show(const Common& common, const Take& take, const Face& face,
+                        const std::vector<MeshOfFile>& meshes, std::vector<Taker>& takers,
+                        MatrixXf* values = nullptr) {
+  Face fresh = face.sibling();
+  const auto channels = static_cast<Index>(fresh.channel_names().size());
+  if (values) values->resize(channels, static_cast<Index>(take.frames()));
+  Progress progress(common, "frame", take.frames());
+  Intake<Taker> intake(meshes, takers);
+  const PerformanceFigures figures = perform(take, fresh, progress, [&](size_t f) {
+    intake.add(fresh);
+    if (values)
+      values->col(static_cast<Index>(f)) =
+          Eigen::Map<const Eigen::VectorXf>(fascia_face_effective_values(fresh.handle()), channels);
+  });
+  intake.finish();
+  return figures;
+}
 
 }  // namespace
 
@@ -170,40 +161,43 @@ void displacement(const Face& face, const MeshOfFile& mesh, std::vector<float>& 
   }
 }
 
-Recording record(const Common& common, const Take& take, Face& face, const RecordingOptions& options) {
+Recording record(const Common& common, const Take& take, const Face& face, const RecordingOptions& options) {
   Recording recording;
-  const std::vector<MeshOfFile> meshes = meshes_of_file(face);
+  std::vector<MeshOfFile> meshes = meshes_of_file(face);
+  const size_t most = std::min(options.most_targets, most_components);
   std::vector<MotionSpace> spaces;
   for (const MeshOfFile& mesh : meshes) {
     MotionSpace::Options space;
     space.tolerance = share_of_directions * options.tolerance;
-    space.fine_directions = std::max(space.fine_directions, 5 * options.most_targets / 2);
-    space.most_directions = std::max(space.most_directions, 3 * options.most_targets);
+    space.fine_directions = std::max(space.fine_directions, 3 * most / 2);
+    space.most_directions = std::max(space.most_directions, 2 * most);
     spaces.emplace_back(mesh.vertices, space);
   }
-  const auto channels = static_cast<Index>(face.channel_names().size());
-  recording.values.resize(channels, static_cast<Index>(take.frames()));
   common.progress("simulation");
-  {
-    Progress progress(common, "frame", take.frames());
-    Intake intake(meshes, spaces);
-    recording.figures = perform(take, face, progress, [&](size_t f) {
-      intake.add(face);
-      recording.values.col(static_cast<Index>(f)) =
-          Eigen::Map<const Eigen::VectorXf>(fascia_face_effective_values(face.handle()), channels);
-    });
-    intake.finish();
-  }
+  recording.figures = show(common, take, face, meshes, spaces, &recording.values);
   common.progress("principal components");
+  std::vector<WeightFit> fits;
+  std::vector<MeshOfFile> moving;
   for (size_t m = 0; m < meshes.size(); ++m) {
-    MotionSpace space = std::move(spaces[m]);  // its memory is free again when it is written down
+    MotionSpace space = std::move(spaces[m]);  // its memory is free again when the shapes are found
     space.finish();
     if (space.vertices().empty()) continue;
-    MeshMotion motion;
-    motion.mesh = meshes[m];
-    motion.vertices = space.vertices();
-    write_down_within(space, options, motion);
+    Components parts = components(space, most, share_of_components * options.tolerance);
+    MeshMotion motion{meshes[m], space.vertices(), {}, {}, {}, 0.0, 0, parts.wanted};
+    WeightFit::Options fit{share_of_shapes * options.tolerance, options.most_targets - parts.shapes.size()};
+    moving.push_back(meshes[m]);
     recording.meshes.push_back(std::move(motion));
+    fits.emplace_back(space.vertices(), std::move(parts), fit);
+  }
+  common.progress("weights");
+  if (!fits.empty()) show(common, take, face, moving, fits);
+  for (size_t m = 0; m < fits.size(); ++m) {
+    MeshMotion& motion = recording.meshes[m];
+    WeightFit::Result fitted = fits[m].finish();
+    motion.shapes = std::move(fitted.shapes);
+    motion.weights = std::move(fitted.weights);
+    choose_keys(fitted.left, options.tolerance, motion);
+    if (motion.largest_error <= options.tolerance) motion.wanted = motion.shapes.size();
   }
   return recording;
 }

@@ -3,7 +3,6 @@
 #include <string>
 #include <vector>
 
-#include "cli/take/components.h"
 #include "cli/take/performance.h"
 
 namespace fascia::cli {
@@ -24,13 +23,14 @@ void displacement(const Face& face, const MeshOfFile& mesh, std::vector<float>& 
 /// The motion of one mesh of the file, ready to be written.
 struct MeshMotion {
   MeshOfFile mesh;
-  std::vector<uint32_t> vertices;  ///< those that move, in the order of the shapes' rows
-  Components components;
-  std::vector<size_t> keys;  ///< frames that have weights; between them they are linear
+  std::vector<uint32_t> vertices;       ///< those that move, in the order of the shapes' rows
+  std::vector<Eigen::VectorXf> shapes;  ///< of 3 #moving vertices each
+  Eigen::MatrixXf weights;              ///< #shapes x #frames
+  std::vector<size_t> keys;             ///< frames whose weights are written; between them they are linear
   double largest_error =
       0.0;  ///< of what is written, at most, at any vertex of any frame, in the mesh's unit
   size_t largest_error_frame = 0;
-  float left = 0.0F;  ///< of that, what the directions leave in their worst frame
+  size_t wanted = 0;  ///< how many shapes would be within the tolerance; 0: not known
 };
 
 /// What a run through a take leaves.
@@ -41,13 +41,16 @@ struct Recording {
 };
 
 struct RecordingOptions {
-  size_t most_targets = 64;
+  size_t most_targets = 1024;
   double tolerance = 0.0;  ///< in the meshes' unit: what the written motion may be off
 };
 
-/// Runs through the take on a fresh face and keeps of it what can be written. Memory grows by the channels
-/// and the directions of motion, not by vertices times frames. Errors are sums of what directions leave of a
-/// frame and what shapes and keys leave of the directions, so they bound those of what is written.
-Recording record(const Common& common, const Take& take, Face& face, const RecordingOptions& options);
+/// Runs through the take on siblings of `face` and keeps of it what can be written.
+///
+/// It runs twice: the first time to find shapes that span the motion, the second time, which repeats the
+/// first to the last bit, to fit their weights to the frames themselves and to measure what they leave, at
+/// every vertex. Memory grows by the channels and the shapes' weights, not by vertices times frames. Errors
+/// are sums of what shapes leave of a frame and what keys leave of their weights: no vertex is off farther.
+Recording record(const Common& common, const Take& take, const Face& face, const RecordingOptions& options);
 
 }  // namespace fascia::cli

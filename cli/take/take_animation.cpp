@@ -52,7 +52,7 @@ class Animation {
 };
 
 /// Component `k` as displacements of the mesh's primitives.
-std::vector<PrimitiveMotion> shape_of(const MeshMotion& motion, const Face& face, Eigen::Index k) {
+std::vector<PrimitiveMotion> shape_of(const MeshMotion& motion, const Face& face, size_t k) {
   std::vector<PrimitiveMotion> shape;
   for (const size_t part : motion.mesh.parts)
     shape.push_back({face.meshes()[part].mesh, face.meshes()[part].primitive,
@@ -62,18 +62,17 @@ std::vector<PrimitiveMotion> shape_of(const MeshMotion& motion, const Face& face
     const auto after = std::upper_bound(motion.mesh.firsts.begin(), motion.mesh.firsts.end(), vertex);
     const auto part = static_cast<size_t>(after - motion.mesh.firsts.begin()) - 1;
     shape[part].displacement[vertex - motion.mesh.firsts[part]] =
-        motion.components.shapes.col(k).segment<3>(static_cast<Eigen::Index>(3 * i));
+        motion.shapes[k].segment<3>(static_cast<Eigen::Index>(3 * i));
   }
   return shape;
 }
 
 /// The weights of each component at the keys.
 std::vector<std::vector<float>> weights_at_keys(const MeshMotion& motion) {
-  std::vector<std::vector<float>> weights(static_cast<size_t>(motion.components.weights.rows()));
+  std::vector<std::vector<float>> weights(static_cast<size_t>(motion.weights.rows()));
   for (size_t k = 0; k < weights.size(); ++k)
     for (const size_t key : motion.keys)
-      weights[k].push_back(
-          motion.components.weights(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(key)));
+      weights[k].push_back(motion.weights(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(key)));
   return weights;
 }
 
@@ -106,16 +105,15 @@ void add_take(GltfEdit& edit, const std::string& name, const Take& take, const F
   for (MeshMotion& recorded : recording.meshes) {
     const MeshMotion motion = std::move(recorded);  // its memory is free again when it is in the file
     std::vector<std::string> names;
-    std::vector<std::vector<PrimitiveMotion>> shapes;
-    for (Eigen::Index k = 0; k < motion.components.weights.rows(); ++k) {
+    for (size_t k = 0; k < motion.shapes.size(); ++k)
       names.push_back("motion_" + std::to_string(k));
-      shapes.push_back(shape_of(motion, face, k));
-    }
-    if (shapes.empty()) continue;
+    if (names.empty()) continue;
     gltf::MorphOptions options;
     options.is_linear = true;
-    const std::vector<gltf::MeshTargets> targets =
-        gltf::add_morph_targets(edit, names, shapes, options, &warnings);
+    edit.expect(motion.shapes.size() * (24 * motion.mesh.vertices + 4 * motion.keys.size()));
+    const std::vector<gltf::MeshTargets> targets = gltf::add_morph_targets(
+        edit, {motion.mesh.mesh}, names, [&](size_t k) { return shape_of(motion, face, k); }, options,
+        &warnings);
     gltf::add_weight_channels(edit, targets, weights_at_keys(motion), animation.times(motion.keys),
                               animation.json());
   }

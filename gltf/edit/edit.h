@@ -23,6 +23,9 @@ class Edit {
     return appendix_.add_floats(values, static_cast<std::size_t>(width), bounds, target);
   }
 
+  /// Makes room for so many more bytes of data, which then need not be moved as they become more.
+  void expect(std::size_t bytes) { bin_.reserve(bin_.size() + bytes); }
+
   /// A primitive's JSON. Throws when it is not there.
   Json& primitive(uint32_t mesh, uint32_t index);
 

@@ -179,19 +179,27 @@ class MeshMorphs {
 std::vector<MeshTargets> add_morph_targets(Edit& edit, const std::vector<std::string>& names,
                                            const std::vector<std::vector<PrimitiveMotion>>& shapes,
                                            const MorphOptions& options, std::vector<std::string>* warnings) {
-  const tinygltf::Model& model = edit.model();
   std::set<uint32_t> meshes;
   for (const auto& shape : shapes)
     for (const PrimitiveMotion& motion : shape)
       meshes.insert(motion.mesh);
+  return add_morph_targets(
+      edit, meshes, names, [&](std::size_t s) { return shapes[s]; }, options, warnings);
+}
+
+std::vector<MeshTargets> add_morph_targets(
+    Edit& edit, const std::set<uint32_t>& meshes, const std::vector<std::string>& names,
+    const std::function<std::vector<PrimitiveMotion>(std::size_t)>& shape, const MorphOptions& options,
+    std::vector<std::string>* warnings) {
+  const tinygltf::Model& model = edit.model();
   std::vector<MeshTargets> result;
   std::vector<std::string> heard;
   std::set<std::string> existing;
   for (const uint32_t mesh : meshes) {
     MeshMorphs morphs(edit, model, mesh);
     MeshTargets targets{mesh, 0, {}};
-    for (std::size_t s = 0; s < shapes.size(); ++s)
-      targets.targets.push_back(morphs.add(names[s], shapes[s], options, existing));
+    for (std::size_t s = 0; s < names.size(); ++s)
+      targets.targets.push_back(morphs.add(names[s], shape(s), options, existing));
     targets.count = morphs.count();
     if (std::all_of(targets.targets.begin(), targets.targets.end(), [](int target) { return target < 0; }))
       continue;

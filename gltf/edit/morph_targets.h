@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -53,6 +55,13 @@ std::vector<MeshTargets> add_morph_targets(Edit& edit, const std::vector<std::st
                                            const std::vector<std::vector<PrimitiveMotion>>& shapes,
                                            const MorphOptions& options = {},
                                            std::vector<std::string>* warnings = nullptr);
+
+/// The same for shapes that are made one at a time, where all of them at once would take too much memory:
+/// `shape(s)` is what the shape called `names[s]` moves, of `meshes` alone.
+std::vector<MeshTargets> add_morph_targets(
+    Edit& edit, const std::set<uint32_t>& meshes, const std::vector<std::string>& names,
+    const std::function<std::vector<PrimitiveMotion>(std::size_t)>& shape, const MorphOptions& options = {},
+    std::vector<std::string>* warnings = nullptr);
 
 /// Adds a linear weights channel to `animation` (with its arrays "samplers" and "channels") for every node
 /// that shows one of `meshes`. `weights[s][f]` is the weight of shape s at key f, `time` the accessor of the
