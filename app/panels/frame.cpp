@@ -23,9 +23,12 @@ constexpr std::array<PanelEntry, 7> panels = {{{"pose", "Pose"},
                                                {"live", "Live"},
                                                {"export", "Export"}}};
 
-const std::vector<std::string> mesh_endings = {".glb", ".gltf", ".obj", ".ply", ".stl", ".vrm"};
-
 }  // namespace
+
+const std::vector<std::string>& mesh_endings() {
+  static const std::vector<std::string> endings = {".glb", ".gltf", ".obj", ".ply", ".stl", ".vrm"};
+  return endings;
+}
 
 void begin_area(const char* name, const Area& area, const ImVec4& background, ImVec2 padding) {
   ImGui::SetNextWindowPos({area.x, area.y});
@@ -45,7 +48,7 @@ void end_area() {
 }
 
 void ask_to_open(Workspace& work, Screen& screen) {
-  screen.browser.ask_to_open("Open a head or a rig", mesh_endings,
+  screen.browser.ask_to_open("Open a head or a rig", mesh_endings(),
                              [&work](const std::filesystem::path& file) { work.open(file); });
 }
 
@@ -58,15 +61,6 @@ void ask_to_save_rig(Workspace& work, Screen& screen) {
   const std::string stem = std::filesystem::path(work.state().head).stem().string();
   screen.browser.ask_to_save("Save the rig", stem + "_rig.glb", {".glb"},
                              [&work](const std::filesystem::path& file) { work.save_rig(file); });
-}
-
-std::string present_command(const Workspace& work) {
-  if (!work.rig) return "";
-  if (work.take)
-    return shell_text(play_command(work.state().take, work.rig->file.filename(), 60.0, "take.glb"));
-  if (!work.state().pose.empty())
-    return shell_text(pose_command(work.state(), work.rig->file.filename(), "posed.glb"));
-  return shell_text(build_command(work.state(), "edits.json", "rig.glb"));
 }
 
 void show_top_bar(Workspace& work, Screen& screen, const Area& area) {
@@ -184,9 +178,10 @@ void show_status(Workspace& work, Screen& screen, const Area& area) {
                 work.frame ? work.frame->step_milliseconds : 0.0,
                 screen.picture.milliseconds(screen.drawn_care));
   const float right = ImGui::CalcTextSize(figures).x + scaled(24);
-  const std::string command = present_command(work);
+  const std::string command = work.present_command().text;
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(scaled(8), scaled(1)));
-  if (ui::button("Copy command")) ImGui::SetClipboardText(command.c_str());
+  if (ui::button("Copy command"))
+    if (const std::string text = work.copy_command(); !text.empty()) ImGui::SetClipboardText(text.c_str());
   ImGui::PopStyleVar();
   ui::tooltip("The command that does the same in a terminal");
   ImGui::SameLine();
