@@ -208,7 +208,7 @@ void Workspace::submit(double seconds) {
       inputs.touches.push_back({poke_->part, vertex, (share / sum * force).cast<float>()});
   }
   inputs.wants_compression = settings.layers.strain;
-  inputs.wants_nodes = settings.layers.fat || settings.layers.lattice;
+  inputs.wants_nodes = settings.layers.fat || settings.layers.lattice || settings.layers.smas;
   inputs.resets = resets_;
   (void)seconds;
   simulation->submit(inputs);

@@ -79,6 +79,9 @@ Pictured pictured(Workspace& work, Screen& screen, bool is_careful) {
   }
   Pictured result;
   result.face = screen.face.scene->list(*work.frame, options);
+  // Hairs finer than a pixel would be dots; the renderer leaves them out of its own copy of the list.
+  if (!is_careful)
+    std::erase_if(result.face.surfaces, [](const view::DrawSurface& surface) { return surface.is_fine; });
   result.is_divided = screen.reference.scene != nullptr;
   if (!result.is_divided) return result;
   SceneOptions beside = options_of(work, is_careful);
@@ -107,7 +110,7 @@ void renew_still(Workspace& work, Screen& screen, const std::string& key, const 
 }  // namespace
 
 void ShownFace::renew(const LoadedRig* loaded) {
-  if (loaded && asset == loaded->asset) return;
+  if (asset == (loaded ? loaded->asset : nullptr)) return;
   scene.reset();
   asset = loaded ? loaded->asset : nullptr;
   rig = loaded ? loaded->rig : nullptr;

@@ -26,6 +26,7 @@ void FacePicture::resize(int width, int height) {
   width = std::max(width, 1);
   height = std::max(height, 1);
   if (width == width_ && height == height_) return;
+  is_slow_ = false;
   width_ = width;
   height_ = height;
   glBindTexture(GL_TEXTURE_2D, texture_);
@@ -47,9 +48,13 @@ void FacePicture::resize(int width, int height) {
 void FacePicture::draw(const view::DrawList& list, const view::Camera& camera, view::Look look, Care care,
                        int x, int columns) {
   const auto started = std::chrono::steady_clock::now();
-  look.has_shadows = care != Care::quick;
+  look.has_shadows = look.has_mirrors = care != Care::quick;
   look.has_occlusion = care == Care::full;
-  look.samples = care == Care::full ? 8 : 2;
+  // Where even the plainest picture is too slow to follow the hand, it is drawn with fewer pixels.
+  const double slow = 30.0;  // milliseconds
+  is_slow_ = is_slow_ || milliseconds_[static_cast<int>(Care::quick)] > slow;
+  if (care == Care::quick && is_slow_) look.resolution = 0.75;
+  look.samples = care == Care::full ? 8 : care == Care::good ? 2 : 1;
   renderer_.draw(list, camera, {framebuffer_, x, 0, std::max(columns, 1), height_}, look);
   // The time counts when the picture is there, not when it is ordered.
   glFinish();
@@ -58,6 +63,24 @@ void FacePicture::draw(const view::DrawList& list, const view::Camera& camera, v
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - started).count();
   double& mean = milliseconds_[static_cast<int>(care)];
   mean = mean == 0.0 ? passed : 0.8 * mean + 0.2 * passed;
+}
+
+void FacePicture::warm_up() {
+  using view::Shading;
+  static constexpr Shading all[] = {Shading::skin, Shading::eye,  Shading::mucosa, Shading::tooth,
+                                    Shading::hair, Shading::bone, Shading::muscle, Shading::xray,
+                                    Shading::data, Shading::plain};
+  if (warmed_up_ == std::size(all)) return;
+  view::DrawList list;
+  view::DrawSurface& surface = list.surfaces.emplace_back();
+  surface.positions = {Vec3(-0.1, -0.1, 0), Vec3(0.1, -0.1, 0), Vec3(0, 0.1, 0)};
+  surface.triangles = {{0, 1, 2}};
+  surface.shading = all[warmed_up_++];
+  view::Camera camera;
+  camera.distance = 0.5;
+  resize(std::max(width_, 64), std::max(height_, 64));
+  draw(list, camera, view::Look(), Care::quick, 0, width_);
+  milliseconds_[static_cast<int>(Care::quick)] = 0.0;
 }
 
 void FacePicture::show(const view::Image& image) {

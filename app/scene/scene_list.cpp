@@ -130,6 +130,7 @@ SceneStore::SceneStore(const FaceAsset& asset, const rig::Rig& rig, const view::
     rest.insert(rest.end(), points.begin(), points.end());
   }
   skin_seams_ = std::make_shared<const std::vector<int>>(view::seams_of(rest));
+  moving_.emplace(rig, std::move(rest));
 }
 
 /// Colours of data take the place of the head's own, and skin of glass has none.
@@ -250,6 +251,29 @@ void SceneStore::add_lattice(view::DrawList& list, const FaceFrame& frame, const
   if (layers.lattice) view::add_lattice(lattice, list);
 }
 
+std::vector<Vec3> SceneStore::skin_of(const FaceFrame& frame) const {
+  std::vector<Vec3> skin;
+  for (const size_t part : skin_parts_) {
+    const std::vector<Vec3> points = points_of(frame.positions[part]);
+    skin.insert(skin.end(), points.begin(), points.end());
+  }
+  return skin;
+}
+
+/// The SMAS and its ligaments, as far as the face has carried them.
+void SceneStore::add_sheets(view::DrawList& list, const FaceFrame& frame, const Layers& layers) const {
+  if (layers.smas) {
+    FaceSurface smas = asset_.smas;
+    std::vector<Vec3> moved =
+        moving_->smas({asset_.lattice_columns, points_of(frame.nodes), asset_.lattice_prisms});
+    if (moved.size() == smas.positions.size()) smas.positions = std::move(moved);
+    add_surface(list, smas, Mat4::Identity(), view::Shading::mucosa, smas_colour,
+                layers.muscles || layers.skull ? 0.5 : 1.0);
+  }
+  if (layers.ligaments)
+    view::add_ligaments(moving_->ligaments(skin_of(frame), frame.jaw.cast<double>()), list);
+}
+
 view::DrawList SceneStore::list(const FaceFrame& frame, const SceneOptions& options) const {
   view::DrawList list;
   const Mat4 still = Mat4::Identity(), jaw = frame.jaw.cast<double>();
@@ -259,6 +283,9 @@ view::DrawList SceneStore::list(const FaceFrame& frame, const SceneOptions& opti
   for (size_t part = 0; part < asset_.parts.size() && !is_own; ++part) {
     const std::string& kind = asset_.parts[part].part;
     if (is_skin(kind) || is_card(kind)) continue;
+    // What lines the mouth would hide the teeth and the bone behind glass.
+    const bool is_lining = starts_with(kind, "gums") || kind == "mouth_interior";
+    if (is_lining && layers.has_depth() && layers.skin_opacity < 0.999) continue;
     if (layers.skin || is_eye(kind)) add_part(list, part, frame);
   }
   if (layers.skin && !is_own && !skin_parts_.empty()) add_skin(list, frame, options);
@@ -268,12 +295,9 @@ view::DrawList SceneStore::list(const FaceFrame& frame, const SceneOptions& opti
     add_surface(list, asset_.teeth_upper, still, view::Shading::tooth, tooth_colour, 1.0);
     add_surface(list, asset_.teeth_lower, jaw, view::Shading::tooth, tooth_colour, 1.0);
   }
-  if (layers.smas)
-    add_surface(list, asset_.smas, still, view::Shading::mucosa, smas_colour,
-                layers.muscles || layers.skull ? 0.5 : 1.0);
+  add_sheets(list, frame, layers);
   if (layers.muscles && options.has_round_fibres) add_flesh(list, frame, options);
   if (layers.muscles && !options.has_round_fibres) add_fibre_lines(list, frame, options);
-  if (layers.ligaments) view::add_ligaments(rig_.smas, list);
   add_lattice(list, frame, layers);
   return list;
 }

@@ -10,6 +10,7 @@
 #include "app/model/settings.h"
 #include "rig/model/rig.h"
 #include "view/face/face_scene.h"
+#include "view/face/moving_anatomy.h"
 #include "view/scene.h"
 
 namespace fascia::app {
@@ -56,6 +57,8 @@ class SceneStore {
   void add_fibre_lines(view::DrawList& list, const FaceFrame& frame, const SceneOptions& options) const;
   void add_flesh(view::DrawList& list, const FaceFrame& frame, const SceneOptions& options) const;
   void add_lattice(view::DrawList& list, const FaceFrame& frame, const Layers& layers) const;
+  void add_sheets(view::DrawList& list, const FaceFrame& frame, const Layers& layers) const;
+  std::vector<Vec3> skin_of(const FaceFrame& frame) const;
 
   const FaceAsset& asset_;
   const rig::Rig& rig_;
@@ -65,6 +68,7 @@ class SceneStore {
   std::vector<size_t> skin_parts_;
   std::vector<Triangle> skin_triangles_;
   std::shared_ptr<const std::vector<int>> skin_seams_;
+  std::optional<view::MovingAnatomy> moving_;
 };
 
 /// Distance of every vertex of `frame` from `reference`, metres, one list a part; of parts whose counts
