@@ -89,6 +89,8 @@ void Workspace::adopt(LoadedRig loaded) {
   built_edits_ = building_edits_;
   rig = std::move(loaded);
   part_with(std::exchange(simulation, std::move(next)));
+  part_with(std::move(live_skull_));
+  skull_shift.reset();
   if (std::exchange(restores_, false)) {
     session_.keep(state());
     session_.forget_left_behind();
@@ -223,9 +225,23 @@ double Workspace::shake_yaw() const {
   return widest * fade * std::sin(2.0 * EIGEN_PI * turns * *shake_ / length);
 }
 
-void Workspace::part_with(std::unique_ptr<Simulation> face) {
-  if (!face) return;
-  farewells_.push_back(std::async(std::launch::async, [face = std::move(face)]() mutable { face.reset(); }));
+/// The skull under landmarks that have been moved, until it is built again.
+void Workspace::follow_landmarks() {
+  if (!rig) return;
+  const bool shows_landmarks = settings.layers.landmarks || settings.panel == "landmarks";
+  if (!live_skull_ && shows_landmarks)
+    live_skull_ = std::make_unique<LiveSkull>(
+        rig->rig, [asset = rig->asset] { return head_meshes(*asset); },
+        waits() ? LiveSkull::Pace::at_once : LiveSkull::Pace::background);
+  if (!live_skull_) return;
+  std::map<std::string, Vec3> moved;
+  if (has_unbuilt_edits())
+    for (const std::string& name : edited_landmarks(state()))
+      if (const auto place = landmark(name)) moved[name] = *place;
+  live_skull_->submit(moved);
+  const auto shift = moved.empty() ? nullptr : live_skull_->shift();
+  if (shift != skull_shift) ++changes_;
+  skull_shift = shift;
 }
 
 void Workspace::update(double seconds) {
@@ -273,6 +289,7 @@ void Workspace::update(double seconds) {
   if (shake_ && (*shake_ += seconds) > 1.2) shake_.reset();
   if (!simulation) return;
   take_reference(waits());
+  follow_landmarks();
   submit(seconds);
   frame = simulation->frame();
   renew_reference_frame();

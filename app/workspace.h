@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/engine/build_task.h"
+#include "app/engine/live_skull.h"
 #include "app/engine/pending.h"
 #include "app/engine/simulation.h"
 #include "app/engine/tool_job.h"
@@ -215,6 +216,7 @@ class Workspace {
   bool rebuilds_by_itself = true;
   bool orbit_moves = false;  ///< the camera glides
   std::shared_ptr<const FaceFrame> frame;
+  std::shared_ptr<const SkullShift> skull_shift;     ///< by landmarks that are not built in yet; null: none
   std::shared_ptr<const FaceFrame> reference_frame;  ///< what the face is compared with; null: nothing
 
  private:
@@ -242,8 +244,14 @@ class Workspace {
   void follow_document();
   void start_build(const std::filesystem::path& head, bool builds_anew);
   void remove_old_builds();
-  /// Ends a face without waiting for the step it is at.
-  void part_with(std::unique_ptr<Simulation> face);
+  /// Ends a face, or another thing with a thread, without waiting for the step it is at.
+  template <class Thing>
+  void part_with(std::unique_ptr<Thing> thing) {
+    if (!thing) return;
+    farewells_.push_back(
+        std::async(std::launch::async, [thing = std::move(thing)]() mutable { thing.reset(); }));
+  }
+  void follow_landmarks();
   bool waits() const { return pace_ == Simulation::Pace::lockstep; }
   void adopt(LoadedRig loaded);
   void read_check(const ToolJob& job);
@@ -263,6 +271,7 @@ class Workspace {
   Pending<std::unique_ptr<Simulation>> coming_reference_;
   Pending<std::vector<std::vector<float>>> coming_positions_;
   std::vector<std::future<void>> farewells_;
+  std::unique_ptr<LiveSkull> live_skull_;
   /// What was saved, and of what: commands may name it as long as that is what is there.
   struct SavedFile {
     std::filesystem::path file;

@@ -77,6 +77,7 @@ Pictured pictured(Workspace& work, Screen& screen, bool is_careful) {
     distances = distances_between(*work.frame, work.reference_frame->positions);
     options.distances = &distances;
   }
+  options.skull_shift = work.skull_shift.get();
   Pictured result;
   result.face = screen.face.scene->list(*work.frame, options);
   // Hairs finer than a pixel would be dots; the renderer leaves them out of its own copy of the list.

@@ -260,6 +260,21 @@ std::vector<Vec3> SceneStore::skin_of(const FaceFrame& frame) const {
   return skin;
 }
 
+void SceneStore::add_bones(view::DrawList& list, const FaceFrame& frame, const SkullShift* shift) const {
+  const Mat4 still = Mat4::Identity(), jaw = frame.jaw.cast<double>();
+  const auto add = [&](FaceSurface bone, std::vector<Vec3> SkullShift::*by, const Mat4& place,
+                       view::Shading shading, const Vec3& colour) {
+    if (shift && (shift->*by).size() == bone.positions.size())
+      for (size_t v = 0; v < bone.positions.size(); ++v)
+        bone.positions[v] += (shift->*by)[v];
+    add_surface(list, bone, place, shading, colour, 1.0);
+  };
+  add(asset_.cranium, &SkullShift::cranium, still, view::Shading::bone, bone_colour);
+  add(asset_.mandible, &SkullShift::mandible, jaw, view::Shading::bone, bone_colour);
+  add(asset_.teeth_upper, &SkullShift::teeth_upper, still, view::Shading::tooth, tooth_colour);
+  add(asset_.teeth_lower, &SkullShift::teeth_lower, jaw, view::Shading::tooth, tooth_colour);
+}
+
 /// The SMAS and its ligaments, as far as the face has carried them.
 void SceneStore::add_sheets(view::DrawList& list, const FaceFrame& frame, const Layers& layers) const {
   if (layers.smas) {
@@ -276,7 +291,6 @@ void SceneStore::add_sheets(view::DrawList& list, const FaceFrame& frame, const 
 
 view::DrawList SceneStore::list(const FaceFrame& frame, const SceneOptions& options) const {
   view::DrawList list;
-  const Mat4 still = Mat4::Identity(), jaw = frame.jaw.cast<double>();
   const Layers& layers = options.layers;
   const bool is_own = is_painted(options);
   if (is_own) add_painted(list, frame);
@@ -289,12 +303,7 @@ view::DrawList SceneStore::list(const FaceFrame& frame, const SceneOptions& opti
     if (layers.skin || is_eye(kind)) add_part(list, part, frame);
   }
   if (layers.skin && !is_own && !skin_parts_.empty()) add_skin(list, frame, options);
-  if (layers.skull) {
-    add_surface(list, asset_.cranium, still, view::Shading::bone, bone_colour, 1.0);
-    add_surface(list, asset_.mandible, jaw, view::Shading::bone, bone_colour, 1.0);
-    add_surface(list, asset_.teeth_upper, still, view::Shading::tooth, tooth_colour, 1.0);
-    add_surface(list, asset_.teeth_lower, jaw, view::Shading::tooth, tooth_colour, 1.0);
-  }
+  if (layers.skull) add_bones(list, frame, options.skull_shift);
   add_sheets(list, frame, layers);
   if (layers.muscles && options.has_round_fibres) add_flesh(list, frame, options);
   if (layers.muscles && !options.has_round_fibres) add_fibre_lines(list, frame, options);

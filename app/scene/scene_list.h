@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/engine/face_session.h"
+#include "app/engine/live_skull.h"
 #include "app/model/settings.h"
 #include "rig/model/rig.h"
 #include "view/face/face_scene.h"
@@ -23,7 +24,8 @@ struct SceneOptions {
   std::set<std::string> hidden_muscles;  ///< by the name of the muscle
   /// Distances to colour the skin by, metres, one list a part; empty: as skin.
   const std::vector<std::vector<float>>* distances = nullptr;
-  double scale = 0.005;  ///< metres at the hot end
+  double scale = 0.005;                     ///< metres at the hot end
+  const SkullShift* skull_shift = nullptr;  ///< of the bones from where the rig has them; null: none
 };
 
 /// Colour of a share from 0 to 1 of the heat map, sRGB: the figures of matplotlib's "inferno", lightened at
@@ -57,6 +59,7 @@ class SceneStore {
   void add_fibre_lines(view::DrawList& list, const FaceFrame& frame, const SceneOptions& options) const;
   void add_flesh(view::DrawList& list, const FaceFrame& frame, const SceneOptions& options) const;
   void add_lattice(view::DrawList& list, const FaceFrame& frame, const Layers& layers) const;
+  void add_bones(view::DrawList& list, const FaceFrame& frame, const SkullShift* shift) const;
   void add_sheets(view::DrawList& list, const FaceFrame& frame, const Layers& layers) const;
   std::vector<Vec3> skin_of(const FaceFrame& frame) const;
 

@@ -1,5 +1,5 @@
-// Processor time of one picture of a rig, as the window draws it in motion and at rest, and as films and stills
-// are drawn: bench_pictures RIG.glb [WIDTH HEIGHT]
+// Processor time of one picture of a rig, as the window draws it in motion and at rest, and as films and
+// stills are drawn: bench_pictures RIG.glb [WIDTH HEIGHT]
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>

@@ -65,8 +65,8 @@ bool is_drawn(const std::string& part, const std::set<std::string>& layers) {
   return has_skin;
 }
 
-/// What of the head's own parts is drawn where its skin is glass: what lines the mouth would hide the teeth and
-/// the bone that carries them.
+/// What of the head's own parts is drawn where its skin is glass: what lines the mouth would hide the teeth
+/// and the bone that carries them.
 bool shows_through_glass(const std::string& part) {
   return !is_card(part) && part != "brows" && part != "other" && part != "mouth_interior" &&
          !begins(part, "gums");
