@@ -30,21 +30,26 @@ const std::vector<std::string>& mesh_endings() {
   return endings;
 }
 
-void begin_area(const char* name, const Area& area, const ImVec4& background, ImVec2 padding) {
+void begin_area(const char* name, const Area& area, const ImVec4& background, ImVec2 padding, Scroll scroll) {
+  const ImGuiWindowFlags still = ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse;
   ImGui::SetNextWindowPos({area.x, area.y});
   ImGui::SetNextWindowSize({std::max(area.width, 1.0F), std::max(area.height, 1.0F)});
   ImGui::PushStyleColor(ImGuiCol_WindowBg, background);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, padding);
   ImGui::Begin(name, nullptr,
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
-                   ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse |
-                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus);
+                   (scroll == Scroll::no ? still : ImGuiWindowFlags_None) | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_NoBringToFrontOnFocus);
 }
 
 void end_area() {
   ImGui::End();
   ImGui::PopStyleVar();
   ImGui::PopStyleColor();
+}
+
+float list_height(float foot) {
+  return std::max(ImGui::GetContentRegionAvail().y - foot, scaled(150));
 }
 
 void ask_to_open(Workspace& work, Screen& screen) {
@@ -106,9 +111,14 @@ void show_top_bar(Workspace& work, Screen& screen, const Area& area) {
 
 void show_rail(Workspace& work, Screen& screen, const Area& area) {
   const Palette& p = palette();
-  begin_area("##rail", area, p.window, {0, scaled(8)});
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {0, scaled(6)});
+  begin_area("##rail", area, p.window, {0, scaled(8)}, Scroll::down);
   ImDrawList* list = ImGui::GetWindowDrawList();
-  const float cell = scaled(62);
+  // In a low window the entries stand closer, at last without their names; lower still, they scroll.
+  const float all = area.height - scaled(16), entries = static_cast<float>(panels.size());
+  const float cell = std::clamp((all - scaled(6) * (entries - 1.0F)) / entries, scaled(32), scaled(62));
+  const bool has_names = cell > scaled(52);
+  const float icon = has_names ? scaled(24) * cell / scaled(62) : 0.5F * cell;
   for (const PanelEntry& panel : panels) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const bool is_chosen = work.settings.panel == panel.name;
@@ -120,11 +130,14 @@ void show_rail(Workspace& work, Screen& screen, const Area& area) {
                           {at.x + area.width - scaled(6), at.y + cell - scaled(3)},
                           colour_of(is_chosen ? p.raised : p.panel), scaled(9));
     const ImU32 colour = colour_of(is_chosen ? p.accent : is_hot ? p.text : p.faint);
-    draw_icon(list, panel.name, {at.x + 0.5F * area.width, at.y + scaled(24)}, scaled(21), colour);
+    draw_icon(list, panel.name, {at.x + 0.5F * area.width, at.y + icon}, scaled(21), colour);
     ImGui::PushFont(fonts().small);
     const float width = ImGui::CalcTextSize(panel.title).x;
-    list->AddText({at.x + 0.5F * (area.width - width), at.y + scaled(40)},
-                  colour_of(is_chosen ? p.text : p.faint), panel.title);
+    if (has_names)
+      list->AddText({at.x + 0.5F * (area.width - width), at.y + cell - scaled(22)},
+                    colour_of(is_chosen ? p.text : p.faint), panel.title);
+    else
+      ui::tooltip(panel.title);
     if (panel.name == std::string("warnings") && !work.warnings.empty()) {
       const std::string count = std::to_string(work.warnings.size());
       const ImVec2 middle(at.x + 0.5F * area.width + scaled(15), at.y + scaled(15));
@@ -140,11 +153,12 @@ void show_rail(Workspace& work, Screen& screen, const Area& area) {
   }
   (void)screen;
   end_area();
+  ImGui::PopStyleVar();
 }
 
 void show_side_panel(Workspace& work, Screen& screen, const Area& area) {
   const Palette& p = palette();
-  begin_area("##panel", area, p.panel, {scaled(16), scaled(14)});
+  begin_area("##panel", area, p.panel, {scaled(16), scaled(14)}, Scroll::down);
   for (const PanelEntry& panel : panels)
     if (work.settings.panel == panel.name) {
       ImGui::PushFont(fonts().large);

@@ -84,9 +84,16 @@ void show_compare_panel(Workspace& work, Screen& screen);
 void show_live_panel(Workspace& work, Screen& screen);
 void show_export_panel(Workspace& work, Screen& screen);
 
-/// Begins and ends a part of the window that stays where it is.
-void begin_area(const char* name, const Area& area, const ImVec4& background, ImVec2 padding);
+/// Begins and ends a part of the window that stays where it is. What may not fit into a small window can
+/// scroll.
+enum class Scroll { no, down };
+void begin_area(const char* name, const Area& area, const ImVec4& background, ImVec2 padding,
+                Scroll scroll = Scroll::no);
 void end_area();
+
+/// The height of a list that leaves `foot` below it, and of a small window enough to show some lines: then
+/// the panel scrolls.
+float list_height(float foot);
 
 // The commands that keys and buttons share.
 const std::vector<std::string>& mesh_endings();

@@ -203,11 +203,22 @@ void show_views(Workspace& work, Screen& screen, const Area& area) {
   const char* const views[] = {"Front", "Left", "Right", "Three-quarter", "Below"};
   const char* const names[] = {"front", "left", "right", "three-quarter", "below"};
   int chosen = -1;
-  const float width = std::min(scaled(400), area.width - scaled(240));
-  if (width > scaled(200)) {
-    ImGui::SetCursorScreenPos({area.x + scaled(14), area.y + area.height - scaled(44)});
-    if (ui::choice("view", views, 5, chosen, width)) work.orbit.go_to(names[chosen]);
+  const float width = std::min(scaled(400), area.width - scaled(200));
+  ImGui::SetCursorScreenPos({area.x + scaled(14), area.y + area.height - scaled(44)});
+  if (width > scaled(330)) {
+    ui::choice("view", views, 5, chosen, width);
+  } else {
+    // No room for all of them side by side.
+    if (ui::button("View", ui::Emphasis::plain, scaled(64))) ImGui::OpenPopup("##views");
+    if (ImGui::BeginPopup("##views")) {
+      for (int i = 0; i < 5; ++i) {
+        if (ImGui::Selectable(views[i])) chosen = i;
+        ui::note(views[i]);
+      }
+      ImGui::EndPopup();
+    }
   }
+  if (chosen >= 0) work.orbit.go_to(names[chosen]);
   const char* const tools[] = {"Turn", "Pull"};
   int tool = screen.tool == Tool::pull ? 1 : 0;
   ImGui::SetCursorScreenPos({area.x + area.width - scaled(154), area.y + area.height - scaled(44)});
