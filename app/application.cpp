@@ -19,11 +19,23 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+/// Removes the folders of scripts that were killed, when they are a day old.
+void remove_old_folders(const std::filesystem::path& temporary) {
+  std::error_code status;
+  const auto least = std::filesystem::file_time_type::clock::now() - std::chrono::hours(24);
+  for (const auto& entry : std::filesystem::directory_iterator(temporary, status))
+    if (entry.path().filename().string().rfind("fascia-view-", 0) == 0 && entry.is_directory(status) &&
+        entry.last_write_time(status) < least)
+      std::filesystem::remove_all(entry.path(), status);
+}
+
 /// Scripts and the monkey leave the user's own things alone.
 std::filesystem::path state_place(const ApplicationOptions& options) {
   if (!options.state.empty()) return options.state;
   if (options.script.empty() && !options.monkey) return state_folder();
-  std::string name = (std::filesystem::temp_directory_path() / "fascia-view-XXXXXX").string();
+  const std::filesystem::path temporary = std::filesystem::temp_directory_path();
+  remove_old_folders(temporary);
+  std::string name = (temporary / "fascia-view-XXXXXX").string();
   return mkdtemp(name.data()) ? std::filesystem::path(name) : state_folder();
 }
 

@@ -85,11 +85,18 @@ Pictured pictured(Workspace& work, Screen& screen, bool is_careful) {
     std::erase_if(result.face.surfaces, [](const view::DrawSurface& surface) { return surface.is_fine; });
   result.is_divided = screen.reference.scene != nullptr;
   if (!result.is_divided) return result;
-  SceneOptions beside = options_of(work, is_careful);
+  SceneOptions other = options_of(work, is_careful);
   // A scan or a sculpt has no anatomy.
-  if (work.comparison.reference == Reference::file) beside.layers = Layers();
-  result.reference = screen.reference.scene->list(*work.reference_frame, beside);
+  if (work.comparison.reference == Reference::file) other.layers = Layers();
+  result.reference = screen.reference.scene->list(*work.reference_frame, other);
   return result;
+}
+
+/// The camera of the reference when the face is seen by `camera`.
+view::Camera beside(const Workspace& work, const view::Camera& camera) {
+  view::Camera other = work.reference_camera();
+  other.yaw = camera.yaw;
+  return other;
 }
 
 /// Orders the picture with everything, and shows it when it comes and is still wanted.
@@ -103,9 +110,10 @@ void renew_still(Workspace& work, Screen& screen, const std::string& key, const 
   }
   if (screen.since_motion < calm || screen.stills.ordered() == key) return;
   Pictured shown = pictured(work, screen, true);
-  if (shown.is_divided) return;
-  screen.stills.order(
-      {key, std::move(shown.face), camera, look_of(work), screen.picture.width(), screen.picture.height()});
+  StillRenderer::Order order{key, {}, look_of(work), screen.picture.width(), screen.picture.height()};
+  if (shown.is_divided) order.shots.push_back({std::move(shown.reference), beside(work, camera)});
+  order.shots.push_back({std::move(shown.face), camera});
+  screen.stills.order(std::move(order));
 }
 
 }  // namespace
@@ -134,11 +142,10 @@ void renew_picture(Workspace& work, Screen& screen, const Area& area) {
   const ImVec2 pixels = ImGui::GetIO().DisplayFramebufferScale;
   const int width = static_cast<int>(area.width * pixels.x);
   screen.picture.resize(width, static_cast<int>(area.height * pixels.y));
+  if (!screen.is_scripted && screen.picture.warm_up()) return;
   const Pictured shown = pictured(work, screen, care == FacePicture::Care::full);
   if (shown.is_divided) {
-    view::Camera beside = work.reference_camera();
-    beside.yaw = camera.yaw;
-    screen.picture.draw(shown.reference, beside, look_of(work), care, 0, width / 2);
+    screen.picture.draw(shown.reference, beside(work, camera), look_of(work), care, 0, width / 2);
     screen.picture.draw(shown.face, camera, look_of(work), care, width / 2, width - width / 2);
   } else {
     screen.picture.draw(shown.face, camera, look_of(work), care, 0, width);

@@ -299,8 +299,9 @@ void show_viewport(Workspace& work, Screen& screen, const Area& area) {
   if (work.rig && work.frame && area.width > 8 && area.height > 8) {
     renew_picture(work, screen, area);
     ImDrawList* list = ImGui::GetWindowDrawList();
-    list->AddImage(reinterpret_cast<ImTextureID>(static_cast<uintptr_t>(screen.picture.texture())),
-                   {area.x, area.y}, {area.x + area.width, area.y + area.height}, {0, 1}, {1, 0});
+    if (!screen.picture_key.empty())
+      list->AddImage(reinterpret_cast<ImTextureID>(static_cast<uintptr_t>(screen.picture.texture())),
+                     {area.x, area.y}, {area.x + area.width, area.y + area.height}, {0, 1}, {1, 0});
     ImGui::SetCursorScreenPos({area.x, area.y});
     ImGui::SetNextItemWidth(area.width);
     const Area face = face_area(work, area);

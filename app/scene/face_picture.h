@@ -32,9 +32,9 @@ class FacePicture {
   void draw(const view::DrawList& list, const view::Camera& camera, view::Look look, Care care, int x,
             int columns);
 
-  /// Compiles one more of the programs that pictures need, until there are all: called while there is nothing
-  /// to draw yet, so that the first picture does not wait for all of them.
-  void warm_up();
+  /// Compiles one more of the programs that pictures need, a frame each, so that the first picture does not
+  /// wait for all of them. False when there are all.
+  bool warm_up();
 
   /// Puts a picture of the texture's size in its place.
   void show(const view::Image& image);
@@ -46,12 +46,13 @@ class FacePicture {
   int height() const { return height_; }
 
  private:
+  double motion_resolution();
   view::SceneRenderer renderer_;
   unsigned framebuffer_ = 0, texture_ = 0, depth_ = 0;
   int width_ = 0, height_ = 0;
   double milliseconds_[3] = {0.0, 0.0, 0.0};
   size_t warmed_up_ = 0;
-  bool is_slow_ = false;  ///< pictures in motion are drawn smaller
+  double resolution_ = 1.0;  ///< of pictures in motion
 };
 
 /// The pixels of a rectangle of the framebuffer that is bound, from its lower left corner.
