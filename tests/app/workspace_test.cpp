@@ -253,6 +253,7 @@ TEST_F(WorkspaceTest, TwoWindowsKeepTheirBuildsAndAutosavesApart) {
   settle(second);
   ASSERT_TRUE(second.rig);
   EXPECT_NE(work_->rig->head, second.rig->head);
+  EXPECT_TRUE(fs::exists(work_->rig->head)) << "the second window has not taken the first for a crashed one";
   work_->set_value("jaw_open", 0.25, false);
   second.set_value("jaw_open", 0.75, false);
   run(120);

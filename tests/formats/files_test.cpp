@@ -9,6 +9,7 @@
 #include <csignal>
 #include <thread>
 
+#include "formats/file_lock.h"
 #include "formats/new_file.h"
 #include "formats/obj_lines.h"
 #include "formats/partial.h"
