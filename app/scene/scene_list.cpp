@@ -106,7 +106,7 @@ Vec3 muscle_colour(double activation) {
 }
 
 SceneStore::SceneStore(const FaceAsset& asset, const rig::Rig& rig, const view::Appearance* appearance)
-    : asset_(asset), rig_(rig) {
+    : asset_(asset) {
   if (appearance && std::any_of(asset.parts.begin(), asset.parts.end(), [&](const FacePart& part) {
         return appearance->of(part.mesh, part.primitive).has_material;
       })) {

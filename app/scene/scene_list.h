@@ -64,7 +64,6 @@ class SceneStore {
   std::vector<Vec3> skin_of(const FaceFrame& frame) const;
 
   const FaceAsset& asset_;
-  const rig::Rig& rig_;
   std::optional<view::FaceScene> painted_;          ///< where the file gives any part a look of its own
   std::vector<std::vector<Vec3>> eye_coordinates_;  ///< one list a part
   /// The parts that are skin as one surface: groups of a file share their borders' normals.
