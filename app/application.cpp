@@ -19,12 +19,29 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+/// Removes the folders of scripts that were killed, when they are a day old.
+void remove_old_folders(const std::filesystem::path& temporary) {
+  std::error_code status;
+  const auto least = std::filesystem::file_time_type::clock::now() - std::chrono::hours(24);
+  for (const auto& entry : std::filesystem::directory_iterator(temporary, status))
+    if (entry.path().filename().string().rfind("fascia-view-", 0) == 0 && entry.is_directory(status) &&
+        entry.last_write_time(status) < least)
+      std::filesystem::remove_all(entry.path(), status);
+}
+
 /// Scripts and the monkey leave the user's own things alone.
 std::filesystem::path state_place(const ApplicationOptions& options) {
   if (!options.state.empty()) return options.state;
   if (options.script.empty() && !options.monkey) return state_folder();
-  std::string name = (std::filesystem::temp_directory_path() / "fascia-view-XXXXXX").string();
+  const std::filesystem::path temporary = std::filesystem::temp_directory_path();
+  remove_old_folders(temporary);
+  std::string name = (temporary / "fascia-view-XXXXXX").string();
   return mkdtemp(name.data()) ? std::filesystem::path(name) : state_folder();
+}
+
+/// Scripts give the same pictures every time, unless they are to show how fast the window is.
+bool is_lockstep(const ApplicationOptions& options) {
+  return !options.script.empty() && !options.is_real_time;
 }
 
 class Application {
@@ -33,14 +50,14 @@ class Application {
       : options_(options),
         state_(state_place(options)),
         work_({state_, ToolJob::this_program()},
-              options.script.empty() ? Simulation::Pace::real_time : Simulation::Pace::lockstep),
+              is_lockstep(options) ? Simulation::Pace::lockstep : Simulation::Pace::real_time),
         window_(options.script.empty() ? work_.settings.width : 1280,
                 options.script.empty() ? work_.settings.height : 800, "Fascia") {
     if (!options.script.empty()) script_.emplace(options.script);
     if (options.monkey) monkey_.emplace(*options.monkey);
     renew_theme();
     screen_ = std::make_unique<Screen>();
-    screen_->is_scripted = script_.has_value();
+    screen_->is_scripted = is_lockstep(options);
     screen_->browser.folder = work_.settings.export_folder;
     if (monkey_) screen_->browser.folder = screen_->browser.confined_to = state_;
     window_.on_drop = [this](const std::vector<std::string>& files) {
@@ -76,11 +93,16 @@ class Application {
       report.longest_frame_ms = times_.back();
       report.median_frame_ms = times_[times_.size() / 2];
     }
+    report.longest_update_ms = longest_update_ms_;
     if (script_) report.files = script_->written();
     return report;
   }
 
  private:
+  static double milliseconds_since(Clock::time_point then) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - then).count();
+  }
+
   void renew_theme() {
     const double wanted = options_.scale > 0.0         ? options_.scale
                           : work_.settings.scale > 0.0 ? work_.settings.scale
@@ -93,7 +115,7 @@ class Application {
 
   /// How long the loop may sleep until something happens by itself.
   double patience() const {
-    if (script_ || monkey_) return 0.0;
+    if (screen_->is_scripted || monkey_) return 0.0;
     const double passed = std::chrono::duration<double>(Clock::now() - frame_began_).count();
     if (!work_.is_idle() || work_.orbit_moves || !work_.notices.empty())
       return std::max(1.0 / 60.0 - passed, 0.001);
@@ -111,15 +133,17 @@ class Application {
     const double seconds = std::min(static_cast<double>(ImGui::GetIO().DeltaTime), 0.1);
     act_on_keys(work_, *screen_);
     work_.update(seconds);
-    work_.orbit_moves = work_.orbit.advance(seconds, script_.has_value());
+    longest_update_ms_ = std::max(longest_update_ms_, milliseconds_since(started));
+    work_.orbit_moves = work_.orbit.advance(seconds, screen_->is_scripted);
     lay_out();
-    if (script_ && !script_->wants_picture())
+    if (screen_->is_scripted && !script_->wants_picture())
       window_.drop_frame();
     else
       window_.end_frame([&] {
         if (script_) script_->take_pictures(*screen_, window_);
       });
-    times_.push_back(std::chrono::duration<double, std::milli>(Clock::now() - started).count());
+    times_.push_back(milliseconds_since(started));
+
     const size_t most = 100000;
     if (times_.size() > most) times_.erase(times_.begin(), times_.begin() + most / 2);
     if (std::exchange(screen_->wants_theme, false)) renew_theme();
@@ -137,6 +161,7 @@ class Application {
       else
         show_start(work_, *screen_, area);
       show_notices(work_, area);
+      if (!screen_->is_scripted) screen_->picture.warm_up();
     } else {
       const float timeline = scaled(work_.take ? 88.0F : 48.0F);
       const float panel = std::min(scaled(static_cast<float>(work_.settings.panel_width)), 0.45F * size.x);
@@ -176,6 +201,7 @@ class Application {
   std::optional<ScriptRunner> script_;
   std::optional<Monkey> monkey_;
   std::vector<double> times_;
+  double longest_update_ms_ = 0.0;
   Clock::time_point frame_began_ = Clock::now();
 };
 

@@ -12,6 +12,7 @@ namespace fascia::app {
 struct ApplicationOptions {
   std::vector<std::filesystem::path> files;  ///< to open, as if dropped
   std::filesystem::path script;              ///< drives the window; empty: a hand does
+  bool is_real_time = false;                 ///< a script runs by the clock and draws what a user would see
   std::filesystem::path state;               ///< folder to remember things in; empty: state_folder()
   std::optional<uint64_t> monkey;            ///< seed of random input
   double monkey_seconds = 60.0;
@@ -22,6 +23,7 @@ struct ApplicationReport {
   uint64_t frames = 0;
   double longest_frame_ms = 0.0;  ///< of the window's thread, what was drawn included
   double median_frame_ms = 0.0;
+  double longest_update_ms = 0.0;  ///< of that what takes in and orders work
   std::vector<std::string> files;  ///< that a script wrote
 };
 

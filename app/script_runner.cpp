@@ -95,7 +95,7 @@ bool ScriptRunner::begin_hand(const ScriptStep& step, Workspace& work, Screen& s
   } else if (step.verb == "drag" || step.verb == "poke") {
     const auto place = work.landmark_now(words[0]);
     if (!place) fail(step, "there is no landmark '" + words[0] + "'");
-    const Area& area = screen.viewport;
+    const Area area = face_area(work, screen.viewport);
     const auto pixel =
         work.orbit.pixel(*place, static_cast<double>(area.width), static_cast<double>(area.height));
     if (!pixel) fail(step, "the landmark '" + words[0] + "' is not in the picture");
@@ -136,7 +136,7 @@ bool ScriptRunner::begin_hand(const ScriptStep& step, Workspace& work, Screen& s
   return true;
 }
 
-void ScriptRunner::begin_export(const ScriptStep& step, Workspace& work) {
+void ScriptRunner::begin_export(const ScriptStep& step, Workspace& work, const Screen& screen) {
   const std::string& what = step.words[0];
   const std::filesystem::path file = step.words[1];
   if (!work.rig) fail(step, "there is nothing to export yet");
@@ -145,14 +145,17 @@ void ScriptRunner::begin_export(const ScriptStep& step, Workspace& work) {
   } else if (what == "edits") {
     if (!work.save_edits(file)) fail(step, "the edits cannot be saved as '" + file.string() + "'");
   } else if (what == "pose") {
-    work.run(pose_command(work.state(), work.rig->file, file), "Export " + file.filename().string());
+    work.export_pose(file);
   } else if (what == "arkit") {
     work.run(bake_command(work.rig->file, "arkit", file), "Export " + file.filename().string());
   } else if (what == "play") {
     if (!work.take) fail(step, "load a recording first");
     work.export_take(file, 30.0);
+  } else if (what == "picture") {
+    const Area area = face_area(work, screen.viewport);
+    work.draw_picture(file, static_cast<double>(area.width / std::max(area.height, 1.0F)));
   } else {
-    fail(step, "export rig, pose, play, arkit or edits");
+    fail(step, "export rig, pose, play, arkit, picture or edits");
   }
   written_.push_back(file.string());
   waits_idle_ = true;
@@ -165,10 +168,11 @@ bool ScriptRunner::begin_file(const ScriptStep& step, Workspace& work, Screen& s
     waits_idle_ = true;
   } else if (step.verb == "take") {
     work.load_take(input_file(words[0]));
+    work.wait_for_files();
     if (!work.take) fail(step, "'" + words[0] + "' is not a recording");
     work.playback.is_playing = false;
   } else if (step.verb == "export") {
-    begin_export(step, work);
+    begin_export(step, work, screen);
   } else if (step.verb == "screenshot" || step.verb == "picture") {
     (step.verb == "screenshot" ? screenshot_ : picture_) = words[0];
     screen.wants_full = true;
@@ -234,10 +238,11 @@ void ScriptRunner::begin(const ScriptStep& step, Workspace& work, Screen& screen
     work.rebuild();
     waits_idle_ = true;
   } else if (step.verb == "compare") {
-    const std::string names[] = {"none", "rest", "before", "bullet", "converged", "file"};
+    const std::string names[] = {"none", "rest", "before", "bullet", "converged", "file", "other"};
     const auto found =
         std::find(std::begin(names), std::end(names), words[0] == "reference" ? "converged" : words[0]);
-    if (found == std::end(names)) fail(step, "compare with none, rest, before, bullet, converged or file");
+    if (found == std::end(names))
+      fail(step, "compare with none, rest, before, bullet, converged, file or other");
     work.compare_with(static_cast<Reference>(found - std::begin(names)),
                       words.size() > 1 ? input_file(words[1]).string() : "");
   } else if (step.verb == "theme") {

@@ -37,7 +37,7 @@ class ScriptRunner {
   void begin(const ScriptStep& step, Workspace& work, Screen& screen, Window& window);
   bool begin_hand(const ScriptStep& step, Workspace& work, Screen& screen);
   bool begin_file(const ScriptStep& step, Workspace& work, Screen& screen);
-  void begin_export(const ScriptStep& step, Workspace& work);
+  void begin_export(const ScriptStep& step, Workspace& work, const Screen& screen);
   void expect(const ScriptStep& step, const Workspace& work) const;
   void press_at(float x, float y);
   void drag(float x, float y, float right, float down, bool holds);

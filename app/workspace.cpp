@@ -34,6 +34,8 @@ TriangleMesh skin_at_rest(const FaceAsset& asset) {
   return mesh;
 }
 
+}  // namespace
+
 Bounds face_box(const rig::Rig& rig) {
   std::vector<Vec3> points;
   for (const rig::Landmark& landmark : rig.skull.landmarks)
@@ -45,20 +47,14 @@ Bounds face_box(const rig::Rig& rig) {
   return bounds(points);
 }
 
-}  // namespace
-
 Workspace::Workspace(Places places, Simulation::Pace pace)
     : settings(read_settings(places.state / "view.json")),
       places_(std::move(places)),
       pace_(pace),
-      autosave_(places_.state / "autosave.json") {
-  left_behind = autosave_.left_behind();
-}
+      session_(places_.state) {}
 
 Workspace::~Workspace() {
   write_settings(places_.state / "view.json", settings);
-  // The autosave of a crashed session is kept until a head is opened.
-  if (!left_behind || !state().head.empty()) autosave_.remove();
 }
 
 void Workspace::notify(const std::string& text, Notice::Kind kind) {
@@ -92,8 +88,14 @@ void Workspace::adopt(LoadedRig loaded) {
   }
   built_edits_ = building_edits_;
   rig = std::move(loaded);
-  simulation = std::move(next);
-  frame = simulation->frame();
+  part_with(std::exchange(simulation, std::move(next)));
+  part_with(std::move(live_skull_));
+  skull_shift.reset();
+  if (std::exchange(restores_, false)) {
+    session_.keep(state());
+    session_.forget_left_behind();
+  }
+  frame = rest_frame_ = simulation->frame();
   poke_.reset();
   holds_.clear();
   skin_.reset();
@@ -104,6 +106,7 @@ void Workspace::adopt(LoadedRig loaded) {
     for (const std::string& text : rig->report->warnings)
       warnings.push_back(warning_of(text));
   compare_with(is_other_head ? Reference::none : comparison.reference, comparison.file);
+  remove_old_builds();
   ++changes_;
 }
 
@@ -207,7 +210,7 @@ void Workspace::submit(double seconds) {
       inputs.touches.push_back({poke_->part, vertex, (share / sum * force).cast<float>()});
   }
   inputs.wants_compression = settings.layers.strain;
-  inputs.wants_nodes = settings.layers.fat || settings.layers.lattice;
+  inputs.wants_nodes = settings.layers.fat || settings.layers.lattice || settings.layers.smas;
   inputs.resets = resets_;
   (void)seconds;
   simulation->submit(inputs);
@@ -222,9 +225,31 @@ double Workspace::shake_yaw() const {
   return widest * fade * std::sin(2.0 * EIGEN_PI * turns * *shake_ / length);
 }
 
+/// The skull under landmarks that have been moved, until it is built again.
+void Workspace::follow_landmarks() {
+  if (!rig) return;
+  const bool shows_landmarks = settings.layers.landmarks || settings.panel == "landmarks";
+  if (!live_skull_ && shows_landmarks)
+    live_skull_ = std::make_unique<LiveSkull>(
+        rig->rig, [asset = rig->asset] { return head_meshes(*asset); },
+        waits() ? LiveSkull::Pace::at_once : LiveSkull::Pace::background);
+  if (!live_skull_) return;
+  std::map<std::string, Vec3> moved;
+  if (has_unbuilt_edits())
+    for (const std::string& name : edited_landmarks(state()))
+      if (const auto place = landmark(name)) moved[name] = *place;
+  live_skull_->submit(moved);
+  const auto shift = moved.empty() ? nullptr : live_skull_->shift();
+  if (shift != skull_shift) ++changes_;
+  skull_shift = shift;
+}
+
 void Workspace::update(double seconds) {
   take_build();
   take_jobs();
+  take_other();
+  take_files(waits());
+  take_saved(waits());
   for (Notice& notice : notices)
     notice.age += seconds;
   notices.erase(std::remove_if(notices.begin(), notices.end(),
@@ -236,7 +261,7 @@ void Workspace::update(double seconds) {
   since_edit_ += seconds;
   since_save_ += seconds;
   if (since_save_ > autosave_delay && !state().head.empty()) {
-    autosave_.keep(state());
+    session_.keep(state());
     since_save_ = 0.0;
   }
   if (rebuilds_by_itself && has_unbuilt_edits() && !is_building() && since_edit_ > rebuild_delay &&
@@ -263,26 +288,19 @@ void Workspace::update(double seconds) {
   }
   if (shake_ && (*shake_ += seconds) > 1.2) shake_.reset();
   if (!simulation) return;
-  if (coming_reference_.valid() &&
-      coming_reference_.wait_for(std::chrono::seconds(pace_ == Simulation::Pace::lockstep ? 60 : 0)) ==
-          std::future_status::ready) {
-    try {
-      reference = coming_reference_.get();
-    } catch (const std::exception& error) {
-      notify(error.what(), Notice::Kind::error);
-      comparison.reference = Reference::none;
-    }
-    ++changes_;
-  }
+  take_reference(waits());
+  follow_landmarks();
   submit(seconds);
   frame = simulation->frame();
-  reference_frame = reference ? reference->frame() : nullptr;
+  renew_reference_frame();
   const std::string fault = simulation->take_fault();
   if (!fault.empty()) notify(fault, Notice::Kind::error);
 }
 
 bool Workspace::is_busy() const {
-  if (build_ || coming_reference_.valid() || shake_ || playback.is_playing || playback.is_recording)
+  if (build_ || shake_ || playback.is_playing || playback.is_recording) return true;
+  if (other_build_ || !coming_files_.empty() || saving_.is_running() || coming_reference_.is_running() ||
+      coming_positions_.is_running())
     return true;
   for (const auto& job : jobs_)
     if (!job->is_done()) return true;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <deque>
 #include <future>
 #include <list>
 #include <memory>
@@ -8,6 +9,8 @@
 #include <vector>
 
 #include "app/engine/build_task.h"
+#include "app/engine/live_skull.h"
+#include "app/engine/pending.h"
 #include "app/engine/simulation.h"
 #include "app/engine/tool_job.h"
 #include "app/live/receiver.h"
@@ -15,6 +18,7 @@
 #include "app/model/document.h"
 #include "app/model/orbit.h"
 #include "app/model/picking.h"
+#include "app/model/session.h"
 #include "app/model/settings.h"
 #include "builder/spatial/surface_query.h"
 
@@ -35,14 +39,14 @@ struct Warning {
   std::optional<Vec3> place;  ///< where on the face at rest, metres
 };
 
-enum class Reference { none, rest, before, bullet, converged, file };
+enum class Reference { none, rest, before, bullet, converged, file, other };
 
 /// With what the face is compared, and how that is shown.
 struct Comparison {
   Reference reference = Reference::none;
-  bool has_heat = true, is_side_by_side = false;
-  double scale_mm = 5.0;  ///< where the heat map ends
-  std::string file;
+  bool has_heat = true, is_side_by_side = false;  ///< another head is always beside the face
+  double scale_mm = 5.0;                          ///< where the heat map ends
+  std::string file;                               ///< of Reference::file and ::other
 };
 
 constexpr int recorded_rate = 60;  ///< poses a second
@@ -62,6 +66,9 @@ struct Poke {
   std::vector<std::pair<uint32_t, double>> grip;
 };
 
+/// About the landmarks and bones of a rig, metres.
+Bounds face_box(const rig::Rig& rig);
+
 enum class Gravity { upright, lying, face_down, upside_down };
 
 /// Everything behind the window, and every command of it, without a pixel: panels, keys and scripts call the
@@ -69,7 +76,7 @@ enum class Gravity { upright, lying, face_down, upside_down };
 class Workspace {
  public:
   struct Places {
-    std::filesystem::path state;  ///< folder of settings, autosave, built rigs
+    std::filesystem::path state;  ///< folder of settings and recordings, and of each window's own folder
     std::filesystem::path tool;   ///< the `fascia` program
   };
   Workspace(Places places, Simulation::Pace pace);
@@ -86,11 +93,19 @@ class Workspace {
   void cancel_build();
   bool is_building() const { return build_ != nullptr; }
   BuildTask::Progress build_progress() const;
-  /// Continues where a crash ended the last session.
-  void restore(const DocumentState& state);
+  /// The document of a window that crashed, to be offered; nothing when there is none.
+  const std::optional<DocumentState>& left_behind() const { return session_.left_behind(); }
+  /// Continues with it. What it left is kept until its head is there.
+  void restore();
+  /// Gives it up.
+  void forget_left_behind() { session_.forget_left_behind(); }
+  /// Reads a recording, or edits, in the background.
   void load_take(const std::filesystem::path& file);
   void load_edits(const std::filesystem::path& file);
-  /// Saves the edits, or copies the rig as it is built. False, with a notice, when that fails.
+  /// Waits until files are read or written that are under way.
+  void wait_for_files();
+  /// Saves the edits, or copies the rig as it is built, this in the background: a notice tells when it is
+  /// done. False, with a notice, when it cannot be.
   bool save_edits(const std::filesystem::path& file);
   bool save_rig(const std::filesystem::path& file);
 
@@ -122,8 +137,25 @@ class Workspace {
 
   /// Runs a command of the tool in the background.
   void run(const CommandLine& command, const std::string& title);
+  /// Exports the mesh as it stands.
+  void export_pose(const std::filesystem::path& output);
   /// Exports the trimmed piece of the take.
   void export_take(const std::filesystem::path& output, double fps);
+  /// Draws what the viewport shows, `aspect` times as wide as high; films it once around.
+  void draw_picture(const std::filesystem::path& output, double aspect);
+  void film_turntable(const std::filesystem::path& output);
+  /// The command that does the same in a terminal, and what it needs.
+  struct PresentCommand {
+    std::string text;
+    std::map<std::filesystem::path, std::string> files;  ///< that it names and that are not there yet
+    std::string lacks;                                   ///< what of the window it cannot say; empty: nothing
+  };
+  PresentCommand present_command() const;
+  /// Writes the files it names and returns it; a notice says what it needs or lacks. Empty when they cannot
+  /// be written.
+  std::string copy_command();
+  /// What the face does now, by name: the pose, or with a recording or a captured face the channels' values.
+  std::map<std::string, double> standing_pose() const;
   void run_check();
   const std::list<std::unique_ptr<ToolJob>>& jobs() const { return jobs_; }
 
@@ -132,6 +164,14 @@ class Workspace {
   void listen(LiveReceiver::Protocol protocol, uint16_t port);
   void stop_listening() { live.reset(); }
   void compare_with(Reference reference, const std::string& file = {});
+  /// The rig of what the face is compared with, which may be the face's own; null while there is none.
+  const LoadedRig* reference_rig() const;
+  /// Whether the skin is coloured by its distance to the reference: that has the same vertices.
+  bool has_distances() const;
+  /// Whether the reference is shown beside the face, in the left half of the picture.
+  bool is_divided() const;
+  /// The camera for the reference: of another head it shows the same as of the face.
+  view::Camera reference_camera() const;
   void start_recording();
   void stop_recording();
   void shake_head() { shake_ = 0.0; }
@@ -160,11 +200,10 @@ class Workspace {
   // --- What panels read, and set where it is theirs
 
   Settings settings;
-  std::optional<DocumentState> left_behind;  ///< by a session that ended in a crash
   std::optional<LoadedRig> rig;
   std::unique_ptr<Simulation> simulation, reference;
   std::shared_ptr<const Take> take;
-  std::vector<std::vector<float>> reference_positions;  ///< of Reference::rest and ::file, one a part
+  std::vector<std::vector<float>> reference_positions;  ///< of Reference::file, one list a part
   Comparison comparison;
   Playback playback;
   std::unique_ptr<LiveReceiver> live;
@@ -176,28 +215,75 @@ class Workspace {
   std::set<std::string> hidden_muscles;
   bool rebuilds_by_itself = true;
   bool orbit_moves = false;  ///< the camera glides
-  std::shared_ptr<const FaceFrame> frame, reference_frame;
+  std::shared_ptr<const FaceFrame> frame;
+  std::shared_ptr<const SkullShift> skull_shift;     ///< by landmarks that are not built in yet; null: none
+  std::shared_ptr<const FaceFrame> reference_frame;  ///< what the face is compared with; null: nothing
 
  private:
+  enum class FileKind { take, edits, either };
+  /// A recording or edits, as read from a file.
+  struct ReadFile {
+    std::filesystem::path file;
+    std::shared_ptr<const Take> take;
+    nlohmann::ordered_json edits;
+    bool is_again = false;  ///< the document has it already
+  };
   void take_build();
   void take_jobs();
+  void take_files(bool waits);
+  void take_saved(bool waits);
+  void take_other();
+  void take_reference(bool waits);
+  void start_reference(const std::shared_ptr<const FaceAsset>& asset, fascia_solver solver);
+  std::shared_ptr<const FaceFrame> frame_of_file() const;
+  void renew_reference_frame();
+  void read_file(const std::filesystem::path& file, FileKind kind, bool is_again);
+  static ReadFile read_now(const std::filesystem::path& file, FileKind kind);
+  void adopt(const ReadFile& read);
+  /// Reads the document's recording, or drops the one there is.
+  void follow_document();
+  void start_build(const std::filesystem::path& head, bool builds_anew);
+  void remove_old_builds();
+  /// Ends a face, or another thing with a thread, without waiting for the step it is at.
+  template <class Thing>
+  void part_with(std::unique_ptr<Thing> thing) {
+    if (!thing) return;
+    farewells_.push_back(
+        std::async(std::launch::async, [thing = std::move(thing)]() mutable { thing.reset(); }));
+  }
+  void follow_landmarks();
+  bool waits() const { return pace_ == Simulation::Pace::lockstep; }
   void adopt(LoadedRig loaded);
   void read_check(const ToolJob& job);
   void submit(double seconds);
+  PictureOrder picture_order() const;
   Warning warning_of(const std::string& text) const;
-  std::vector<std::vector<float>> positions_from(const std::string& file) const;
 
   Places places_;
   Simulation::Pace pace_;
   History<DocumentState> history_;
-  Autosave autosave_;
+  Session session_;
   std::unique_ptr<BuildTask> build_;
   std::vector<std::unique_ptr<BuildTask>> given_up_;
   std::list<std::unique_ptr<ToolJob>> jobs_;
-  std::future<std::unique_ptr<Simulation>> coming_reference_;
-  std::optional<LoadedRig> before_;
+  std::deque<std::future<ReadFile>> coming_files_;
+  Pending<std::filesystem::path> saving_;
+  Pending<std::unique_ptr<Simulation>> coming_reference_;
+  Pending<std::vector<std::vector<float>>> coming_positions_;
+  std::vector<std::future<void>> farewells_;
+  std::unique_ptr<LiveSkull> live_skull_;
+  /// What was saved, and of what: commands may name it as long as that is what is there.
+  struct SavedFile {
+    std::filesystem::path file;
+    std::string content;  ///< of a rig the file it was copied from, of edits their text
+  };
+  std::optional<SavedFile> saved_rig_, saved_edits_;
+  std::optional<LoadedRig> before_, other_;
+  std::unique_ptr<BuildTask> other_build_;
+  std::shared_ptr<const FaceFrame> rest_frame_;
   std::optional<spatial::SurfaceQuery> skin_;
-  std::string opened_;  ///< what the build under way was opened as; empty: a rebuild
+  std::string opened_;     ///< what the build under way was opened as; empty: a rebuild
+  bool restores_ = false;  ///< the build under way is of the document that was left behind
   nlohmann::ordered_json built_edits_ = nlohmann::ordered_json::object(), building_edits_, failed_edits_;
   mutable std::map<std::string, SkinHit> holds_;  ///< the skin under each landmark, found once
   std::optional<Poke> poke_;

@@ -19,10 +19,7 @@ void Workspace::seal() {
 void Workspace::undo() {
   const std::string label = history_.undo_label();
   if (history_.undo()) notify("Undone: " + label);
-  if (state().take.file.empty()) {
-    take.reset();
-    playback.is_playing = false;
-  }
+  follow_document();
   since_edit_ = 0.0;
   ++changes_;
 }
@@ -30,7 +27,7 @@ void Workspace::undo() {
 void Workspace::redo() {
   const std::string label = history_.redo_label();
   if (history_.redo()) notify("Done again: " + label);
-  if (!take && !state().take.file.empty()) load_take(state().take.file);
+  follow_document();
   since_edit_ = 0.0;
   ++changes_;
 }

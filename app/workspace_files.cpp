@@ -30,23 +30,51 @@ bool is_edits_file(const std::filesystem::path& file) {
 }  // namespace
 
 void Workspace::open(const std::filesystem::path& file) {
-  try {
-    std::error_code status;
-    if (!std::filesystem::exists(file, status)) throw Error("'" + file.string() + "' is not there");
-    if (is_edits_file(file)) return load_edits(file);
-    if (!is_mesh_file(file)) return load_take(file);
-  } catch (const std::exception& error) {
-    return notify(error.what(), Notice::Kind::error);
-  }
+  std::error_code status;
+  if (!std::filesystem::exists(file, status))
+    return notify("'" + file.string() + "' is not there", Notice::Kind::error);
+  if (!is_mesh_file(file)) return read_file(file, FileKind::either, false);
   cancel_build();
   opened_ = std::filesystem::absolute(file).string();
   building_edits_ = nlohmann::ordered_json::object();
-  build_ = std::make_unique<BuildTask>(BuildOrder{opened_, places_.state / "built", "", "medium", false});
+  start_build(opened_, false);
+}
+
+/// Begins a build in a folder of its own.
+void Workspace::start_build(const std::filesystem::path& head, bool builds_anew) {
+  try {
+    BuildOrder order{head, session_.next_build(), "", "medium", builds_anew};
+    if (!building_edits_.empty()) {
+      order.edits = order.cache / "edits.json";
+      write_edits_file(order.edits, building_edits_);
+    }
+    build_ = std::make_unique<BuildTask>(std::move(order));
+  } catch (const std::exception& error) {
+    notify(error.what(), Notice::Kind::error);
+  }
+}
+
+/// Jobs, and the window itself, may still read rigs of earlier builds.
+void Workspace::remove_old_builds() {
+  session_.remove_builds([this](const std::filesystem::path& folder) {
+    const auto is_within = [&](const std::filesystem::path& file) { return file.parent_path() == folder; };
+    if (rig && (is_within(rig->file) || is_within(rig->head))) return true;
+    if (other_ && is_within(other_->file)) return true;
+    for (const BuildTask* task : {build_.get(), other_build_.get()})
+      if (task && task->cache() == folder) return true;
+    for (const auto& task : given_up_)
+      if (task->cache() == folder) return true;
+    for (const auto& job : jobs_)
+      for (const std::string& word : job->arguments())
+        if (is_within(word)) return true;
+    return saving_.is_running();
+  });
 }
 
 void Workspace::open_embedded_head() {
   try {
-    const std::filesystem::path folder = places_.state / "built";
+    // Recent files and copied commands name it: it stays, and is the same for all windows.
+    const std::filesystem::path folder = places_.state / "embedded_head";
     std::filesystem::create_directories(folder);
     rigging::write_embedded_head(folder / "embedded_head.obj", folder / "embedded_head_landmarks.json");
     open(folder / "embedded_head.obj");
@@ -60,20 +88,13 @@ void Workspace::rebuild() {
   cancel_build();
   opened_.clear();
   building_edits_ = state().edits;
-  const std::filesystem::path folder = places_.state / "built", edits = folder / "edits.json";
-  try {
-    std::filesystem::create_directories(folder);
-    write_edits_file(edits, state());
-  } catch (const std::exception& error) {
-    return notify(error.what(), Notice::Kind::error);
-  }
-  build_ = std::make_unique<BuildTask>(
-      BuildOrder{rig->head, folder, state().edits.empty() ? "" : edits, "medium", true});
+  start_build(rig->head, true);
 }
 
 void Workspace::cancel_build() {
   if (!build_) return;
   build_->cancel();
+  restores_ = false;
   // Its thread ends with the stage that runs; until then nobody waits for it.
   given_up_.push_back(std::move(build_));
 }
@@ -82,52 +103,102 @@ BuildTask::Progress Workspace::build_progress() const {
   return build_ ? build_->progress() : BuildTask::Progress{};
 }
 
-void Workspace::restore(const DocumentState& saved) {
-  const DocumentState next = saved;
-  open(next.head);
+void Workspace::restore() {
+  if (!left_behind()) return;
+  const DocumentState saved = *left_behind();
+  open(saved.head);
   if (!build_) return;
+  restores_ = true;
   // Edits are built in once the head is there, see update().
-  history_.reset(next);
-  opened_ = next.head;
-  if (!next.take.file.empty()) load_take(next.take.file);
+  history_.reset(saved);
+  opened_ = saved.head;
+  follow_document();
 }
 
+// --- Recordings and edits
+
 void Workspace::load_take(const std::filesystem::path& file) {
-  try {
-    auto loaded = std::make_shared<const Take>(file);
-    size_t known = loaded->names().size();
-    if (rig) {
-      const std::vector<bool> matched = loaded->matched(rig->asset->handle());
-      known = static_cast<size_t>(std::count(matched.begin(), matched.end(), true));
-    }
-    take = loaded;
-    DocumentState next = state();
-    const std::string path = std::filesystem::absolute(file).string();
-    if (next.take.file != path) next.take = {path, 0.0, -1.0, true};
-    commit(std::move(next), "Load recording");
-    playback.time = state().take.begin;
-    playback.is_playing = true;
-    notify("Loaded " + file.filename().string() + ": " + std::to_string(known) + " of " +
-               std::to_string(loaded->names().size()) + " curves move this face",
-           known ? Notice::Kind::info : Notice::Kind::warning);
-  } catch (const std::exception& error) {
-    notify(error.what(), Notice::Kind::error);
-  }
+  read_file(file, FileKind::take, false);
 }
 
 void Workspace::load_edits(const std::filesystem::path& file) {
-  try {
-    DocumentState next = state();
-    next.edits = read_edits_file(file);
-    commit(std::move(next), "Load edits");
-  } catch (const std::exception& error) {
-    notify(error.what(), Notice::Kind::error);
+  read_file(file, FileKind::edits, false);
+}
+
+void Workspace::read_file(const std::filesystem::path& file, FileKind kind, bool is_again) {
+  coming_files_.push_back(std::async(std::launch::async, [file, kind, is_again] {
+    ReadFile read = read_now(file, kind);
+    read.is_again = is_again;
+    return read;
+  }));
+}
+
+Workspace::ReadFile Workspace::read_now(const std::filesystem::path& file, FileKind kind) {
+  ReadFile read{file, nullptr, {}, false};
+  if (kind == FileKind::edits || (kind == FileKind::either && is_edits_file(file)))
+    read.edits = read_edits_file(file);
+  else
+    read.take = std::make_shared<const Take>(file);
+  return read;
+}
+
+void Workspace::take_files(bool waits) {
+  while (!coming_files_.empty()) {
+    std::future<ReadFile>& first = coming_files_.front();
+    if (!waits && first.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+    std::future<ReadFile> done = std::move(first);
+    coming_files_.pop_front();
+    try {
+      adopt(done.get());
+    } catch (const std::exception& error) {
+      notify(error.what(), Notice::Kind::error);
+    }
   }
 }
 
+void Workspace::wait_for_files() {
+  take_files(true);
+  take_saved(true);
+}
+
+void Workspace::adopt(const ReadFile& read) {
+  DocumentState next = state();
+  if (!read.take) {
+    next.edits = read.edits;
+    return commit(std::move(next), "Load edits");
+  }
+  const std::string path = std::filesystem::absolute(read.file).string();
+  if (read.is_again && next.take.file != path) return;
+  take = read.take;
+  playback.is_playing = !read.is_again;
+  if (next.take.file != path) next.take = {path, 0.0, -1.0, true};
+  playback.time = next.take.begin;
+  commit(std::move(next), "Load recording");
+  if (read.is_again) return;
+  size_t known = take->names().size();
+  if (rig) {
+    const std::vector<bool> matched = take->matched(rig->asset->handle());
+    known = static_cast<size_t>(std::count(matched.begin(), matched.end(), true));
+  }
+  notify("Loaded " + read.file.filename().string() + ": " + std::to_string(known) + " of " +
+             std::to_string(take->names().size()) + " curves move this face",
+         known ? Notice::Kind::info : Notice::Kind::warning);
+}
+
+void Workspace::follow_document() {
+  const std::string& wanted = state().take.file;
+  if (take && std::filesystem::absolute(take->file()).string() == wanted) return;
+  take.reset();
+  playback.is_playing = false;
+  if (!wanted.empty()) read_file(wanted, FileKind::take, true);
+}
+
+// --- Saving
+
 bool Workspace::save_edits(const std::filesystem::path& file) {
   try {
-    write_edits_file(file, state());
+    write_edits_file(file, state().edits);
+    saved_edits_ = SavedFile{std::filesystem::absolute(file), text_of_edits(state().edits)};
     notify("Saved " + file.string());
     return true;
   } catch (const std::exception& error) {
@@ -141,14 +212,22 @@ bool Workspace::save_rig(const std::filesystem::path& file) {
     notify("There is no rig to save yet", Notice::Kind::warning);
     return false;
   }
-  try {
-    const std::vector<uint8_t> bytes = formats::read_bytes(rig->file);
+  saved_rig_ = SavedFile{std::filesystem::absolute(file), rig->file.string()};
+  saving_.start([from = rig->file, file] {
+    const std::vector<uint8_t> bytes = formats::read_bytes(from);
     formats::write_bytes(file, bytes.data(), bytes.size());
-    notify("Saved " + file.string());
-    return true;
+    return file;
+  });
+  if (waits()) take_saved(true);
+  return saved_rig_.has_value();
+}
+
+void Workspace::take_saved(bool waits) {
+  try {
+    if (const auto file = saving_.take(waits)) notify("Saved " + file->string());
   } catch (const std::exception& error) {
+    saved_rig_.reset();
     notify(error.what(), Notice::Kind::error);
-    return false;
   }
 }
 

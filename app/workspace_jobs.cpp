@@ -3,7 +3,6 @@
 
 #include "app/workspace.h"
 #include "formats/files.h"
-#include "formats/scene.h"
 #include "geometry/error.h"
 #include "geometry/json.h"
 
@@ -20,6 +19,19 @@ std::string first_line(const std::string& text) {
   return line.rfind(name, 0) == 0 ? line.substr(name.size()) : line;
 }
 
+/// Moves a recording to a name that no other has: other windows record into the same folder.
+std::filesystem::path keep_recording(const std::filesystem::path& from, const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder);
+  for (int number = 1;; ++number) {
+    const std::filesystem::path file = folder / ("recording_" + std::to_string(number) + ".json");
+    std::error_code status;
+    std::filesystem::copy_file(from, file, status);  // never replaces one
+    if (status == std::errc::file_exists) continue;
+    if (status) throw Error("'" + file.string() + "' cannot be written: " + status.message());
+    return file;
+  }
+}
+
 }  // namespace
 
 void Workspace::run(const CommandLine& command, const std::string& title) {
@@ -28,11 +40,6 @@ void Workspace::run(const CommandLine& command, const std::string& title) {
   } catch (const std::exception& error) {
     notify(error.what(), Notice::Kind::error);
   }
-}
-
-void Workspace::export_take(const std::filesystem::path& output, double fps) {
-  if (!rig || !take) return notify("Load a recording first", Notice::Kind::warning);
-  run(play_command(state().take, rig->file, fps, output), "Export " + output.filename().string());
 }
 
 void Workspace::run_check() {
@@ -114,75 +121,13 @@ void Workspace::stop_recording() {
   }
   const Json json = {{"fps", recorded_rate}, {"channels", channels}};
   try {
-    const std::filesystem::path folder = places_.state / "recordings";
-    std::filesystem::create_directories(folder);
-    std::filesystem::path file;
-    for (int number = 1; file.empty() || std::filesystem::exists(file); ++number)
-      file = folder / ("recording_" + std::to_string(number) + ".json");
-    formats::write_text(file, json.dump());
+    const std::filesystem::path written = session_.folder() / "recording.json";
+    formats::write_text(written, json.dump());
+    const std::filesystem::path file = keep_recording(written, places_.state / "recordings");
     clear_pose();
     load_take(file);
   } catch (const std::exception& error) {
     notify(error.what(), Notice::Kind::error);
-  }
-}
-
-/// The vertices of a file that has the head's meshes, one list a part of the asset.
-std::vector<std::vector<float>> Workspace::positions_from(const std::string& file) const {
-  const formats::Scene scene = formats::read(file);
-  std::vector<std::vector<float>> lists;
-  std::vector<bool> is_used(scene.meshes.size(), false);
-  for (const FacePart& part : rig->asset->parts) {
-    lists.emplace_back();
-    for (size_t m = 0; m < scene.meshes.size(); ++m) {
-      const formats::SceneMesh& mesh = scene.meshes[m];
-      if (is_used[m] || mesh.positions.size() != part.vertex_count) continue;
-      is_used[m] = true;
-      for (const Vec3& p : mesh.positions) {
-        const Vec3 metres = transform_point(rig->head_to_metres, p + scene.offset);
-        for (int k = 0; k < 3; ++k)
-          lists.back().push_back(static_cast<float>(metres[k]));
-      }
-      break;
-    }
-  }
-  if (std::all_of(lists.begin(), lists.end(), [](const auto& list) { return list.empty(); }))
-    throw Error("'" + file +
-                "': none of its meshes has as many vertices as one of the head's; compare with a file "
-                "of the same meshes");
-  return lists;
-}
-
-void Workspace::compare_with(Reference wanted, const std::string& file) {
-  reference.reset();
-  reference_frame.reset();
-  reference_positions.clear();
-  coming_reference_ = {};
-  comparison.reference = rig ? wanted : Reference::none;
-  comparison.file = file;
-  ++changes_;
-  if (!rig) return;
-  try {
-    if (wanted == Reference::rest)
-      for (const FacePart& part : rig->asset->parts)
-        reference_positions.push_back(part.rest);
-    if (wanted == Reference::file) reference_positions = positions_from(file);
-    std::shared_ptr<const FaceAsset> asset = rig->asset;
-    if (wanted == Reference::before) {
-      if (!before_) throw Error("There is no rig from before: change a landmark or a muscle and build again");
-      asset = before_->asset;
-    }
-    if (wanted == Reference::before || wanted == Reference::bullet || wanted == Reference::converged) {
-      const fascia_solver solver = wanted == Reference::bullet      ? FASCIA_SOLVER_BULLET
-                                   : wanted == Reference::converged ? FASCIA_SOLVER_REFERENCE
-                                                                    : FASCIA_SOLVER_OWN;
-      coming_reference_ = std::async(std::launch::async, [asset, solver, pace = pace_] {
-        return std::make_unique<Simulation>(asset, solver, pace);
-      });
-    }
-  } catch (const std::exception& error) {
-    notify(error.what(), Notice::Kind::error);
-    comparison.reference = Reference::none;
   }
 }
 

@@ -135,7 +135,8 @@ view::DrawList draw_face(const Face& face, const rig::Rig& rig, const view::Face
     state.fibres = all_fibres(face, rig);
     state.activations = face.effective_values();
   }
-  if (what.layers.count("fat") || what.layers.count("lattice")) state.lattice = face.lattice();
+  if (what.layers.count("fat") || what.layers.count("lattice") || what.layers.count("smas"))
+    state.lattice = face.lattice();
   return scene.list(state, what);
 }
 

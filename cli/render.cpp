@@ -53,9 +53,7 @@ class Picture {
 
  private:
   view::DrawList list() const { return draw_face(face_, file_.rig, what_); }
-  view::Camera camera(const std::string& view) const {
-    return camera_for(view, request_.camera, box_, size_);
-  }
+  view::Camera camera(const std::string& view) const { return camera_for(view, request_, box_, size_); }
 
   view::Image shot(const view::Renderer& renderer, const view::Camera& camera,
                    const view::DrawList& list) const {
@@ -206,6 +204,11 @@ void add_render(const Command& tool, Common& common) {
               "Relative to the view: degrees to the subject's left, degrees up, magnification")
       .value("YAW,PITCH[,ZOOM]")
       .default_text("0,0,1");
+  command
+      .option("--look-at", &request->look_at,
+              "The point the camera looks at and its distance, metres in the rig's axes")
+      .value("X,Y,Z,DISTANCE")
+      .default_text("the whole face");
   command
       .option("--reveal", &request->reveal,
               "Remove the skin on one half (the subject's left or right, top or bottom), so that deeper "

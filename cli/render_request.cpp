@@ -75,11 +75,21 @@ std::vector<std::string> views_from(const std::string& list) {
   return views;
 }
 
-view::Camera camera_for(const std::string& view, const std::string& adjustment, const Bounds& box,
+view::Camera camera_for(const std::string& view, const RenderRequest& request, const Bounds& box,
                         PictureSize size) {
+  const std::string &adjustment = request.camera, &look_at = request.look_at;
   view::Camera camera = view::named_camera(view, box, 0.98);
   const double aspect = static_cast<double>(size.width) / size.height;
   if (aspect < 1.0) camera.distance /= aspect;  // what is framed by height must fit the width too
+  if (!look_at.empty()) {
+    const std::vector<double> place = numbers_from(look_at, "--look-at");
+    if (place.size() != 4 || !(place[3] > 0.0))
+      throw Error("--look-at '" + look_at +
+                  "' is not X,Y,Z,DISTANCE: a point in the rig's axes, and how far from it the camera is, in "
+                  "metres");
+    camera.target = Vec3(place[0], place[1], place[2]);
+    camera.distance = place[3];
+  }
   if (adjustment.empty()) return camera;
   const std::vector<double> numbers = numbers_from(adjustment, "--camera");
   if (numbers.size() < 2 || numbers.size() > 3 || std::abs(numbers[1]) > 90.0 ||

@@ -16,7 +16,8 @@ struct RenderRequest {
   std::filesystem::path rig, output, file, curves;
   std::vector<std::string> set;
   std::string layers = "skin,eyes", muscles, view = "front", solver = "own", level;
-  std::string size = "900", background = "studio", camera, light = "studio", reveal, colours = "flesh";
+  std::string size = "900", background = "studio", camera, look_at, light = "studio", reveal,
+              colours = "flesh";
   std::optional<double> at;
   double frames_per_second = 30.0;
   int samples = 0;  ///< a pixel; 0: 8, or 2 for films
@@ -37,9 +38,9 @@ view::Look look_from(const RenderRequest& request);
 /// Views with commas between: front, side, right, three-quarter, back.
 std::vector<std::string> views_from(const std::string& list);
 
-/// The camera of a named view that frames `box` in a picture of that size, turned and brought nearer by
-/// `adjustment`, "YAW,PITCH[,ZOOM]" in degrees and times (empty: as it is).
-view::Camera camera_for(const std::string& view, const std::string& adjustment, const Bounds& box,
+/// The camera of a named view that frames `box` in a picture of that size, or looks at what the request says,
+/// turned and brought nearer as the request says. Throws fascia::Error for numbers that are none.
+view::Camera camera_for(const std::string& view, const RenderRequest& request, const Bounds& box,
                         PictureSize size);
 
 /// The half space whose skin `reveal` (left, right: the subject's; top, bottom; empty: none) takes away.

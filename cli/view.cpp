@@ -24,6 +24,7 @@ void run(const Common& common, const app::ApplicationOptions& options) {
   common.report({{"frames", report.frames},
                  {"median_frame_ms", report.median_frame_ms},
                  {"longest_frame_ms", report.longest_frame_ms},
+                 {"longest_update_ms", report.longest_update_ms},
                  {"files", report.files}});
 }
 
@@ -42,6 +43,8 @@ void add_view(const Command& tool, Common& common) {
       .default_text("the start page");
   command.option("--script", &options.script, "Run a script of steps, then exit; see docs/view.md")
       .default_text("the mouse and the keyboard");
+  command.flag("--real-time", options.is_real_time,
+               "Run a script by the clock and draw every frame, as for a user: how fast the window is");
   command.option("--state", &options.state, "Folder for settings and recovery")
       .value("DIR")
       .default_text("$XDG_STATE_HOME/fascia; temporary for a script");

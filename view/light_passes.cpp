@@ -20,6 +20,10 @@ int screen_divisor(const Look& look) {
   return look.samples > 4 ? 1 : 2;
 }
 
+bool has_light_passes(const Look& look) {
+  return look.has_shadows || look.has_occlusion || look.has_mirrors;
+}
+
 }  // namespace
 
 bool is_glass(const DrawSurface& surface) {
@@ -44,6 +48,7 @@ void Screen::draw() const {
 }
 
 void LightPasses::draw(const Shot& shot, TextureCache& textures) {
+  if (!has_light_passes(shot.look)) return;
   frame_ = light_frame(shot);
   if (shot.look.has_shadows) draw_shadows(shot, textures, shot.width * shot.height > 700 * 700 ? 2048 : 1024);
   const int divisor = screen_divisor(shot.look), width = (shot.width + divisor - 1) / divisor,
@@ -169,6 +174,7 @@ void LightPasses::set_shadows(const Program& program, const Shot& shot, double t
 }
 
 void LightPasses::set(const Program& program, const Shot& shot, double turn) const {
+  program.set("has_screen_map", has_light_passes(shot.look) ? 1 : 0);
   set_shadows(program, shot, turn);
   program.set("screen_scale", 1.0 / (screen_divisor(shot.look) * shot.enlargement));
   bind_texture(shadow_unit, GL_TEXTURE_2D, shadow_map_.depth());

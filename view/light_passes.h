@@ -52,6 +52,7 @@ struct Shot {
 /// The passes before the surfaces are drawn: how much of the key light and of the room's reaches each pixel.
 class LightPasses {
  public:
+  /// Nothing, for a look that needs none of them.
   void draw(const Shot& shot, TextureCache& textures);
   /// Sets what `program` reads of them, the maps included; `turn` (0..1) turns the pattern of samples.
   void set(const Program& program, const Shot& shot, double turn) const;

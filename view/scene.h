@@ -88,10 +88,13 @@ struct Look {
   std::string light = "studio";  ///< studio, soft, dramatic, outdoor or flat (see environment.h)
   bool has_shadows = true;
   bool has_occlusion = true;  ///< ambient occlusion
+  bool has_mirrors = true;    ///< what is wet inside a mouth mirrors only what it can see
   /// A pixel: 1; 2, drawn at one and a half times the size, half as dear as 4 (films); or more in steps of
   /// four.
   int samples = 8;
   double exposure = 1.0;
+  /// Below 1, and with one sample a pixel: surfaces are drawn with fewer pixels each way, and enlarged.
+  double resolution = 1.0;
 };
 
 }  // namespace fascia::view

@@ -37,6 +37,11 @@ double usual_roughness(const DrawSurface& surface) {
   }
 }
 
+/// Whether pixels of it are left out.
+bool has_holes(const DrawSurface& surface) {
+  return surface.cut || surface.alpha_cutoff >= 0.0;
+}
+
 /// A rectangle of a picture, pixels from its lower left corner.
 struct Rectangle {
   int x = 0, y = 0, width = 0, height = 0;
@@ -163,11 +168,11 @@ void SceneRenderer::State::use_light(const std::string& name) {
 }
 
 const Program& SceneRenderer::State::program(const DrawSurface& surface) {
-  const bool has_holes = surface.cut || surface.alpha_cutoff >= 0.0;
-  std::unique_ptr<Program>& made = surfaces[{surface.shading, has_holes}];
+  const bool is_cut = has_holes(surface);
+  std::unique_ptr<Program>& made = surfaces[{surface.shading, is_cut}];
   if (!made) {
-    made = std::make_unique<Program>(surface_vertex_shader(),
-                                     surface_fragment_shader(surface.shading, has_holes));
+    made =
+        std::make_unique<Program>(surface_vertex_shader(), surface_fragment_shader(surface.shading, is_cut));
     made->use();
     const std::pair<const char*, int> units[] = {
         {"colour_map", colour_unit},      {"normal_map", normal_unit}, {"surface_map", surface_unit},
@@ -379,7 +384,9 @@ void SceneRenderer::draw(const DrawList& list, const Camera& camera, const Targe
   s.textures.tidy();
   s.upload(list);
   s.use_light(look.light);
-  const double enlargement = look.samples == 2 || look.samples == 3 ? 1.5 : 1.0;
+  const double enlargement = look.samples == 1                        ? look.resolution
+                             : look.samples == 2 || look.samples == 3 ? 1.5
+                                                                      : 1.0;
   const Shot shot{list, s.surface_buffers, s.room, camera, look, width, height, enlargement};
   s.light_passes.draw(shot, s.textures);
 
@@ -387,7 +394,7 @@ void SceneRenderer::draw(const DrawList& list, const Camera& camera, const Targe
   const Rectangle inside = covered(shot);
   s.draw_behind(shot);
   s.copy_to(target, s.behind.colour(), shot);
-  keep_inside(inside, enlargement, 0, 0, enlargement > 1.0 ? 3 : 0);
+  keep_inside(inside, enlargement, 0, 0, enlargement != 1.0 ? 3 : 0);
   const GLuint picture = look.samples < 4 ? s.draw_enlarged(shot) : s.draw_multisampled(shot);
   keep_inside(inside, 1.0, target.x, target.y);
   s.copy_to(target, picture, shot);

@@ -106,8 +106,7 @@ void VertexBuffers::draw_triangles() const {
 
 void VertexBuffers::draw_lines() const {
   glBindVertexArray(array_);
-  for (size_t i = 0; i < firsts_.size(); ++i)
-    glDrawArrays(GL_LINE_STRIP, firsts_[i], counts_[i]);
+  glMultiDrawArrays(GL_LINE_STRIP, firsts_.data(), counts_.data(), static_cast<GLsizei>(firsts_.size()));
 }
 
 TextureCache::~TextureCache() {

@@ -21,6 +21,7 @@ uniform vec3 harmonics[9];
 uniform samplerCube reflections;
 uniform float reflection_levels;
 uniform sampler2D screen_map;   // openness, distance, share of the key's light, thickness (screen_light_source)
+uniform bool has_screen_map;    // else every place is open and lit
 uniform float screen_scale;     // its pixels to one of the picture's
 uniform vec3 view_direction;    // along which its distances are measured
 out vec4 pixel;
@@ -285,10 +286,10 @@ void main() {
                gloss(n, v, vec3(0.03), 0.35, 0.5, 1.0);
   pixel = vec4(finished(light), clamp(alpha * density * 1.6, 0.0, 1.0));
 #else
-  vec4 screen = screen_light(place);
+  vec4 screen = has_screen_map ? screen_light(place) : vec4(1.0, 0.0, 1.0, 1.0);
   float open = screen.x, lit = screen.z, thickness = screen.w;
 #if MOUTH
-  float mirrored = mirrored_share_of_room(place, reflect(-v, n));
+  float mirrored = has_screen_map ? mirrored_share_of_room(place, reflect(-v, n)) : 0.35;
 #else
   float mirrored = 1.0;
 #endif
@@ -301,13 +302,14 @@ void main() {
 #if SKIN
   // Wider for red: what comes back out of the skin has gone sideways (after Penner 2011, Pre-integrated
   // skin shading); bumps that red light does not see (Jimenez et al. 2009).
-  vec3 wrap = vec3(0.24, 0.085, 0.05) * SOFTNESS;
+  vec3 wrap = vec3(0.125, 0.090, 0.075) * SOFTNESS;
   vec3 slope = vec3(dot(mix(m, n, 0.65), l), dot(mix(m, n, 0.35), l), nl);
   vec3 falling = clamp((slope + wrap) / (1.0 + wrap), 0.0, 1.0);
-  vec3 shade = pow(vec3(lit), vec3(0.72, 1.0, 1.08));
+  vec3 shade = pow(vec3(lit), vec3(0.93, 1.0, 1.03));
   light = colour * key_irradiance * falling * shade;
-  float behind = clamp(-dot(n, l), 0.0, 1.0);
-  light += to_linear(vec3(0.95, 0.36, 0.22)) * key_irradiance * behind * exp(-thickness / 0.0042) * 0.8 * TRANSLUCENCY;
+  // Where the surface only begins to turn away there is little before the light too, but no ear or nostril.
+  float behind = smoothstep(0.1, 0.8, -dot(n, l));
+  light += to_linear(vec3(0.90, 0.46, 0.34)) * key_irradiance * behind * exp(-thickness / 0.0042) * 0.5 * TRANSLUCENCY;
   light += colour * irradiance(mix(m, n, 0.5)) * tinted(open, colour);
   // Two lobes for the key; the room, wide as it is, is mirrored once at their mean.
   light += (key_gloss(m, v, vec3(0.028), rough, lit) * 0.80 + key_gloss(m, v, vec3(0.028), rough * 0.58, lit) * 0.20 +

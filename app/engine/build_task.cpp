@@ -74,7 +74,7 @@ LoadedRig load_rig(const std::filesystem::path& file, const std::filesystem::pat
   return loaded;
 }
 
-BuildTask::BuildTask(BuildOrder order) : started_(std::chrono::steady_clock::now()) {
+BuildTask::BuildTask(BuildOrder order) : cache_(order.cache), started_(std::chrono::steady_clock::now()) {
   thread_ = std::thread([this, order = std::move(order)] { run(order); });
 }
 

@@ -59,6 +59,7 @@ class BuildTask {
 
   /// Gives up at the end of the stage that runs; progress() says when.
   void cancel() { is_cancelled_ = true; }
+  const std::filesystem::path& cache() const { return cache_; }
   bool was_cancelled() const { return is_cancelled_; }
 
   /// The rig, once; nothing when it failed, was given up, or is not done.
@@ -72,6 +73,7 @@ class BuildTask {
   LoadedRig open(const BuildOrder& order);
   void run(const BuildOrder& order);
 
+  std::filesystem::path cache_;
   mutable std::mutex mutex_;
   std::atomic<bool> is_cancelled_ = false;
   Progress progress_;

@@ -131,7 +131,10 @@ FaceSession::FaceSession(std::shared_ptr<const FaceAsset> asset, fascia_solver s
   fascia_face* made = nullptr;
   check(fascia_face_create(asset_->handle(), &options, &made), "face");
   face_.reset(made);
-  read_frame({});
+  // The first frame is the face at rest, with all there is to see of it.
+  FaceInputs all;
+  all.wants_nodes = all.wants_compression = true;
+  read_frame(all);
 }
 
 void FaceSession::apply(const FaceInputs& inputs) {

@@ -12,8 +12,8 @@ std::string number(double value) {
   return text;
 }
 
-void add_pose(CommandLine& command, const DocumentState& state) {
-  for (const auto& [name, value] : state.pose) {
+void add_pose(CommandLine& command, const Pose& pose) {
+  for (const auto& [name, value] : pose) {
     command.emplace_back("--set");
     command.push_back(name + "=" + number(value));
   }
@@ -34,10 +34,10 @@ CommandLine build_command(const DocumentState& state, const std::filesystem::pat
   return command;
 }
 
-CommandLine pose_command(const DocumentState& state, const std::filesystem::path& rig,
+CommandLine pose_command(const Pose& pose, const std::filesystem::path& rig,
                          const std::filesystem::path& output) {
   CommandLine command = {"pose", rig.string()};
-  add_pose(command, state);
+  add_pose(command, pose);
   command.insert(command.end(), {"-o", output.string()});
   return command;
 }
@@ -56,13 +56,19 @@ CommandLine bake_command(const std::filesystem::path& rig, const std::string& sh
   return {"bake", rig.string(), "--shapes", shapes, "-o", output.string()};
 }
 
-CommandLine render_command(const DocumentState& state, const std::filesystem::path& rig,
-                           const std::string& layers, const std::string& view, int size,
+CommandLine render_command(const Pose& pose, const std::filesystem::path& rig, const PictureOrder& order,
                            const std::filesystem::path& output) {
   CommandLine command = {"render", rig.string()};
-  add_pose(command, state);
-  command.insert(command.end(),
-                 {"--layers", layers, "--view", view, "--size", std::to_string(size), "-o", output.string()});
+  add_pose(command, pose);
+  for (const auto& [option, value] : {std::pair("--layers", &order.layers),
+                                      {"--view", &order.view},
+                                      {"--camera", &order.camera},
+                                      {"--look-at", &order.look_at},
+                                      {"--muscles", &order.muscles},
+                                      {"--size", &order.size}})
+    if (!value->empty()) command.insert(command.end(), {option, *value});
+  if (order.is_plain) command.emplace_back("--plain");
+  command.insert(command.end(), {"-o", output.string()});
   return command;
 }
 

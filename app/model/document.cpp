@@ -141,8 +141,12 @@ Json read_edits_file(const std::filesystem::path& path) {
   return edits;
 }
 
-void write_edits_file(const std::filesystem::path& path, const DocumentState& state) {
-  formats::write_text(path, state.edits.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+std::string text_of_edits(const Json& edits) {
+  return edits.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+void write_edits_file(const std::filesystem::path& path, const Json& edits) {
+  formats::write_text(path, text_of_edits(edits));
 }
 
 }  // namespace fascia::app

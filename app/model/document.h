@@ -65,7 +65,9 @@ DocumentState state_from_text(const std::string& text, const std::string& where)
 /// Reads an edits file as it stands; whether the builder accepts it shows when it builds. Throws
 /// fascia::Error.
 nlohmann::ordered_json read_edits_file(const std::filesystem::path& path);
-/// Writes the edits of `state`, whole or not at all. Throws fascia::Error.
-void write_edits_file(const std::filesystem::path& path, const DocumentState& state);
+/// Edits as their file has them.
+std::string text_of_edits(const nlohmann::ordered_json& edits);
+/// Writes edits, whole or not at all. Throws fascia::Error.
+void write_edits_file(const std::filesystem::path& path, const nlohmann::ordered_json& edits);
 
 }  // namespace fascia::app

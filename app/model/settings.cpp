@@ -61,7 +61,8 @@ std::string names_of(const Layers& layers) {
                                     {layers.muscles, "muscles"},
                                     {layers.ligaments, "ligaments"},
                                     {layers.lattice, "lattice"},
-                                    {layers.landmarks, "landmarks"}})
+                                    {layers.landmarks, "landmarks"},
+                                    {layers.strain, "strain"}})
     if (is_on) names += (names.empty() ? "" : ",") + std::string(name);
   return names.empty() ? "eyes" : names;
 }
@@ -154,12 +155,6 @@ void Autosave::keep(const DocumentState& state) {
   } catch (const std::exception&) {
     // A full disk must not end the session that it was to save.
   }
-}
-
-void Autosave::remove() {
-  std::error_code status;
-  std::filesystem::remove(file_, status);
-  kept_.reset();
 }
 
 }  // namespace fascia::app

@@ -52,8 +52,7 @@ Settings read_settings(const std::filesystem::path& file);
 /// Writes them, whole or not at all; failure is silent, as nothing is lost but comfort.
 void write_settings(const std::filesystem::path& file, const Settings& settings);
 
-/// A copy of the document that a crash leaves behind: written as the document changes, taken away when the
-/// window closes as it should.
+/// A copy of the document that a crash leaves behind, written as the document changes.
 class Autosave {
  public:
   explicit Autosave(std::filesystem::path file) : file_(std::move(file)) {}
@@ -62,7 +61,6 @@ class Autosave {
   std::optional<DocumentState> left_behind() const;
   /// Writes the state, if it is another than the last. Never throws.
   void keep(const DocumentState& state);
-  void remove();
 
  private:
   std::filesystem::path file_;

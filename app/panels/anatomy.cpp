@@ -76,7 +76,7 @@ void show_landmark_panel(Workspace& work, Screen& screen) {
   show_rebuild(work, width);
   ui::search("Search landmarks", screen.landmark_search, width);
   const float foot = work.selected_landmark.empty() ? scaled(44) : scaled(200);
-  ImGui::BeginChild("##landmarks", {0, -foot});
+  ImGui::BeginChild("##landmarks", {0, list_height(foot)});
   ImDrawList* list = ImGui::GetWindowDrawList();
   for (const rig::Landmark& landmark : work.rig->rig->skull.landmarks) {
     const float certain = 0.75F;
@@ -196,7 +196,7 @@ void show_muscle_panel(Workspace& work, Screen& screen) {
   show_rebuild(work, width);
   ui::search("Search muscles", screen.muscle_search, width);
   const float foot = work.selected_muscle.empty() ? scaled(44) : scaled(322);
-  ImGui::BeginChild("##muscles", {0, -foot});
+  ImGui::BeginChild("##muscles", {0, list_height(foot)});
   std::string region;
   std::vector<const rig::Muscle*> sorted;
   for (const rig::Muscle& muscle : work.rig->rig->muscles)
@@ -244,7 +244,7 @@ void show_warning_panel(Workspace& work, Screen& screen) {
     return ui::hint(
         "No warnings. The check plays a list of poses and measures lids, lips, skin and symmetry.");
   ui::hint("Click a warning to see the place.");
-  ImGui::BeginChild("##list", {0, 0});
+  ImGui::BeginChild("##list", {0, list_height(0.0F)});
   for (size_t i = 0; i < work.warnings.size(); ++i) {
     const Warning& warning = work.warnings[i];
     const float width = ImGui::GetContentRegionAvail().x - scaled(10);

@@ -23,19 +23,23 @@ constexpr std::array<PanelEntry, 7> panels = {{{"pose", "Pose"},
                                                {"live", "Live"},
                                                {"export", "Export"}}};
 
-const std::vector<std::string> mesh_endings = {".glb", ".gltf", ".obj", ".ply", ".stl", ".vrm"};
-
 }  // namespace
 
-void begin_area(const char* name, const Area& area, const ImVec4& background, ImVec2 padding) {
+const std::vector<std::string>& mesh_endings() {
+  static const std::vector<std::string> endings = {".glb", ".gltf", ".obj", ".ply", ".stl", ".vrm"};
+  return endings;
+}
+
+void begin_area(const char* name, const Area& area, const ImVec4& background, ImVec2 padding, Scroll scroll) {
+  const ImGuiWindowFlags still = ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse;
   ImGui::SetNextWindowPos({area.x, area.y});
   ImGui::SetNextWindowSize({std::max(area.width, 1.0F), std::max(area.height, 1.0F)});
   ImGui::PushStyleColor(ImGuiCol_WindowBg, background);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, padding);
   ImGui::Begin(name, nullptr,
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
-                   ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse |
-                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus);
+                   (scroll == Scroll::no ? still : ImGuiWindowFlags_None) | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_NoBringToFrontOnFocus);
 }
 
 void end_area() {
@@ -44,8 +48,12 @@ void end_area() {
   ImGui::PopStyleColor();
 }
 
+float list_height(float foot) {
+  return std::max(ImGui::GetContentRegionAvail().y - foot, scaled(150));
+}
+
 void ask_to_open(Workspace& work, Screen& screen) {
-  screen.browser.ask_to_open("Open a head or a rig", mesh_endings,
+  screen.browser.ask_to_open("Open a head or a rig", mesh_endings(),
                              [&work](const std::filesystem::path& file) { work.open(file); });
 }
 
@@ -58,15 +66,6 @@ void ask_to_save_rig(Workspace& work, Screen& screen) {
   const std::string stem = std::filesystem::path(work.state().head).stem().string();
   screen.browser.ask_to_save("Save the rig", stem + "_rig.glb", {".glb"},
                              [&work](const std::filesystem::path& file) { work.save_rig(file); });
-}
-
-std::string present_command(const Workspace& work) {
-  if (!work.rig) return "";
-  if (work.take)
-    return shell_text(play_command(work.state().take, work.rig->file.filename(), 60.0, "take.glb"));
-  if (!work.state().pose.empty())
-    return shell_text(pose_command(work.state(), work.rig->file.filename(), "posed.glb"));
-  return shell_text(build_command(work.state(), "edits.json", "rig.glb"));
 }
 
 void show_top_bar(Workspace& work, Screen& screen, const Area& area) {
@@ -112,9 +111,14 @@ void show_top_bar(Workspace& work, Screen& screen, const Area& area) {
 
 void show_rail(Workspace& work, Screen& screen, const Area& area) {
   const Palette& p = palette();
-  begin_area("##rail", area, p.window, {0, scaled(8)});
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {0, scaled(6)});
+  begin_area("##rail", area, p.window, {0, scaled(8)}, Scroll::down);
   ImDrawList* list = ImGui::GetWindowDrawList();
-  const float cell = scaled(62);
+  // In a low window the entries stand closer, at last without their names; lower still, they scroll.
+  const float all = area.height - scaled(16), entries = static_cast<float>(panels.size());
+  const float cell = std::clamp((all - scaled(6) * (entries - 1.0F)) / entries, scaled(32), scaled(62));
+  const bool has_names = cell > scaled(52);
+  const float icon = has_names ? scaled(24) * cell / scaled(62) : 0.5F * cell;
   for (const PanelEntry& panel : panels) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const bool is_chosen = work.settings.panel == panel.name;
@@ -126,11 +130,14 @@ void show_rail(Workspace& work, Screen& screen, const Area& area) {
                           {at.x + area.width - scaled(6), at.y + cell - scaled(3)},
                           colour_of(is_chosen ? p.raised : p.panel), scaled(9));
     const ImU32 colour = colour_of(is_chosen ? p.accent : is_hot ? p.text : p.faint);
-    draw_icon(list, panel.name, {at.x + 0.5F * area.width, at.y + scaled(24)}, scaled(21), colour);
+    draw_icon(list, panel.name, {at.x + 0.5F * area.width, at.y + icon}, scaled(21), colour);
     ImGui::PushFont(fonts().small);
     const float width = ImGui::CalcTextSize(panel.title).x;
-    list->AddText({at.x + 0.5F * (area.width - width), at.y + scaled(40)},
-                  colour_of(is_chosen ? p.text : p.faint), panel.title);
+    if (has_names)
+      list->AddText({at.x + 0.5F * (area.width - width), at.y + cell - scaled(22)},
+                    colour_of(is_chosen ? p.text : p.faint), panel.title);
+    else
+      ui::tooltip(panel.title);
     if (panel.name == std::string("warnings") && !work.warnings.empty()) {
       const std::string count = std::to_string(work.warnings.size());
       const ImVec2 middle(at.x + 0.5F * area.width + scaled(15), at.y + scaled(15));
@@ -146,11 +153,12 @@ void show_rail(Workspace& work, Screen& screen, const Area& area) {
   }
   (void)screen;
   end_area();
+  ImGui::PopStyleVar();
 }
 
 void show_side_panel(Workspace& work, Screen& screen, const Area& area) {
   const Palette& p = palette();
-  begin_area("##panel", area, p.panel, {scaled(16), scaled(14)});
+  begin_area("##panel", area, p.panel, {scaled(16), scaled(14)}, Scroll::down);
   for (const PanelEntry& panel : panels)
     if (work.settings.panel == panel.name) {
       ImGui::PushFont(fonts().large);
@@ -184,9 +192,10 @@ void show_status(Workspace& work, Screen& screen, const Area& area) {
                 work.frame ? work.frame->step_milliseconds : 0.0,
                 screen.picture.milliseconds(screen.drawn_care));
   const float right = ImGui::CalcTextSize(figures).x + scaled(24);
-  const std::string command = present_command(work);
+  const std::string command = work.present_command().text;
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(scaled(8), scaled(1)));
-  if (ui::button("Copy command")) ImGui::SetClipboardText(command.c_str());
+  if (ui::button("Copy command"))
+    if (const std::string text = work.copy_command(); !text.empty()) ImGui::SetClipboardText(text.c_str());
   ImGui::PopStyleVar();
   ui::tooltip("The command that does the same in a terminal");
   ImGui::SameLine();

@@ -19,9 +19,8 @@ struct Figures {
 
 Figures figures_of(const Workspace& work) {
   Figures figures;
-  if (!work.frame || (!work.reference_frame && work.reference_positions.empty())) return figures;
-  for (const auto& list : distances_between(
-           *work.frame, work.reference_frame ? work.reference_frame->positions : work.reference_positions))
+  if (!work.has_distances()) return figures;
+  for (const auto& list : distances_between(*work.frame, work.reference_frame->positions))
     for (const float metres : list) {
       const double mm = 1e3 * static_cast<double>(metres);
       figures.largest = std::max(figures.largest, mm);
@@ -41,13 +40,14 @@ void show_compare_panel(Workspace& work, Screen& screen) {
     Reference reference;
     const char *name, *what;
   };
-  constexpr std::array<Entry, 6> entries = {{
+  constexpr std::array<Entry, 7> entries = {{
       {Reference::none, "Nothing", "the face alone"},
       {Reference::rest, "Rest", "how far every point has moved"},
       {Reference::before, "Before the edits", "the rig as it was built the time before"},
       {Reference::bullet, "Bullet", "the same lattice, another solver"},
       {Reference::converged, "Converged", "double precision, every step to the end"},
       {Reference::file, "A file", "a scan or a sculpt of this head"},
+      {Reference::other, "Another head", "the same pose on a second head or rig"},
   }};
   ui::hint("Show the face beside another, or its distance from it.");
   for (const Entry& entry : entries) {
@@ -57,6 +57,11 @@ void show_compare_panel(Workspace& work, Screen& screen) {
         screen.browser.ask_to_open("Compare with a mesh", {".glb", ".gltf", ".obj", ".ply"},
                                    [&work](const std::filesystem::path& file) {
                                      work.compare_with(Reference::file, file.string());
+                                   });
+      else if (entry.reference == Reference::other)
+        screen.browser.ask_to_open("Compare with another head or rig", mesh_endings(),
+                                   [&work](const std::filesystem::path& file) {
+                                     work.compare_with(Reference::other, file.string());
                                    });
       else
         work.compare_with(entry.reference);
@@ -72,6 +77,12 @@ void show_compare_panel(Workspace& work, Screen& screen) {
   }
   if (work.comparison.reference == Reference::none) return;
   ImGui::Dummy({0, scaled(6)});
+  if (!work.reference_frame) return ui::hint("It is being prepared.");
+  if (work.comparison.reference == Reference::other) {
+    ui::hint(std::filesystem::path(work.comparison.file).filename().string() +
+             " is on the left. What is not the same mesh has no distances.");
+    if (work.frame->positions.size() != work.reference_frame->positions.size()) return;
+  }
   ui::check("Heat map", work.comparison.has_heat);
   ImGui::SameLine(0, scaled(14));
   ui::check("Side by side", work.comparison.is_side_by_side);
@@ -149,9 +160,7 @@ void show_export_panel(Workspace& work, Screen& screen) {
   entry("Export rig", "The head with its anatomy (.glb), for the runtime and for later.", stem + "_rig.glb",
         {".glb"}, [&work](const std::filesystem::path& file) { work.save_rig(file); });
   entry("Export pose", "The mesh as it stands, in the file's own vertex order.", stem + "_posed.glb",
-        {".glb", ".obj", ".ply"}, [&work, rig](const std::filesystem::path& file) {
-          work.run(pose_command(work.state(), rig, file), "Export " + file.filename().string());
-        });
+        {".glb", ".obj", ".ply"}, [&work](const std::filesystem::path& file) { work.export_pose(file); });
   entry("Export ARKit shapes", "52 morph targets with ARKit's names.", stem + "_arkit.glb", {".glb"},
         [&work, rig](const std::filesystem::path& file) {
           work.run(bake_command(rig, "arkit", file), "Export " + file.filename().string());
@@ -171,17 +180,13 @@ void show_export_panel(Workspace& work, Screen& screen) {
   } else {
     ui::hint("Load a recording in the timeline to export an animation.");
   }
-  entry("Draw a picture", "The pose, 1600 pixels high, with the layers shown.", stem + ".png", {".png"},
-        [&work, rig](const std::filesystem::path& file) {
-          work.run(
-              render_command(work.state(), rig, names_of(work.settings.layers), "three-quarter", 1600, file),
-              "Draw " + file.filename().string());
+  entry("Draw a picture", "What the picture above the timeline shows, 1600 pixels high.", stem + ".png",
+        {".png"}, [&work, &screen](const std::filesystem::path& file) {
+          const Area area = face_area(work, screen.viewport);
+          work.draw_picture(file, static_cast<double>(area.width / std::max(area.height, 1.0F)));
         });
   entry("Film a turntable", "A film once around the head.", stem + ".mp4", {".mp4"},
-        [&work, rig](const std::filesystem::path& file) {
-          work.run(render_command(work.state(), rig, names_of(work.settings.layers), "turntable", 800, file),
-                   "Film " + file.filename().string());
-        });
+        [&work](const std::filesystem::path& file) { work.film_turntable(file); });
   for (const auto& job : work.jobs()) {
     ImGui::PushID(job.get());
     char text[200];

@@ -26,17 +26,6 @@ std::string key_of(const Workspace& work, const Area& area, const view::Camera& 
   return key;
 }
 
-void renew_scenes(const Workspace& work, Screen& screen) {
-  const FaceAsset* asset = work.rig->asset.get();
-  if (screen.scene_of != asset)
-    screen.scene = std::make_unique<SceneStore>(*asset, *work.rig->rig, work.rig->appearance.get());
-  screen.scene_of = asset;
-  const FaceAsset* other = work.reference ? &work.reference->asset() : nullptr;
-  if (screen.reference_of != other)
-    screen.reference_scene = other ? std::make_unique<SceneStore>(*other, *work.rig->rig, nullptr) : nullptr;
-  screen.reference_of = other;
-}
-
 /// The quality at which the window itself draws; pictures that take longer than a tenth of a second are left
 /// to the thread for stills.
 FacePicture::Care care_for(const Screen& screen, bool has_changed) {
@@ -69,37 +58,45 @@ struct Pictured {
   bool is_divided = false;
 };
 
-Pictured pictured(Workspace& work, Screen& screen, bool is_careful) {
-  renew_scenes(work, screen);
+SceneOptions options_of(const Workspace& work, bool is_careful) {
   SceneOptions options;
   options.layers = work.settings.layers;
   options.has_round_fibres = is_careful;
   options.selected_muscle = work.selected_muscle;
   options.hidden_muscles = work.hidden_muscles;
   options.scale = 1e-3 * work.comparison.scale_mm;
+  return options;
+}
+
+Pictured pictured(Workspace& work, Screen& screen, bool is_careful) {
+  screen.face.renew(&*work.rig);
+  screen.reference.renew(work.is_divided() ? work.reference_rig() : nullptr);
+  SceneOptions options = options_of(work, is_careful);
   std::vector<std::vector<float>> distances;
-  const bool has_other = work.reference_frame || !work.reference_positions.empty();
-  if (has_other && work.comparison.has_heat) {
-    distances = distances_between(
-        *work.frame, work.reference_frame ? work.reference_frame->positions : work.reference_positions);
+  if (work.has_distances()) {
+    distances = distances_between(*work.frame, work.reference_frame->positions);
     options.distances = &distances;
   }
+  options.skull_shift = work.skull_shift.get();
   Pictured result;
-  result.face = screen.scene->list(*work.frame, options);
-  if (!has_other || !work.comparison.is_side_by_side) return result;
-  result.is_divided = true;
-  options.distances = nullptr;
-  if (work.reference_frame && screen.reference_scene) {
-    result.reference = screen.reference_scene->list(*work.reference_frame, options);
-    return result;
-  }
-  FaceFrame still = *work.frame;
-  for (size_t part = 0; part < still.positions.size(); ++part)
-    if (part < work.reference_positions.size() &&
-        work.reference_positions[part].size() == still.positions[part].size())
-      still.positions[part] = work.reference_positions[part];
-  result.reference = screen.scene->list(still, options);
+  result.face = screen.face.scene->list(*work.frame, options);
+  // Hairs finer than a pixel would be dots; the renderer leaves them out of its own copy of the list.
+  if (!is_careful)
+    std::erase_if(result.face.surfaces, [](const view::DrawSurface& surface) { return surface.is_fine; });
+  result.is_divided = screen.reference.scene != nullptr;
+  if (!result.is_divided) return result;
+  SceneOptions other = options_of(work, is_careful);
+  // A scan or a sculpt has no anatomy.
+  if (work.comparison.reference == Reference::file) other.layers = Layers();
+  result.reference = screen.reference.scene->list(*work.reference_frame, other);
   return result;
+}
+
+/// The camera of the reference when the face is seen by `camera`.
+view::Camera beside(const Workspace& work, const view::Camera& camera) {
+  view::Camera other = work.reference_camera();
+  other.yaw = camera.yaw;
+  return other;
 }
 
 /// Orders the picture with everything, and shows it when it comes and is still wanted.
@@ -113,12 +110,22 @@ void renew_still(Workspace& work, Screen& screen, const std::string& key, const 
   }
   if (screen.since_motion < calm || screen.stills.ordered() == key) return;
   Pictured shown = pictured(work, screen, true);
-  if (shown.is_divided) return;
-  screen.stills.order(
-      {key, std::move(shown.face), camera, look_of(work), screen.picture.width(), screen.picture.height()});
+  StillRenderer::Order order{key, {}, look_of(work), screen.picture.width(), screen.picture.height()};
+  if (shown.is_divided) order.shots.push_back({std::move(shown.reference), beside(work, camera)});
+  order.shots.push_back({std::move(shown.face), camera});
+  screen.stills.order(std::move(order));
 }
 
 }  // namespace
+
+void ShownFace::renew(const LoadedRig* loaded) {
+  if (asset == (loaded ? loaded->asset : nullptr)) return;
+  scene.reset();
+  asset = loaded ? loaded->asset : nullptr;
+  rig = loaded ? loaded->rig : nullptr;
+  appearance = loaded ? loaded->appearance : nullptr;
+  if (asset) scene = std::make_unique<SceneStore>(*asset, *rig, appearance.get());
+}
 
 void renew_picture(Workspace& work, Screen& screen, const Area& area) {
   view::Camera camera = work.orbit.camera();
@@ -135,9 +142,10 @@ void renew_picture(Workspace& work, Screen& screen, const Area& area) {
   const ImVec2 pixels = ImGui::GetIO().DisplayFramebufferScale;
   const int width = static_cast<int>(area.width * pixels.x);
   screen.picture.resize(width, static_cast<int>(area.height * pixels.y));
+  if (!screen.is_scripted && screen.picture.warm_up()) return;
   const Pictured shown = pictured(work, screen, care == FacePicture::Care::full);
   if (shown.is_divided) {
-    screen.picture.draw(shown.reference, camera, look_of(work), care, 0, width / 2);
+    screen.picture.draw(shown.reference, beside(work, camera), look_of(work), care, 0, width / 2);
     screen.picture.draw(shown.face, camera, look_of(work), care, width / 2, width - width / 2);
   } else {
     screen.picture.draw(shown.face, camera, look_of(work), care, 0, width);

@@ -182,7 +182,7 @@ void show_pose_panel(Workspace& work, Screen& screen) {
   ImGui::SameLine(width - scaled(74) + ImGui::GetStyle().WindowPadding.x);
   if (ui::button("Neutral", ui::Emphasis::plain, scaled(74))) work.clear_pose();
   ImGui::Dummy({0, scaled(2)});
-  ImGui::BeginChild("##values", {0, 0});
+  ImGui::BeginChild("##values", {0, list_height(0.0F)});
   const float inner = ImGui::GetContentRegionAvail().x - scaled(12);
   std::string group;
   int shown = 0;

@@ -21,13 +21,23 @@ struct Area {
 
 enum class Tool { turn, pull };
 
+/// A rig that is drawn: it is held as long as its scene.
+struct ShownFace {
+  std::shared_ptr<const FaceAsset> asset;
+  std::shared_ptr<const rig::Rig> rig;
+  std::shared_ptr<const view::Appearance> appearance;
+  std::unique_ptr<SceneStore> scene;
+
+  /// Makes the scene anew when it is of another rig; none when there is none.
+  void renew(const LoadedRig* loaded);
+};
+
 /// What the window itself holds: nothing that undo would bring back.
 struct Screen {
   FileBrowser browser;
   FacePicture picture;
   StillRenderer stills;
-  std::unique_ptr<SceneStore> scene, reference_scene;
-  const FaceAsset *scene_of = nullptr, *reference_of = nullptr;
+  ShownFace face, reference;
 
   Tool tool = Tool::turn;
   std::string pose_search, landmark_search, muscle_search;
@@ -74,11 +84,19 @@ void show_compare_panel(Workspace& work, Screen& screen);
 void show_live_panel(Workspace& work, Screen& screen);
 void show_export_panel(Workspace& work, Screen& screen);
 
-/// Begins and ends a part of the window that stays where it is.
-void begin_area(const char* name, const Area& area, const ImVec4& background, ImVec2 padding);
+/// Begins and ends a part of the window that stays where it is. What may not fit into a small window can
+/// scroll.
+enum class Scroll { no, down };
+void begin_area(const char* name, const Area& area, const ImVec4& background, ImVec2 padding,
+                Scroll scroll = Scroll::no);
 void end_area();
 
+/// The height of a list that leaves `foot` below it, and of a small window enough to show some lines: then
+/// the panel scrolls.
+float list_height(float foot);
+
 // The commands that keys and buttons share.
+const std::vector<std::string>& mesh_endings();
 void ask_to_open(Workspace& work, Screen& screen);
 void ask_for_take(Workspace& work, Screen& screen);
 void ask_to_save_rig(Workspace& work, Screen& screen);
@@ -94,7 +112,7 @@ const std::vector<KeyHelp>& keyboard_map();
 /// The colour of a landmark by how sure the builder is of it, or by the hand that put it.
 ImVec4 landmark_colour(const Workspace& work, const rig::Landmark& landmark);
 
-/// The command that makes the present pose.
-std::string present_command(const Workspace& work);
+/// The part of the viewport that shows the face: its right half where the reference is beside it.
+Area face_area(const Workspace& work, const Area& viewport);
 
 }  // namespace fascia::app

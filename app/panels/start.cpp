@@ -58,6 +58,21 @@ void show_recent(Workspace& work, float width) {
   if (!opened.empty()) work.open(opened);
 }
 
+/// The document of a window that crashed, to go on with or to give up.
+void show_left_behind(Workspace& work, float left, float width) {
+  ImGui::Dummy({0, scaled(6)});
+  const std::string name = std::filesystem::path(work.left_behind()->head).filename().string();
+  ImGui::SetCursorPosX(left);
+  const float other = scaled(90);
+  const bool goes_on = ui::button("Go on with " + name + ", where it ended last time", ui::Emphasis::plain,
+                                  width - other - scaled(8));
+  ImGui::SameLine(0, scaled(8));
+  const bool gives_up = ui::button("Discard##left behind", ui::Emphasis::quiet, other);
+  ui::tooltip("Removes what the window that crashed had saved");
+  if (goes_on) work.restore();
+  if (gives_up) work.forget_left_behind();
+}
+
 }  // namespace
 
 void show_start(Workspace& work, Screen& screen, const Area& area) {
@@ -85,17 +100,7 @@ void show_start(Workspace& work, Screen& screen, const Area& area) {
   ImGui::SameLine(0, scaled(24));
   if (ui::button("Try the embedded head", ui::Emphasis::plain, scaled(160))) work.open_embedded_head();
   ImGui::SetCursorPosY(drop.y - area.y + height + scaled(6));
-  if (work.left_behind && !work.left_behind->head.empty()) {
-    ImGui::Dummy({0, scaled(6)});
-    const std::string text = "Go on with " +
-                             std::filesystem::path(work.left_behind->head).filename().string() +
-                             ", where it ended last time";
-    ImGui::SetCursorPosX(left);
-    if (ui::button(text, ui::Emphasis::plain, width)) {
-      const DocumentState state = *std::exchange(work.left_behind, std::nullopt);
-      work.restore(state);
-    }
-  }
+  if (work.left_behind()) show_left_behind(work, left, width);
   show_recent(work, width);
   end_area();
 }

@@ -91,6 +91,23 @@ void show_track(Workspace& work, float width, float height) {
                           {head, at.y + scaled(4)}, colour_of(p.text));
 }
 
+/// Gravity, the head's shake, recordings: in a row, or one below the other.
+void show_motion(Workspace& work, Screen& screen, bool is_column) {
+  const char* const gravities[] = {"Upright", "Lying", "Face down", "Upside down"};
+  int gravity = static_cast<int>(work.gravity);
+  ImGui::SetNextItemWidth(scaled(120));
+  if (ImGui::Combo("##gravity", &gravity, gravities, 4)) work.gravity = static_cast<Gravity>(gravity);
+  ui::tooltip("Which way gravity pulls the face");
+  ui::note("Gravity");
+  if (!is_column) ImGui::SameLine();
+  if (ui::button("Shake head")) work.shake_head();
+  if (!is_column) ImGui::SameLine();
+  if (ui::button("Load take")) {
+    ask_for_take(work, screen);
+    if (is_column) ImGui::CloseCurrentPopup();
+  }
+}
+
 }  // namespace
 
 void show_timeline(Workspace& work, Screen& screen, const Area& area) {
@@ -127,23 +144,21 @@ void show_timeline(Workspace& work, Screen& screen, const Area& area) {
     ImGui::TextColored(p.faint, "%s",
                        ui::shortened(work.take->file().filename().string(), scaled(220)).c_str());
   } else {
-    ImGui::TextColored(
-        p.faint, "%s",
-        ui::shortened("Drop a recording here: CSV, JSON or GLB", area.width - scaled(540)).c_str());
+    ImGui::TextColored(p.faint, "%s",
+                       ui::shortened("Drop a recording here: CSV, JSON or GLB",
+                                     area.width - scaled(area.width > scaled(640) ? 540.0F : 210.0F))
+                           .c_str());
   }
-  const bool is_wide = area.width > scaled(640);
-  if (is_wide) {
+  if (area.width > scaled(640)) {
     ImGui::SameLine(area.width - scaled(346));
-    const char* const gravities[] = {"Upright", "Lying", "Face down", "Upside down"};
-    int gravity = static_cast<int>(work.gravity);
-    ImGui::SetNextItemWidth(scaled(120));
-    if (ImGui::Combo("##gravity", &gravity, gravities, 4)) work.gravity = static_cast<Gravity>(gravity);
-    ui::tooltip("Which way gravity pulls the face");
-    ui::note("Gravity");
-    ImGui::SameLine();
-    if (ui::button("Shake head")) work.shake_head();
-    ImGui::SameLine();
-    if (ui::button("Load take")) ask_for_take(work, screen);
+    show_motion(work, screen, false);
+  } else {
+    ImGui::SameLine(area.width - scaled(72));
+    if (ui::button("More")) ImGui::OpenPopup("##motion");
+    if (ImGui::BeginPopup("##motion")) {
+      show_motion(work, screen, true);
+      ImGui::EndPopup();
+    }
   }
   if (has_take) show_track(work, area.width - scaled(28), scaled(30));
   end_area();

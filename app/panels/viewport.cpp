@@ -15,6 +15,7 @@ ImVec2 on_screen(const Area& area, const Vec3& pixel) {
   return {area.x + static_cast<float>(pixel[0]), area.y + static_cast<float>(pixel[1])};
 }
 
+/// The ray under the mouse; `area` is that of the face.
 Ray ray_under(const Workspace& work, const Area& area, ImVec2 mouse) {
   return work.orbit.ray(static_cast<double>(mouse.x - area.x), static_cast<double>(mouse.y - area.y),
                         static_cast<double>(area.width), static_cast<double>(area.height));
@@ -25,6 +26,13 @@ bool shows_landmarks(const Workspace& work) {
 }
 
 // --- Landmarks
+
+/// What of the skin is under the mouse; nothing beside the face's own part of the picture.
+std::optional<SkinHit> skin_under(const Workspace& work, const Area& area) {
+  const ImVec2 mouse = ImGui::GetIO().MousePos;
+  if (!area.holds(mouse)) return std::nullopt;
+  return pick_skin(*work.rig->asset, *work.frame, ray_under(work, area, mouse));
+}
 
 /// A landmark that faces the camera, as it stands on the screen.
 struct PlacedLandmark {
@@ -90,7 +98,7 @@ void begin_press(Workspace& work, Screen& screen, const Area& area) {
     return;
   }
   if ((screen.tool == Tool::pull) != io.KeyShift) {
-    if (const auto hit = pick_skin(*work.rig->asset, *work.frame, ray_under(work, area, io.MousePos))) {
+    if (const auto hit = skin_under(work, area)) {
       work.poke(*hit);
       return;
     }
@@ -105,8 +113,7 @@ void move_press(Workspace& work, Screen& screen, const Area& area) {
     screen.has_moved = true;
   if (!screen.has_moved) return;
   if (!screen.dragged_landmark.empty()) {
-    if (const auto hit = pick_skin(*work.rig->asset, *work.frame, ray_under(work, area, io.MousePos)))
-      work.move_landmark(screen.dragged_landmark, hit->rest, true);
+    if (const auto hit = skin_under(work, area)) work.move_landmark(screen.dragged_landmark, hit->rest, true);
   } else if (work.held()) {
     // The hand moves in the plane of the screen through where it took hold.
     const Poke& held = *work.held();
@@ -122,7 +129,7 @@ void move_press(Workspace& work, Screen& screen, const Area& area) {
 /// A press without a motion chooses the muscle under the mouse.
 void click(Workspace& work, Screen& screen, const Area& area) {
   if (!work.settings.layers.muscles && work.settings.panel != "muscles") return;
-  const auto hit = pick_skin(*work.rig->asset, *work.frame, ray_under(work, area, ImGui::GetIO().MousePos));
+  const auto hit = skin_under(work, area);
   const double reach = 0.012;  // metres from the skin to the deepest mimic muscle
   const auto fibre = hit ? pick_fibre(*work.rig->asset, *work.frame, hit->position, reach, {}) : std::nullopt;
   work.selected_muscle = fibre ? work.rig->asset->fibre_muscles[*fibre] : "";
@@ -143,8 +150,7 @@ void use_mouse(Workspace& work, Screen& screen, const Area& area, bool is_hovere
     work.orbit.zoom(std::pow(0.88, static_cast<double>(io.MouseWheel)));
   if (is_hovered && ImGui::IsMouseClicked(0)) begin_press(work, screen, area);
   if (is_hovered && ImGui::IsMouseDoubleClicked(0) && screen.hovered_landmark.empty())
-    if (const auto hit = pick_skin(*work.rig->asset, *work.frame, ray_under(work, area, io.MousePos)))
-      work.orbit.look_at(hit->position, Vec3::Zero(), 0.4);
+    if (const auto hit = skin_under(work, area)) work.orbit.look_at(hit->position, Vec3::Zero(), 0.4);
   const bool is_pressed = screen.is_turning || !screen.dragged_landmark.empty() || work.held();
   if (is_pressed && io.MouseDown[0]) move_press(work, screen, area);
   if (is_pressed && !io.MouseDown[0]) end_press(work, screen, area);
@@ -197,11 +203,22 @@ void show_views(Workspace& work, Screen& screen, const Area& area) {
   const char* const views[] = {"Front", "Left", "Right", "Three-quarter", "Below"};
   const char* const names[] = {"front", "left", "right", "three-quarter", "below"};
   int chosen = -1;
-  const float width = std::min(scaled(400), area.width - scaled(240));
-  if (width > scaled(200)) {
-    ImGui::SetCursorScreenPos({area.x + scaled(14), area.y + area.height - scaled(44)});
-    if (ui::choice("view", views, 5, chosen, width)) work.orbit.go_to(names[chosen]);
+  const float width = std::min(scaled(400), area.width - scaled(200));
+  ImGui::SetCursorScreenPos({area.x + scaled(14), area.y + area.height - scaled(44)});
+  if (width > scaled(330)) {
+    ui::choice("view", views, 5, chosen, width);
+  } else {
+    // No room for all of them side by side.
+    if (ui::button("View", ui::Emphasis::plain, scaled(64))) ImGui::OpenPopup("##views");
+    if (ImGui::BeginPopup("##views")) {
+      for (int i = 0; i < 5; ++i) {
+        if (ImGui::Selectable(views[i])) chosen = i;
+        ui::note(views[i]);
+      }
+      ImGui::EndPopup();
+    }
   }
+  if (chosen >= 0) work.orbit.go_to(names[chosen]);
   const char* const tools[] = {"Turn", "Pull"};
   int tool = screen.tool == Tool::pull ? 1 : 0;
   ImGui::SetCursorScreenPos({area.x + area.width - scaled(154), area.y + area.height - scaled(44)});
@@ -209,13 +226,22 @@ void show_views(Workspace& work, Screen& screen, const Area& area) {
 }
 
 void show_legend(const Workspace& work, const Area& area) {
-  const bool has_distances =
-      work.comparison.has_heat && (work.reference_frame || !work.reference_positions.empty());
+  const bool has_distances = work.has_distances();
   if (!has_distances && !work.settings.layers.strain) return;
   ImDrawList* list = ImGui::GetWindowDrawList();
-  const float width = scaled(14), height = scaled(180);
-  const float x = area.x + area.width - scaled(64), y = area.y + 0.5F * (area.height - height);
-  list->AddRectFilled({x - scaled(12), y - scaled(28)}, {x + scaled(54), y + height + scaled(14)},
+  ImGui::PushFont(fonts().small);
+  const double most = has_distances ? work.comparison.scale_mm : 30.0;
+  const char* title = has_distances ? "mm" : "% shorter";
+  char marks[3][16];
+  const float width = scaled(14), height = scaled(180), gap = scaled(5);
+  float widest = ImGui::CalcTextSize(title).x - width - gap;
+  for (int i = 0; i <= 2; ++i) {
+    std::snprintf(marks[i], sizeof marks[i], "%.3g", 0.5 * i * most);
+    widest = std::max(widest, ImGui::CalcTextSize(marks[i]).x);
+  }
+  const float box = width + gap + widest, margin = scaled(12);
+  const float x = area.x + area.width - box - 2.0F * margin, y = area.y + 0.5F * (area.height - height);
+  list->AddRectFilled({x - margin, y - scaled(28)}, {x + box + margin, y + height + margin},
                       IM_COL32(20, 21, 24, 170), scaled(8));
   const int steps = 48;
   const auto shade = [](double share) {
@@ -228,16 +254,11 @@ void show_legend(const Workspace& work, const Area& area) {
                 to = y + height * static_cast<float>(i + 1) / steps;
     list->AddRectFilled({x, from}, {x + width, to + 0.5F}, shade(1.0 - (i + 0.5) / steps));
   }
-  ImGui::PushFont(fonts().small);
   const ImU32 white = IM_COL32(235, 233, 229, 255);
-  const double most = has_distances ? work.comparison.scale_mm : 30.0;
-  char text[16];
-  for (int i = 0; i <= 2; ++i) {
-    std::snprintf(text, sizeof text, "%.3g", 0.5 * i * most);
-    list->AddText({x + width + scaled(5), y + height * (1.0F - 0.5F * static_cast<float>(i)) - scaled(7)},
-                  white, text);
-  }
-  list->AddText({x - scaled(2), y - scaled(22)}, white, has_distances ? "mm" : "% shorter");
+  for (int i = 0; i <= 2; ++i)
+    list->AddText({x + width + gap, y + height * (1.0F - 0.5F * static_cast<float>(i)) - scaled(7)}, white,
+                  marks[i]);
+  list->AddText({x, y - scaled(22)}, white, title);
   ImGui::PopFont();
 }
 
@@ -264,26 +285,39 @@ ImVec4 landmark_colour(const Workspace& work, const rig::Landmark& landmark) {
   return landmark.confidence > sure ? p.good : landmark.confidence > doubtful ? p.warning : p.bad;
 }
 
+Area face_area(const Workspace& work, const Area& viewport) {
+  if (!work.is_divided()) return viewport;
+  const float scale = ImGui::GetIO().DisplayFramebufferScale.x;
+  // As the picture is divided, in whole pixels.
+  const float left = std::floor(0.5F * std::floor(viewport.width * scale)) / scale;
+  return {viewport.x + left, viewport.y, viewport.width - left, viewport.height};
+}
+
 void show_viewport(Workspace& work, Screen& screen, const Area& area) {
   screen.viewport = area;
   begin_area("##viewport", area, palette().viewport, {0, 0});
   if (work.rig && work.frame && area.width > 8 && area.height > 8) {
     renew_picture(work, screen, area);
     ImDrawList* list = ImGui::GetWindowDrawList();
-    list->AddImage(reinterpret_cast<ImTextureID>(static_cast<uintptr_t>(screen.picture.texture())),
-                   {area.x, area.y}, {area.x + area.width, area.y + area.height}, {0, 1}, {1, 0});
+    if (!screen.picture_key.empty())
+      list->AddImage(reinterpret_cast<ImTextureID>(static_cast<uintptr_t>(screen.picture.texture())),
+                     {area.x, area.y}, {area.x + area.width, area.y + area.height}, {0, 1}, {1, 0});
     ImGui::SetCursorScreenPos({area.x, area.y});
     ImGui::SetNextItemWidth(area.width);
-    if (shows_landmarks(work) && !work.comparison.is_side_by_side)
-      draw_landmarks(work, screen, area, placed_landmarks(work, area));
-    else
+    const Area face = face_area(work, area);
+    if (shows_landmarks(work)) {
+      list->PushClipRect({face.x, face.y}, {face.x + face.width, face.y + face.height}, true);
+      draw_landmarks(work, screen, face, placed_landmarks(work, face));
+      list->PopClipRect();
+    } else {
       screen.hovered_landmark.clear();
+    }
     show_legend(work, area);
     show_muscle_name(work, area);
     show_layer_chips(work, area);
     show_views(work, screen, area);
     const bool is_over_item = ImGui::IsAnyItemHovered() || ImGui::IsAnyItemActive();
-    use_mouse(work, screen, area, ImGui::IsWindowHovered() && !is_over_item);
+    use_mouse(work, screen, face, ImGui::IsWindowHovered() && !is_over_item);
   }
   end_area();
 }

@@ -44,12 +44,26 @@ void FacePicture::resize(int width, int height) {
   if (!is_complete) throw Error("a window of this size is too large for OpenGL here: make it smaller");
 }
 
+/// Where even the plainest picture is too slow to follow the hand, it is drawn with fewer pixels.
+double FacePicture::motion_resolution() {
+  const double passed = milliseconds_[static_cast<int>(Care::quick)];
+  const double fluid = 15.0, slow = 30.0, slowest = 60.0;  // milliseconds
+  if (passed > slowest)
+    resolution_ = 0.5;
+  else if (passed > slow)
+    resolution_ = std::min(resolution_, 0.75);
+  else if (passed < fluid)
+    resolution_ = 1.0;
+  return resolution_;
+}
+
 void FacePicture::draw(const view::DrawList& list, const view::Camera& camera, view::Look look, Care care,
                        int x, int columns) {
   const auto started = std::chrono::steady_clock::now();
-  look.has_shadows = care != Care::quick;
+  look.has_shadows = look.has_mirrors = care != Care::quick;
   look.has_occlusion = care == Care::full;
-  look.samples = care == Care::full ? 8 : 2;
+  if (care == Care::quick) look.resolution = motion_resolution();
+  look.samples = care == Care::full ? 8 : care == Care::good ? 2 : 1;
   renderer_.draw(list, camera, {framebuffer_, x, 0, std::max(columns, 1), height_}, look);
   // The time counts when the picture is there, not when it is ordered.
   glFinish();
@@ -58,6 +72,30 @@ void FacePicture::draw(const view::DrawList& list, const view::Camera& camera, v
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - started).count();
   double& mean = milliseconds_[static_cast<int>(care)];
   mean = mean == 0.0 ? passed : 0.8 * mean + 0.2 * passed;
+}
+
+bool FacePicture::warm_up() {
+  using view::Shading;
+  static constexpr Shading all[] = {Shading::plain, Shading::skin, Shading::eye,  Shading::mucosa,
+                                    Shading::tooth, Shading::hair, Shading::bone, Shading::muscle,
+                                    Shading::xray,  Shading::data};
+  if (warmed_up_ == std::size(all)) return false;
+  // With maps, as a driver may make other programs of those without.
+  static const auto grey =
+      std::make_shared<const view::Texture>(view::Texture{2, 2, std::vector<uint8_t>(16, 128), true});
+  view::DrawList list;
+  view::DrawSurface& surface = list.surfaces.emplace_back();
+  surface.positions = {Vec3(-0.1, -0.1, 0), Vec3(0.1, -0.1, 0), Vec3(0, 0.1, 0)};
+  surface.uvs = {Vec2(0, 0), Vec2(1, 0), Vec2(0, 1)};
+  surface.triangles = {{0, 1, 2}};
+  surface.shading = all[warmed_up_++];
+  surface.colour_map = surface.normal_map = surface.surface_map = grey;
+  view::Camera camera;
+  camera.distance = 0.5;
+  resize(std::max(width_, 64), std::max(height_, 64));
+  draw(list, camera, view::Look(), Care::quick, 0, width_);
+  milliseconds_[static_cast<int>(Care::quick)] = 0.0;
+  return true;
 }
 
 void FacePicture::show(const view::Image& image) {

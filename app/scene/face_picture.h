@@ -21,7 +21,7 @@ class FacePicture {
   FacePicture& operator=(const FacePicture&) = delete;
 
   enum class Care {
-    quick,  ///< without shadows and occlusion
+    quick,  ///< one sample a pixel, without shadows and occlusion
     good,   ///< with shadows
     full    ///< everything
   };
@@ -31,6 +31,10 @@ class FacePicture {
   /// Draws into the rectangle from (x, 0) on, `columns` wide, over the whole height.
   void draw(const view::DrawList& list, const view::Camera& camera, view::Look look, Care care, int x,
             int columns);
+
+  /// Compiles one more of the programs that pictures need, a frame each, so that the first picture does not
+  /// wait for all of them. False when there are all.
+  bool warm_up();
 
   /// Puts a picture of the texture's size in its place.
   void show(const view::Image& image);
@@ -42,10 +46,13 @@ class FacePicture {
   int height() const { return height_; }
 
  private:
+  double motion_resolution();
   view::SceneRenderer renderer_;
   unsigned framebuffer_ = 0, texture_ = 0, depth_ = 0;
   int width_ = 0, height_ = 0;
   double milliseconds_[3] = {0.0, 0.0, 0.0};
+  size_t warmed_up_ = 0;
+  double resolution_ = 1.0;  ///< of pictures in motion
 };
 
 /// The pixels of a rectangle of the framebuffer that is bound, from its lower left corner.

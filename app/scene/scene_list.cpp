@@ -106,7 +106,7 @@ Vec3 muscle_colour(double activation) {
 }
 
 SceneStore::SceneStore(const FaceAsset& asset, const rig::Rig& rig, const view::Appearance* appearance)
-    : asset_(asset), rig_(rig) {
+    : asset_(asset) {
   if (appearance && std::any_of(asset.parts.begin(), asset.parts.end(), [&](const FacePart& part) {
         return appearance->of(part.mesh, part.primitive).has_material;
       })) {
@@ -130,6 +130,7 @@ SceneStore::SceneStore(const FaceAsset& asset, const rig::Rig& rig, const view::
     rest.insert(rest.end(), points.begin(), points.end());
   }
   skin_seams_ = std::make_shared<const std::vector<int>>(view::seams_of(rest));
+  moving_.emplace(rig, std::move(rest));
 }
 
 /// Colours of data take the place of the head's own, and skin of glass has none.
@@ -250,30 +251,62 @@ void SceneStore::add_lattice(view::DrawList& list, const FaceFrame& frame, const
   if (layers.lattice) view::add_lattice(lattice, list);
 }
 
+std::vector<Vec3> SceneStore::skin_of(const FaceFrame& frame) const {
+  std::vector<Vec3> skin;
+  for (const size_t part : skin_parts_) {
+    const std::vector<Vec3> points = points_of(frame.positions[part]);
+    skin.insert(skin.end(), points.begin(), points.end());
+  }
+  return skin;
+}
+
+void SceneStore::add_bones(view::DrawList& list, const FaceFrame& frame, const SkullShift* shift) const {
+  const Mat4 still = Mat4::Identity(), jaw = frame.jaw.cast<double>();
+  const auto add = [&](FaceSurface bone, std::vector<Vec3> SkullShift::*by, const Mat4& place,
+                       view::Shading shading, const Vec3& colour) {
+    if (shift && (shift->*by).size() == bone.positions.size())
+      for (size_t v = 0; v < bone.positions.size(); ++v)
+        bone.positions[v] += (shift->*by)[v];
+    add_surface(list, bone, place, shading, colour, 1.0);
+  };
+  add(asset_.cranium, &SkullShift::cranium, still, view::Shading::bone, bone_colour);
+  add(asset_.mandible, &SkullShift::mandible, jaw, view::Shading::bone, bone_colour);
+  add(asset_.teeth_upper, &SkullShift::teeth_upper, still, view::Shading::tooth, tooth_colour);
+  add(asset_.teeth_lower, &SkullShift::teeth_lower, jaw, view::Shading::tooth, tooth_colour);
+}
+
+/// The SMAS and its ligaments, as far as the face has carried them.
+void SceneStore::add_sheets(view::DrawList& list, const FaceFrame& frame, const Layers& layers) const {
+  if (layers.smas) {
+    FaceSurface smas = asset_.smas;
+    std::vector<Vec3> moved =
+        moving_->smas({asset_.lattice_columns, points_of(frame.nodes), asset_.lattice_prisms});
+    if (moved.size() == smas.positions.size()) smas.positions = std::move(moved);
+    add_surface(list, smas, Mat4::Identity(), view::Shading::mucosa, smas_colour,
+                layers.muscles || layers.skull ? 0.5 : 1.0);
+  }
+  if (layers.ligaments)
+    view::add_ligaments(moving_->ligaments(skin_of(frame), frame.jaw.cast<double>()), list);
+}
+
 view::DrawList SceneStore::list(const FaceFrame& frame, const SceneOptions& options) const {
   view::DrawList list;
-  const Mat4 still = Mat4::Identity(), jaw = frame.jaw.cast<double>();
   const Layers& layers = options.layers;
   const bool is_own = is_painted(options);
   if (is_own) add_painted(list, frame);
   for (size_t part = 0; part < asset_.parts.size() && !is_own; ++part) {
     const std::string& kind = asset_.parts[part].part;
     if (is_skin(kind) || is_card(kind)) continue;
+    // What lines the mouth would hide the teeth and the bone behind glass.
+    const bool is_lining = starts_with(kind, "gums") || kind == "mouth_interior";
+    if (is_lining && layers.has_depth() && layers.skin_opacity < 0.999) continue;
     if (layers.skin || is_eye(kind)) add_part(list, part, frame);
   }
   if (layers.skin && !is_own && !skin_parts_.empty()) add_skin(list, frame, options);
-  if (layers.skull) {
-    add_surface(list, asset_.cranium, still, view::Shading::bone, bone_colour, 1.0);
-    add_surface(list, asset_.mandible, jaw, view::Shading::bone, bone_colour, 1.0);
-    add_surface(list, asset_.teeth_upper, still, view::Shading::tooth, tooth_colour, 1.0);
-    add_surface(list, asset_.teeth_lower, jaw, view::Shading::tooth, tooth_colour, 1.0);
-  }
-  if (layers.smas)
-    add_surface(list, asset_.smas, still, view::Shading::mucosa, smas_colour,
-                layers.muscles || layers.skull ? 0.5 : 1.0);
+  if (layers.skull) add_bones(list, frame, options.skull_shift);
+  add_sheets(list, frame, layers);
   if (layers.muscles && options.has_round_fibres) add_flesh(list, frame, options);
   if (layers.muscles && !options.has_round_fibres) add_fibre_lines(list, frame, options);
-  if (layers.ligaments) view::add_ligaments(rig_.smas, list);
   add_lattice(list, frame, layers);
   return list;
 }

@@ -7,9 +7,11 @@
 #include <vector>
 
 #include "app/engine/face_session.h"
+#include "app/engine/live_skull.h"
 #include "app/model/settings.h"
 #include "rig/model/rig.h"
 #include "view/face/face_scene.h"
+#include "view/face/moving_anatomy.h"
 #include "view/scene.h"
 
 namespace fascia::app {
@@ -22,7 +24,8 @@ struct SceneOptions {
   std::set<std::string> hidden_muscles;  ///< by the name of the muscle
   /// Distances to colour the skin by, metres, one list a part; empty: as skin.
   const std::vector<std::vector<float>>* distances = nullptr;
-  double scale = 0.005;  ///< metres at the hot end
+  double scale = 0.005;                     ///< metres at the hot end
+  const SkullShift* skull_shift = nullptr;  ///< of the bones from where the rig has them; null: none
 };
 
 /// Colour of a share from 0 to 1 of the heat map, sRGB: the figures of matplotlib's "inferno", lightened at
@@ -56,15 +59,18 @@ class SceneStore {
   void add_fibre_lines(view::DrawList& list, const FaceFrame& frame, const SceneOptions& options) const;
   void add_flesh(view::DrawList& list, const FaceFrame& frame, const SceneOptions& options) const;
   void add_lattice(view::DrawList& list, const FaceFrame& frame, const Layers& layers) const;
+  void add_bones(view::DrawList& list, const FaceFrame& frame, const SkullShift* shift) const;
+  void add_sheets(view::DrawList& list, const FaceFrame& frame, const Layers& layers) const;
+  std::vector<Vec3> skin_of(const FaceFrame& frame) const;
 
   const FaceAsset& asset_;
-  const rig::Rig& rig_;
   std::optional<view::FaceScene> painted_;          ///< where the file gives any part a look of its own
   std::vector<std::vector<Vec3>> eye_coordinates_;  ///< one list a part
   /// The parts that are skin as one surface: groups of a file share their borders' normals.
   std::vector<size_t> skin_parts_;
   std::vector<Triangle> skin_triangles_;
   std::shared_ptr<const std::vector<int>> skin_seams_;
+  std::optional<view::MovingAnatomy> moving_;
 };
 
 /// Distance of every vertex of `frame` from `reference`, metres, one list a part; of parts whose counts

@@ -1,5 +1,6 @@
 #include "app/scene/still_renderer.h"
 
+#include <algorithm>
 #include <exception>
 #include <utility>
 
@@ -47,13 +48,20 @@ void StillRenderer::run() {
       order = *std::exchange(next_, std::nullopt);
     }
     try {
-      if (!renderer || order.width != width || order.height != height) {
+      const int count = static_cast<int>(order.shots.size()), part = order.width / std::max(count, 1);
+      // The last one has the odd pixel, and the others are drawn that wide too.
+      const int widest = order.width - (count - 1) * part;
+      if (!renderer || widest != width || order.height != height) {
         renderer.reset();
-        renderer = std::make_unique<view::Renderer>(order.width, order.height);
-        width = order.width;
+        renderer = std::make_unique<view::Renderer>(widest, order.height);
+        width = widest;
         height = order.height;
       }
-      Picture picture{std::move(order.key), renderer->draw_with(order.list, order.camera, order.look)};
+      Picture picture{std::move(order.key), view::Image(order.width, order.height, order.look.background)};
+      for (int i = 0; i < count; ++i) {
+        const Order::Shot& shot = order.shots[static_cast<size_t>(i)];
+        view::paste(picture.image, renderer->draw_with(shot.list, shot.camera, order.look), i * part, 0);
+      }
       const std::lock_guard<std::mutex> lock(mutex_);
       done_ = std::move(picture);
     } catch (const std::exception&) {

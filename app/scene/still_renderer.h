@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "view/renderer.h"
 
@@ -16,9 +17,13 @@ namespace fascia::app {
 class StillRenderer {
  public:
   struct Order {
+    /// One picture, or one for each half beside each other.
+    struct Shot {
+      view::DrawList list;
+      view::Camera camera;
+    };
     std::string key;  ///< what the picture is of
-    view::DrawList list;
-    view::Camera camera;
+    std::vector<Shot> shots;
     view::Look look;
     int width = 0, height = 0;
   };

@@ -84,20 +84,13 @@ void report_skull(const skull::FitResult& skull, BuildReport& report) {
   }
 }
 
-/// The given landmarks with the user's own in their place, all in the head file's units.
-formats::LandmarkFile with_edited_landmarks(const formats::Scene& scene, const formats::LandmarkFile& given,
-                                            const Edits& edits, const anatomy::GenericAnatomy& anatomy) {
-  if (edits.landmarks.empty()) return given;
+/// The landmarks that the user moved. Throws fascia::Error for one that is not known.
+formats::LandmarkFile edited_landmarks(const Edits& edits, const anatomy::GenericAnatomy& anatomy) {
   for (const auto& [name, point] : edits.landmarks)
     if (!anatomy.landmark(name))
       throw Error("'" + edits.file + "': there is no landmark '" + name +
                   "'; 'fascia export --part landmarks' lists them");
-  formats::LandmarkFile all = prepare::in_file_units(scene, given);
-  const formats::LandmarkFile own = prepare::in_file_units(scene, {edits.units, edits.landmarks});
-  for (const auto& [name, point] : own.points)
-    all.points[name] = point;
-  all.units = prepare::head_units;
-  return all;
+  return {edits.units, edits.landmarks};
 }
 
 void report_parts(const prepare::PreparedHead& head, BuildReport& report) {
@@ -118,13 +111,13 @@ BuildResult build_rig(const formats::Scene& scene, const formats::LandmarkFile& 
                       const anatomy::GenericAnatomy& generic, const BuildOptions& options) {
   const anatomy::GenericAnatomy anatomy = with_new_muscles(generic, options.edits);
   muscle_options(options.edits, anatomy, Mat4::Identity());  // wrong names are refused before the work begins
-  const formats::LandmarkFile by_hand = with_edited_landmarks(scene, given, options.edits, anatomy);
+  const formats::LandmarkFile edited = edited_landmarks(options.edits, anatomy);
   BuildResult result;
   BuildReport& report = result.report;
   Stages stages(options, report);
   openings::check(options.openings);
   FoundLandmarks found = stages.run("landmarks", [&] {
-    return find_landmarks(scene, by_hand, anatomy, options.prepare, false, options.for_each);
+    return find_landmarks_with_edits(scene, given, edited, anatomy, options.prepare, options.for_each);
   });
   prepare::PreparedHead& head = found.head;
   const SkinLandmarks& all_landmarks = found.landmarks;

@@ -24,6 +24,7 @@ struct FoundLandmarks {
       regions;  ///< of the vertices of `head.skin`; nothing when nothing was searched
   std::optional<spatial::MirrorPlane> mirror;  ///< between the face's sides, where these are alike
   double likeness = 1.0;            ///< how face-like what was found is, 0 to 1; 1 when nothing was searched
+  bool is_doubtful = false;         ///< what was found is unlike most faces
   bool is_inside_out = false;       ///< the file's triangles face inward; those of `head` were turned
   std::array<double, 3> seconds{};  ///< for finding the head, preparing it, placing the landmarks
   std::vector<std::string> warnings;
@@ -37,5 +38,13 @@ FoundLandmarks find_landmarks(const formats::Scene& scene, const formats::Landma
                               const anatomy::GenericAnatomy& anatomy,
                               const prepare::PrepareOptions& options = {}, bool with_regions = false,
                               const ForEach& for_each = {});
+
+/// The same, then the landmarks of `edited` are put where those points are: no other landmark moves. Where no
+/// face is found without them, or only a doubtful one, they help to find it, as given ones do.
+FoundLandmarks find_landmarks_with_edits(const formats::Scene& scene, const formats::LandmarkFile& given,
+                                         const formats::LandmarkFile& edited,
+                                         const anatomy::GenericAnatomy& anatomy,
+                                         const prepare::PrepareOptions& options = {},
+                                         const ForEach& for_each = {});
 
 }  // namespace fascia::rigging

@@ -242,6 +242,7 @@ FoundLandmarks find_landmarks(const formats::Scene& file, const formats::Landmar
       result.warnings.push_back(
           "the triangles of '" + scene.path.string() +
           "' face inward: they were taken as turned over; the file's own stay as they are");
+    result.is_doubtful = located.found->is_doubtful;
     if (located.found->is_doubtful) result.warnings.push_back(doubt(scene, given));
   }
   const double located_at = now();
@@ -265,6 +266,30 @@ FoundLandmarks find_landmarks(const formats::Scene& file, const formats::Landmar
   place_pupils(result, given);
   result.seconds = {located_at - started, prepared_at - located_at, now() - prepared_at};
   return result;
+}
+
+FoundLandmarks find_landmarks_with_edits(const formats::Scene& scene, const formats::LandmarkFile& given,
+                                         const formats::LandmarkFile& edited,
+                                         const anatomy::GenericAnatomy& anatomy,
+                                         const prepare::PrepareOptions& options, const ForEach& for_each) {
+  if (edited.points.empty()) return find_landmarks(scene, given, anatomy, options, false, for_each);
+  const formats::LandmarkFile own = prepare::in_file_units(scene, edited);
+  std::optional<FoundLandmarks> found;
+  try {
+    found = find_landmarks(scene, given, anatomy, options, false, for_each);
+  } catch (const Error&) {
+    // The edits are left to tell where the face is.
+  }
+  if (!found || found->is_doubtful) {
+    formats::LandmarkFile all = prepare::in_file_units(scene, given);
+    for (const auto& [name, p] : own.points)
+      all.points[name] = p;
+    all.units = prepare::head_units;
+    return find_landmarks(scene, all, anatomy, options, false, for_each);
+  }
+  for (const auto& [name, p] : own.points)
+    found->landmarks[name] = {transform_point(found->head.input_to_metres, p), 1.0, true};
+  return std::move(*found);
 }
 
 }  // namespace fascia::rigging

@@ -82,7 +82,7 @@ TEST(Document, EditsAreWhatTheBuilderReads) {
   set_muscle_present(state, "procerus_right", false);
   set_muscle_variant(state, "frontalis_lateral_left", "wide");
   const std::filesystem::path file = std::filesystem::temp_directory_path() / "fascia_app_edits.json";
-  write_edits_file(file, state);
+  write_edits_file(file, state.edits);
   const rigging::Edits edits = rigging::read_edits(file);
   EXPECT_EQ(edits.units, "mm");
   EXPECT_NEAR((edits.landmarks.at("cheilion_left") - Vec3(26.1, -35, 101.2)).norm(), 0.0, 1e-12);
@@ -143,7 +143,7 @@ TEST(CommandLine, IsWhatAShellTakes) {
   set_pose(state, "jaw_open", 0.5);
   EXPECT_EQ(shell_text(build_command(state, "", "rig.glb")),
             "fascia build '/tmp/it'\\''s a head.obj' -o rig.glb");
-  EXPECT_EQ(shell_text(pose_command(state, "rig.glb", "out.obj")),
+  EXPECT_EQ(shell_text(pose_command(state.pose, "rig.glb", "out.obj")),
             "fascia pose rig.glb --set jaw_open=0.5 -o out.obj");
   EXPECT_EQ(shell_text(play_command({"a.csv", 0.5, 2.0, true}, "rig.glb", 30, "o.glb")),
             "fascia play rig.glb --curves a.csv --fps 30 --from 0.5 --to 2 -o o.glb");
@@ -217,23 +217,6 @@ TEST(Settings, ComeBackAndNonsenseIsTakenAsDefault) {
   std::ofstream(folder / "view.json") << "nonsense";
   EXPECT_EQ(read_settings(folder / "view.json").panel, Settings().panel);
   std::filesystem::remove_all(folder);
-}
-
-TEST(Autosave, RemainsAfterACrashAndIsRemovedAfterARegularExit) {
-  const std::filesystem::path file = std::filesystem::temp_directory_path() / "fascia_app_autosave.json";
-  std::filesystem::remove(file);
-  DocumentState state;
-  state.head = "head.obj";
-  set_pose(state, "jaw_open", 0.5);
-  Autosave(file).keep(state);  // and the program ends here
-  Autosave next(file);
-  ASSERT_TRUE(next.left_behind());
-  EXPECT_TRUE(*next.left_behind() == state);
-  next.remove();
-  EXPECT_FALSE(Autosave(file).left_behind());
-  std::ofstream(file) << "{\"head\":";
-  EXPECT_FALSE(Autosave(file).left_behind());
-  std::filesystem::remove(file);
 }
 
 TEST(Layers, AreNamedAsTheToolNamesThem) {

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "cli/help.h"
+#include "cli/render_request.h"
+#include "geometry/error.h"
 
 namespace fascia::cli {
 namespace {
@@ -142,6 +144,24 @@ TEST(Options, HelpStatesEveryDefault) {
                            "(default: 3)", "--solver own|bullet", "(default: the finest)", "(default: arkit)",
                            "--keep, --no-keep", "(default: yes)", "--json"})
     EXPECT_NE(help.find(part), std::string::npos) << part << "\n" << help;
+}
+
+TEST(RenderCamera, LooksWhereItIsAsked) {
+  const Bounds box{Vec3(-0.1, -0.1, -0.1), Vec3(0.1, 0.1, 0.1)};
+  RenderRequest request;
+  request.look_at = "0.01,0.02,0.03,0.5";
+  request.camera = "20,-10";
+  for (const PictureSize size : {PictureSize{1600, 900}, PictureSize{450, 900}}) {
+    const view::Camera camera = camera_for("front", request, box, size);
+    EXPECT_LT((camera.target - Vec3(0.01, 0.02, 0.03)).norm(), 1e-12);
+    EXPECT_DOUBLE_EQ(camera.distance, 0.5);
+    EXPECT_DOUBLE_EQ(camera.yaw, 20.0);
+    EXPECT_DOUBLE_EQ(camera.pitch, -10.0);
+  }
+  for (const char* wrong : {"1,2,3", "0,0,0,-1", "0,0,0,0", "a,b,c,d", "1,2,3,4,5"}) {
+    request.look_at = wrong;
+    EXPECT_THROW(camera_for("front", request, box, {900, 900}), Error) << wrong;
+  }
 }
 
 }  // namespace

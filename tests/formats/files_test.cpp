@@ -1,4 +1,5 @@
 #include "formats/files.h"
+#include "formats/file_lock.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -8,6 +9,7 @@
 #include <csignal>
 #include <thread>
 
+#include "formats/file_lock.h"
 #include "formats/new_file.h"
 #include "formats/obj_lines.h"
 #include "formats/partial.h"
@@ -262,6 +264,22 @@ TEST(ObjLines, PlacesOfCoordinatesAreTheirBytes) {
   EXPECT_EQ(digits, "1|2.5|-3e1|4|5|6|");
   EXPECT_EQ(vertices[0].line, 2u);
   EXPECT_EQ(vertices[1].line, 3u);
+}
+
+TEST(FileLock, OneHoldsItUntilItIsLetGo) {
+  const auto file = std::filesystem::temp_directory_path() / "fascia_file_lock";
+  {
+    const FileLock first(file, FileLock::Wait::no);
+    EXPECT_TRUE(first.holds());
+    EXPECT_FALSE(FileLock(file, FileLock::Wait::no).holds());
+  }
+  FileLock second(file, FileLock::Wait::yes), none;
+  EXPECT_TRUE(second.holds());
+  none = std::move(second);
+  EXPECT_TRUE(none.holds());
+  EXPECT_FALSE(second.holds());
+  EXPECT_FALSE(FileLock("/nonexistent/folder/lock", FileLock::Wait::no).holds());
+  std::filesystem::remove(file);
 }
 
 }  // namespace

@@ -58,6 +58,34 @@ MadeHead made(const std::string& name, const Bend& bend) {
   return made_head(anatomy_of_tests(), name, bend);
 }
 
+TEST(AnyHead, AMovedLandmarkMovesNoOther) {
+  const MadeHead head = made("as it is", as_it_is);
+  const rigging::FoundLandmarks plain = rigging::find_landmarks(head.scene, {}, anatomy_of_tests());
+  const Vec3 shift(0.004, 0.003, 0.001);
+  const Vec3 moved = transform_point(plain.head.input_to_metres.inverse(),
+                                     Vec3(plain.landmarks.at("cheilion_left").position + shift));
+  const rigging::FoundLandmarks edited = rigging::find_landmarks_with_edits(
+      head.scene, {}, {prepare::head_units, {{"cheilion_left", moved}}}, anatomy_of_tests());
+  EXPECT_EQ(edited.head.input_to_metres, plain.head.input_to_metres);
+  ASSERT_EQ(edited.landmarks.size(), plain.landmarks.size());
+  for (const auto& [name, landmark] : plain.landmarks) {
+    const Vec3 apart = edited.landmarks.at(name).position - landmark.position;
+    if (name == "cheilion_left")
+      EXPECT_LT((apart - shift).norm(), 1e-9);
+    else
+      EXPECT_EQ(apart, Vec3(0, 0, 0)) << name;
+    EXPECT_EQ(edited.landmarks.at(name).is_given, name == "cheilion_left") << name;
+  }
+  // As a given landmark it leads the search instead, and the others follow.
+  const rigging::FoundLandmarks given = rigging::find_landmarks(
+      head.scene, {prepare::head_units, {{"cheilion_left", moved}}}, anatomy_of_tests());
+  double farthest = 0.0;
+  for (const auto& [name, landmark] : plain.landmarks)
+    if (name != "cheilion_left")
+      farthest = std::max(farthest, (given.landmarks.at(name).position - landmark.position).norm());
+  EXPECT_GT(farthest, 1e-4);
+}
+
 TEST(AnyHead, OfEveryProportion) {
   expect_found(made("child", as_child), 2.5, 6.0);
   // The farthest of elder and toon, the tip of a long nose, are what is reached: 7 and 10 are asked.

@@ -226,6 +226,29 @@ TEST(Scene, NoFrameShowsAroundTheSurfaces) {
   }
 }
 
+/// Pictures in motion: no passes of light, fewer pixels, but the same thing in the same place.
+TEST(Scene, APlainPictureOfFewerPixelsShowsTheSame) {
+  DrawList list;
+  list.surfaces = {sphere(0.05, Shading::plain)};
+  Look look;
+  look.samples = 1;
+  look.has_shadows = look.has_occlusion = look.has_mirrors = false;
+  look.background = {0, 0, 0};
+  const Image whole = renderer().draw_with(list, near_camera(), look);
+  look.resolution = 0.5;
+  const Image half = renderer().draw_with(list, near_camera(), look);
+  double apart = 0.0;
+  for (size_t i = 0; i < whole.pixels.size(); ++i)
+    apart += std::abs(whole.pixels[i] - half.pixels[i]);
+  EXPECT_GT(apart, 0.0);
+  EXPECT_LT(apart / static_cast<double>(whole.pixels.size()), 6.0);
+  // Unshadowed, as if the shadows were there and nothing stood in the light.
+  look.resolution = 1.0;
+  look.has_shadows = true;
+  const Image lit = renderer().draw_with(list, near_camera(), look);
+  EXPECT_NEAR(brightness(lit, size / 2, size / 2), brightness(whole, size / 2, size / 2), 12.0);
+}
+
 TEST(Scene, HairsFinerThanAPixelAreLeftOutBelowFourSamples) {
   DrawList none, list;
   list.surfaces = {square(0, 0.1)};

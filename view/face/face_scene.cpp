@@ -65,6 +65,13 @@ bool is_drawn(const std::string& part, const std::set<std::string>& layers) {
   return has_skin;
 }
 
+/// What of the head's own parts is drawn where its skin is glass: what lines the mouth would hide the teeth
+/// and the bone that carries them.
+bool shows_through_glass(const std::string& part) {
+  return !is_card(part) && part != "brows" && part != "other" && part != "mouth_interior" &&
+         !begins(part, "gums");
+}
+
 bool has_depth(const std::set<std::string>& layers) {
   return layers.count("skull") || layers.count("smas") || layers.count("muscles") || layers.count("teeth") ||
          layers.count("ligaments") || layers.count("fat") || layers.count("lattice");
@@ -165,7 +172,7 @@ Vec3 muscle_colour(const std::string& name) {
   return Vec3(channel(5.0), channel(3.0), channel(1.0));
 }
 
-void add_ligaments(const rig::Smas& smas, DrawList& list) {
+void add_ligaments(const std::vector<MovingAnatomy::Band>& ligaments, DrawList& list) {
   DrawSurface bands;
   bands.shading = Shading::bone;
   FibreTubeOptions options;
@@ -173,8 +180,8 @@ void add_ligaments(const rig::Smas& smas, DrawList& list) {
   options.has_tendons = false;
   options.thinnest = options.thickest = 0.0005;
   std::vector<std::vector<Vec3>> lines;
-  for (const rig::Ligament& ligament : smas.ligaments)
-    lines.push_back({ligament.bone.cast<double>(), ligament.skin.cast<double>()});
+  for (const MovingAnatomy::Band& ends : ligaments)
+    lines.push_back({ends[0], ends[1]});
   add_fibre_tubes(lines, options, bands);
   if (!bands.triangles.empty()) list.surfaces.push_back(std::move(bands));
 }
@@ -204,6 +211,20 @@ FaceScene::FaceScene(const rig::Rig& rig, std::vector<FacePart> parts, Appearanc
     triangles.push_back(parts_[m].triangles);
   }
   skin_normals_.emplace(rest, triangles);
+  std::vector<Vec3> skin;
+  for (const std::vector<Vec3>& part : rest)
+    skin.insert(skin.end(), part.begin(), part.end());
+  moving_.emplace(rig, std::move(skin));
+}
+
+/// The vertices of the skin as it stands.
+std::vector<Vec3> FaceScene::skin_of(const FaceState& state) const {
+  std::vector<Vec3> skin;
+  for (const size_t m : skin_parts_) {
+    const std::vector<Vec3> points = points_of(state.positions[m]);
+    skin.insert(skin.end(), points.begin(), points.end());
+  }
+  return skin;
 }
 
 DrawList FaceScene::list(const FaceState& state, const FaceView& view) const {
@@ -218,8 +239,8 @@ DrawList FaceScene::list(const FaceState& state, const FaceView& view) const {
     if (DrawSurface fat = fat_surface(state.lattice); !fat.triangles.empty())
       list.surfaces.push_back(std::move(fat));
   if (view.layers.count("lattice")) add_lattice(state.lattice, list);
-  if (view.layers.count("ligaments")) add_ligaments(rig_->smas, list);
-  if (view.layers.count("landmarks")) add_landmarks(list);
+  if (view.layers.count("ligaments")) add_ligaments(moving_->ligaments(skin_of(state), state.jaw), list);
+  if (view.layers.count("landmarks")) add_landmarks(state, list);
   return list;
 }
 
@@ -253,7 +274,7 @@ void FaceScene::add_parts(const FaceState& state, const FaceView& view, DrawList
     const bool has_look = needs_map ? look.colour_map != nullptr : look.has_material;
     const bool is_painted = view.has_textures && (has_look || look.colours.size() == part.rest.size());
     if (is_card(part.part) && !is_painted && !has_strands_[m]) continue;
-    if (is_glass && (is_card(part.part) || part.part == "brows" || part.part == "other")) continue;
+    if (is_glass && !shows_through_glass(part.part)) continue;
     DrawSurface surface;
     surface.positions = positions[m];
     surface.normals = std::move(normals[m]);
@@ -302,7 +323,11 @@ void FaceScene::add_bones(const FaceState& state, const FaceView& view, DrawList
       add_surface(list, skull.teeth_lower, Shading::tooth, tooth_colour, state.jaw);
   }
   if (view.layers.count("smas")) {
-    add_surface(list, rig_->smas.surface, Shading::muscle, fascia_colour, still);
+    rig::Surface fascia;
+    for (const Vec3& p : moving_->smas(state.lattice))
+      fascia.positions.push_back(p.cast<float>());
+    fascia.triangles = rig_->smas.surface.triangles;
+    add_surface(list, fascia, Shading::muscle, fascia_colour, still);
     if (!list.surfaces.empty() && (view.layers.count("muscles") || view.layers.count("skull")))
       list.surfaces.back().opacity = 0.55;
   }
@@ -337,19 +362,21 @@ void FaceScene::add_muscles(const FaceState& state, const FaceView& view, DrawLi
   if (!flesh.triangles.empty()) list.surfaces.push_back(std::move(flesh));
 }
 
-/// A ball at each point on the skin at rest, green where it is certain and red where it is not, and a line to
+/// A ball at each point on the skin, green where it is certain and red where it is not, and a line to
 /// its partner on the bone.
-void FaceScene::add_landmarks(DrawList& list) const {
+void FaceScene::add_landmarks(const FaceState& state, DrawList& list) const {
   const double radius = 0.0016;  // m
   DrawSurface balls;
   balls.shading = Shading::data;
   DrawLines depths{{}, Vec3(0.55, 0.75, 0.85), 2.0, false};
   const Vec3 sure(0.36, 0.74, 0.42), doubtful(0.90, 0.33, 0.26);
-  for (const rig::Landmark& landmark : rig_->skull.landmarks) {
-    const Vec3 centre = landmark.skin.cast<double>();
+  const std::vector<MovingAnatomy::Band> places = moving_->landmarks(skin_of(state), state.jaw);
+  for (size_t i = 0; i < places.size(); ++i) {
+    const rig::Landmark& landmark = rig_->skull.landmarks[i];
+    const Vec3& centre = places[i][1];
     const double certainty = std::clamp(2.0 * static_cast<double>(landmark.confidence) - 1.0, 0.0, 1.0);
     add_ball(centre, radius, doubtful + certainty * (sure - doubtful), balls);
-    depths.lines.push_back({centre, landmark.bone.cast<double>()});
+    depths.lines.push_back({centre, places[i][0]});
   }
   if (!balls.triangles.empty()) list.surfaces.push_back(std::move(balls));
   list.lines.push_back(std::move(depths));

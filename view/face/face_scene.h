@@ -13,6 +13,7 @@
 #include "view/face/heat_map.h"
 #include "view/face/joint_normals.h"
 #include "view/face/lattice_layers.h"
+#include "view/face/moving_anatomy.h"
 #include "view/scene.h"
 
 namespace fascia::view {
@@ -35,7 +36,7 @@ struct FaceState {
   Mat4 jaw = Mat4::Identity();                    ///< of the mandible
   Fibres fibres;                                  ///< by muscle; only for the layer `muscles`
   std::map<std::string, double> activations;      ///< 0..1 by muscle: those that pull glow; may be empty
-  Lattice lattice;                                ///< only for the layers `fat` and `lattice`
+  Lattice lattice;                                ///< only for the layers `fat`, `lattice` and `smas`
 };
 
 /// What to show of a face.
@@ -67,7 +68,8 @@ class FaceScene {
   void add_parts(const FaceState& state, const FaceView& view, DrawList& list) const;
   void add_bones(const FaceState& state, const FaceView& view, DrawList& list) const;
   void add_muscles(const FaceState& state, const FaceView& view, DrawList& list) const;
-  void add_landmarks(DrawList& list) const;
+  void add_landmarks(const FaceState& state, DrawList& list) const;
+  std::vector<Vec3> skin_of(const FaceState& state) const;
 
   const rig::Rig* rig_;
   std::vector<FacePart> parts_;
@@ -77,10 +79,11 @@ class FaceScene {
   std::vector<bool> has_strands_;  ///< one per part: hairs rather than cards
   std::vector<size_t> skin_parts_;
   std::optional<JointNormals> skin_normals_;  ///< of `skin_parts_`
+  std::optional<MovingAnatomy> moving_;
 };
 
-/// The retaining ligaments at rest, as bands from bone to skin.
-void add_ligaments(const rig::Smas& smas, DrawList& list);
+/// The retaining ligaments, as bands from bone to skin.
+void add_ligaments(const std::vector<MovingAnatomy::Band>& ligaments, DrawList& list);
 
 /// A colour of its own for each muscle, the same for both sides; sRGB.
 Vec3 muscle_colour(const std::string& name);

@@ -67,9 +67,12 @@ std::vector<double> areal_strain(const std::vector<Vec3>& rest, const std::vecto
 }
 
 void add_legend(Image& image, const HeatScale& scale) {
-  const int unit = std::max(1, image.height / 90), bar_width = 22 * unit, bar_height = std::max(2, unit);
-  const int left = image.width - bar_width - 3 * unit, top = image.height - 7 * unit,
-            text_height = 2 * unit + 4;
+  const int unit = std::max(1, image.height / 90), bar_height = std::max(2, unit), text_height = 2 * unit + 4;
+  // As wide as its title, which a small picture's letters would else carry beyond the edge.
+  const int title_width = text_width(scale.title, text_height),
+            bar_width = std::min(std::max(22 * unit, title_width), image.width - 2 * unit);
+  const int left = image.width - bar_width - std::min(3 * unit, (image.width - bar_width) / 2),
+            top = image.height - 7 * unit;
   for (int x = 0; x < bar_width; ++x) {
     const Vec3 colour = heat_colour(scale, scale.least + (scale.most - scale.least) * (x + 0.5) / bar_width);
     Colour bytes;

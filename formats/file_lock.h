@@ -1,0 +1,28 @@
+#pragma once
+
+#include <filesystem>
+#include <utility>
+
+namespace fascia::formats {
+
+/// A lock on a file that one process at a time can hold. The system lets it go with the process, whichever
+/// way that ends.
+class FileLock {
+ public:
+  enum class Wait { no, yes };
+  FileLock() = default;
+  /// Makes the file where there is none, and locks it; holds() tells whether that was possible.
+  FileLock(const std::filesystem::path& file, Wait wait);
+  ~FileLock();
+  FileLock(FileLock&& other) noexcept
+      : file_(std::exchange(other.file_, -1)), holds_(std::exchange(other.holds_, false)) {}
+  FileLock& operator=(FileLock&& other) noexcept;
+
+  bool holds() const { return holds_; }
+
+ private:
+  int file_ = -1;
+  bool holds_ = false;
+};
+
+}  // namespace fascia::formats
