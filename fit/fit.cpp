@@ -13,8 +13,8 @@
 namespace fascia::fit {
 namespace {
 
-constexpr double square_mm = 1e6;       // of a square metre
-constexpr double along_surface = 0.03;  // what a vertex that may slide costs along the surface, of across it
+constexpr double square_mm = 1e6;        // of a square metre
+constexpr double along_surface = 0.003;  // what a vertex that may slide costs along the surface, of across it
 constexpr double unseen_gaze = 50.0;  // cost of turning an eye that only its lids tell of, of a common muscle
 
 using RowsByAxis = Eigen::Map<const Eigen::MatrixXd, 0, Eigen::Stride<Eigen::Dynamic, 3>>;

@@ -3,10 +3,12 @@
 // sum|u-v|^2 / sum|v|^2, by the expression's own row, by bounded activations of the linear response at rest,
 // and by `fit` on the full simulation; means by head.
 //
-//   bench_fit [HEAD|FAMILY]... [--level NAME] [--only SHAPE,...] [--calibrate] [--random POSES]
-//             [--ridge PRICE] [--sparsity PRICE]
+//   bench_fit [HEAD|FAMILY]... [--level NAME] [--only SHAPE,...] [--calibrate] [--random POSES] [--scans]
+//             [--parts N] [--ridge PRICE] [--sparsity PRICE]
 //
-// --random finds that many random poses of each head's own again instead (`embedded` is a head too).
+// --parts fits each of N parts of a head's shapes with muscles and tissue that were calibrated by the others.
+// --random finds that many random poses of each head's own again instead (`embedded` is a head too),
+// --scans its own ARKit expressions from scans of another meshing.
 // --calibrate also finds each head's own muscles from its shapes, and judges them by shapes left out; then
 // the same of the head with muscles of known other strengths.
 #include <algorithm>
@@ -18,6 +20,7 @@
 #include "bench/expressions/sculpted_head.h"
 #include "bench/fit/calibrated.h"
 #include "bench/fit/round_trip.h"
+#include "bench/fit/scans.h"
 #include "bench/people/arguments.h"
 #include "fit/fit.h"
 #include "geometry/error.h"
@@ -30,7 +33,8 @@ struct FitRequest {
   std::set<std::string> only;
   std::string level = "low";
   bool calibrate = false;
-  int random = 0;
+  int random = 0, parts = 0;
+  bool scans = false;
   fit::FitOptions fitting;
 };
 
@@ -99,12 +103,13 @@ void fit_head(const SculptedHead& head, const FitRequest& request) {
               head.name.c_str(), count, by_row / count, linear / count, by_fit / count, error / count,
               iterations, seconds);
   if (request.calibrate) calibrate_head(face, table);
+  if (request.parts > 1) fit_calibrated_head(face, table, request.parts, request.fitting);
 }
 
 void run(const FitRequest& request) {
   bool any = false;
   std::vector<SculptedHead> heads = sculpted_heads();
-  if (request.random > 0) heads.push_back(generic_head());
+  if (request.random > 0 || request.scans) heads.push_back(generic_head());
   for (const SculptedHead& head : heads) {
     const auto is_named = [&](const std::string& name) {
       return std::find(request.heads.begin(), request.heads.end(), name) != request.heads.end();
@@ -112,7 +117,9 @@ void run(const FitRequest& request) {
     if (!request.heads.empty() && !is_named(head.name) && !is_named(head.family)) continue;
     any = true;
     try {
-      if (request.random > 0)
+      if (request.scans)
+        find_scans(head, request.level, request.only, request.fitting);
+      else if (request.random > 0)
         find_random_poses(head, request.level, request.random, request.fitting);
       else
         fit_head(head, request);
@@ -133,7 +140,9 @@ int main(int argc, char** argv) {
   arguments.option("--level", "NAME", request.level);
   arguments.option("--only", "SHAPE,...", request.only);
   arguments.flag("--calibrate", request.calibrate);
+  arguments.option("--parts", "N", request.parts);
   arguments.option("--random", "POSES", request.random);
+  arguments.flag("--scans", request.scans);
   arguments.option("--ridge", "PRICE", request.fitting.ridge);
   arguments.option("--sparsity", "PRICE", request.fitting.sparsity);
   if (!arguments.parse(argc, argv, request.heads)) return 2;
