@@ -303,10 +303,14 @@ void add_calibrate(const Command& tool, Common& common) {
       .one_of({"all", "gains"});
   command
       .option("--prior", &request->options.prior,
-              "Penalty for a gain different from 1, relative to the expressions' squared motion")
+              "Penalty for a gain different from 1, relative to the expressions' squared motion; as given "
+              "where it is, otherwise scaled by cross-validation")
       .range(1e-6, 1e3);
   add_outside_option(command, request->allow_outside);
-  command.run([request, &common] { run(common, *request); });
+  command.run([request, &common] {
+    request->options.scales_prior = request->options.prior == fit::CalibrationOptions().prior;
+    run(common, *request);
+  });
 }
 
 }  // namespace fascia::cli

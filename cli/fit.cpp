@@ -51,18 +51,23 @@ nlohmann::ordered_json figures(const fit::Subject& subject, const fit::FitResult
   return entry;
 }
 
-/// Share and mean error over all targets, by how much each moves.
+/// Share and mean error over all targets, by how much each moves; converged when all are.
 nlohmann::ordered_json summary(const std::vector<fit::FitResult>& results,
                                const std::vector<double>& motion) {
   double left = 0.0, whole = 0.0, error = 0.0;
   int iterations = 0;
+  bool converged = true;
   for (size_t i = 0; i < results.size(); ++i) {
     left += (1.0 - results[i].share) * motion[i];
     whole += motion[i];
     error += results[i].error_mm / static_cast<double>(results.size());
     iterations += results[i].iterations;
+    converged = converged && results[i].converged;
   }
-  return {{"share", whole > 0.0 ? 1.0 - left / whole : 1.0}, {"error_mm", error}, {"iterations", iterations}};
+  return {{"share", whole > 0.0 ? 1.0 - left / whole : 1.0},
+          {"error_mm", error},
+          {"iterations", iterations},
+          {"converged", converged}};
 }
 
 bool is_landmark_file(const std::filesystem::path& path) {

@@ -4,11 +4,14 @@
 #include <map>
 #include <set>
 
+#include "cli/take/point_cache.h"
 #include "formats/obj_lines.h"
 #include "geometry/error.h"
 #include "geometry/text.h"
 
 namespace fascia::cli {
+
+namespace {
 
 PointCache read_cache(const std::filesystem::path& path, double fps) {
   PointCache cache;
@@ -38,10 +41,9 @@ PointCache read_cache(const std::filesystem::path& path, double fps) {
   return cache;
 }
 
-namespace {
-
 /// An object of the rig's source whose vertices a cache may hold: OBJ files count each `v` once.
 struct CachePart {
+  std::string name;
   size_t points = 0;
   std::vector<Match> matches;
 };
@@ -54,6 +56,7 @@ std::vector<CachePart> cache_parts(const fit::Subject& subject) {
   for (size_t p = 0; p < file.primitives.size(); ++p) {
     const uint32_t mesh = file.primitives[p].mesh;
     CachePart& part = parts[mesh];
+    part.name = file.primitives[p].name;
     const size_t count = file.primitives[p].positions.size();
     Match match{p, mesh, counted(part.points, count)};
     if (mesh < source.meshes.size() && source.meshes[mesh].source_vertices.size() >= count) {
@@ -92,12 +95,27 @@ std::vector<Match> obj_matches(size_t points, const fit::Subject& subject) {
   return found;
 }
 
-}  // namespace
-
+/// What a cache of `points` points holds: the whole OBJ, one object, or all of them one after the other.
 std::vector<Match> cache_matches(const std::filesystem::path& path, size_t points,
+                                 const std::vector<CachePart>& parts, const fit::Subject& subject) {
+  const CachePart* found = nullptr;
+  for (const CachePart& part : parts) {
+    if (part.points != points) continue;
+    if (found != nullptr)
+      throw Error("'" + path.string() + "': more than one of the rig's meshes has its " +
+                  std::to_string(points) +
+                  " points: give a cache of all meshes, or name it after its mesh, " +
+                  cache_paths(path, {part.name, found->name}).front().filename().string());
+    found = &part;
+  }
+  if (found == nullptr) fail_topology(path, subject, "has " + std::to_string(points) + " points a frame");
+  return found->matches;
+}
+
+/// The rig's vertices in a cache of all objects, or of the whole OBJ; none where it is of another size.
+std::vector<Match> whole_matches(size_t points, const std::vector<CachePart>& parts,
                                  const fit::Subject& subject) {
   if (std::vector<Match> whole = obj_matches(points, subject); !whole.empty()) return whole;
-  const std::vector<CachePart> parts = cache_parts(subject);
   std::vector<Match> all;
   size_t sum = 0;
   for (const CachePart& part : parts) {
@@ -108,17 +126,75 @@ std::vector<Match> cache_matches(const std::filesystem::path& path, size_t point
     }
     sum += part.points;
   }
-  if (sum == points) return all;
-  const CachePart* found = nullptr;
-  for (const CachePart& part : parts) {
-    if (part.points != points) continue;
-    if (found != nullptr)
-      throw Error("'" + path.string() + "': more than one of the rig's meshes has its " +
-                  std::to_string(points) + " points: give a cache of all meshes");
-    found = &part;
+  return sum == points ? all : std::vector<Match>();
+}
+
+/// The files of the set that `path` is one of, or the common name of; none where it is neither.
+std::vector<std::filesystem::path> cache_set(const std::filesystem::path& path,
+                                             const std::vector<CachePart>& parts) {
+  if (parts.size() < 2) return {};
+  std::vector<std::string> names;
+  for (const CachePart& part : parts)
+    names.push_back(part.name);
+  std::error_code status;
+  const auto is_there = [&](const std::filesystem::path& file) {
+    return std::filesystem::exists(file, status);
+  };
+  std::vector<std::filesystem::path> set = cache_paths(path, names);
+  if (!is_there(path)) return std::any_of(set.begin(), set.end(), is_there) ? set : decltype(set)();
+  set = cache_paths(path.parent_path() / (path.stem().stem().string() + path.extension().string()), names);
+  return std::find(set.begin(), set.end(), path) != set.end() ? set : decltype(set)();
+}
+
+std::vector<FitCache> read_set(const Common& common, const std::vector<std::filesystem::path>& set,
+                               double fps, const std::vector<CachePart>& parts, const fit::Subject& subject) {
+  std::vector<FitCache> caches;
+  const std::filesystem::path* first = nullptr;
+  std::string missing;
+  std::error_code status;
+  for (size_t i = 0; i < set.size(); ++i) {
+    if (!std::filesystem::exists(set[i], status)) {
+      missing += (missing.empty() ? "'" : ", '") + set[i].filename().string() + "'";
+      continue;
+    }
+    PointCache cache = read_cache(set[i], fps);
+    if (cache.points != parts[i].points)
+      fail_topology(set[i], subject,
+                    "has " + std::to_string(cache.points) + " points a frame, the rig's mesh '" +
+                        parts[i].name + "' " + std::to_string(parts[i].points));
+    if (first == nullptr) {
+      first = &set[i];
+    } else if (cache.times != caches.front().cache.times) {
+      throw Error("'" + set[i].string() + "' has " + std::to_string(cache.frames) + " frames, '" +
+                  first->string() + "' " + std::to_string(caches.front().cache.frames) +
+                  ", or other times: give the caches of one take");
+    }
+    caches.push_back({std::move(cache), parts[i].matches});
   }
-  if (found == nullptr) fail_topology(path, subject, "has " + std::to_string(points) + " points a frame");
-  return found->matches;
+  if (!missing.empty())
+    common.warn("not there: " + missing + "; what moves those meshes is judged by the others");
+  return caches;
+}
+
+}  // namespace
+
+std::vector<FitCache> open_caches(const Common& common, const std::filesystem::path& path, double fps,
+                                  const fit::Subject& subject) {
+  const std::vector<CachePart> parts = cache_parts(subject);
+  const std::vector<std::filesystem::path> set = cache_set(path, parts);
+  std::error_code status;
+  if (set.empty() || std::filesystem::exists(path, status)) {
+    FitCache one{read_cache(path, fps), {}};
+    one.matches = whole_matches(one.cache.points, parts, subject);
+    if (one.matches.empty() && set.empty())
+      one.matches = cache_matches(path, one.cache.points, parts, subject);
+    std::vector<FitCache> caches;
+    if (!one.matches.empty()) {
+      caches.push_back(std::move(one));
+      return caches;
+    }
+  }
+  return read_set(common, set, fps, parts, subject);
 }
 
 }  // namespace fascia::cli

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "cli/common.h"
 #include "cli/fit_match.h"
 
 namespace fascia::cli {
@@ -30,13 +31,18 @@ struct PointCache {
   }
 };
 
-/// Reads a PC2 or MDD cache; `fps` gives the frames of PC2, which hold no times, theirs. Throws fascia::Error
-/// for what is damaged, truncated or neither.
-PointCache read_cache(const std::filesystem::path& path, double fps);
+/// A cache and where it has the rig's vertices.
+struct FitCache {
+  PointCache cache;
+  std::vector<Match> matches;
+};
 
-/// What a cache of `points` points holds: the whole OBJ, one object, or all of them one after the other.
-/// Throws fascia::Error when it is none of them or more than one object could be meant.
-std::vector<Match> cache_matches(const std::filesystem::path& path, size_t points,
-                                 const fit::Subject& subject);
+/// Opens the caches of a take: one of all of the rig's meshes, of the whole OBJ or of one mesh, or the set
+/// that `play` writes of a rig of several (NAME.OBJECT.EXT), given any one of them or their common name
+/// NAME.EXT. Warns of files of the set that are not there: those meshes are not seen. `fps` gives the frames
+/// of PC2, which hold no times, theirs. Throws fascia::Error for a file that is damaged or not of the rig's
+/// topology, and for a set of several takes.
+std::vector<FitCache> open_caches(const Common& common, const std::filesystem::path& path, double fps,
+                                  const fit::Subject& subject);
 
 }  // namespace fascia::cli

@@ -15,9 +15,8 @@ namespace fascia::cli {
 
 namespace {
 
-constexpr size_t fewest = 6;      // landmarks that tell where a head is before a camera
-constexpr int most_repeats = 40;  // of the first picture
-constexpr double settled = 1e-3;  // of an activation
+constexpr size_t fewest = 6;    // landmarks that tell where a head is before a camera
+constexpr int most_steps = 30;  // of a picture
 
 /// The landmarks that files show, on the rig's skin.
 struct SeenLandmarks {
@@ -68,22 +67,9 @@ fit::TrackerOptions tracker_options(const fit::FitOptions& chosen, const fit::Ca
   if (chosen.sparsity != usual.sparsity) options.sparsity = chosen.sparsity;
   if (chosen.smoothness != usual.smoothness) options.smoothness = chosen.smoothness;
   options.camera = camera;
+  options.iterations = most_steps;
+  options.may_take_time = true;
   return options;
-}
-
-/// Follows the points until the activations settle; true when they have.
-bool settle(fit::Tracker& tracker, const SeenPoints& seen, int repeats, int& iterations) {
-  std::vector<float> before;
-  for (int repeat = 0; repeat < repeats; ++repeat) {
-    const std::vector<float>& now = tracker.follow(seen.points, seen.weights).activations;
-    ++iterations;
-    double change = before.empty() ? 1.0 : 0.0;
-    for (size_t c = 0; c < before.size(); ++c)
-      change = std::max(change, static_cast<double>(std::abs(now[c] - before[c])));
-    if (change < settled) return true;
-    before = now;
-  }
-  return false;
 }
 
 /// A frame's result and, where its landmarks should be on the posed skin, its target.
@@ -164,14 +150,13 @@ PictureFit fit_pictures(const Common& common, const std::filesystem::path& path,
     progress.step();
     const SeenPoints seen(landmarks, file.frames[f].points);
     const std::string name = file.is_take ? "frame " + std::to_string(f) : path.filename().string();
-    int iterations = 0;
-    const bool is_settled = settle(tracker, seen, f == 0 ? most_repeats : 2, iterations) || f > 0;
+    tracker.follow(seen.points, seen.weights);
     if (f == 0 && tracker.result().seen == 0)
       throw Error("'" + path.string() + "': " + name + " has too few landmarks to tell where the head is");
     PictureFrame frame = measured(subject, landmarks, seen, tracker.result(), camera, f > 0);
-    frame.result.iterations = iterations;
-    frame.result.converged = is_settled;
-    if (!is_settled) common.warn(name + ": still moving; what is found so far is written");
+    frame.result.iterations = tracker.result().steps;
+    frame.result.converged = tracker.result().is_settled;
+    if (!frame.result.converged) common.warn(name + ": still moving; what is found so far is written");
     out.targets.names.push_back(name);
     if (file.is_take) out.targets.times.push_back(file.frames[f].time);
     out.results.push_back(std::move(frame.result));

@@ -15,21 +15,22 @@ namespace fascia::cli {
 
 namespace {
 
-FitTargets cache_targets(const std::filesystem::path& path, const TargetMaker& maker, double fps) {
-  const auto cache = std::make_shared<PointCache>(read_cache(path, fps));
-  const auto found =
-      std::make_shared<std::vector<Match>>(cache_matches(path, cache->points, maker.subject()));
+FitTargets cache_targets(const Common& common, const std::filesystem::path& path, const TargetMaker& maker,
+                         double fps) {
+  const auto caches =
+      std::make_shared<const std::vector<FitCache>>(open_caches(common, path, fps, maker.subject()));
   FitTargets targets;
   targets.kind = FitTargets::Kind::take;
-  targets.times = cache->times;
-  for (size_t f = 0; f < cache->frames; ++f)
+  targets.times = caches->front().cache.times;
+  for (size_t f = 0; f < targets.times.size(); ++f)
     targets.names.push_back("frame " + std::to_string(f));
-  targets.target = [cache, found, maker](size_t frame) {
+  targets.target = [caches, maker](size_t frame) {
     fit::Target target = maker.none();
-    for (const Match& match : *found)
-      for (size_t v = 0; v < match.point.size(); ++v)
-        maker.put(target, maker.subject().first_vertex(match.primitive) + v,
-                  cache->point(frame, match.point[v]));
+    for (const FitCache& file : *caches)
+      for (const Match& match : file.matches)
+        for (size_t v = 0; v < match.point.size(); ++v)
+          maker.put(target, maker.subject().first_vertex(match.primitive) + v,
+                    file.cache.point(frame, match.point[v]));
     return maker.finished(std::move(target));
   };
   return targets;
@@ -162,7 +163,7 @@ FitTargets open_fit_targets(const Common& common, const std::filesystem::path& p
   const TargetMaker maker(subject, options.head_pose != "fixed");
   const std::string extension = extension_of(path);
   if (std::filesystem::is_directory(path)) return sequence_targets(path, maker, options);
-  if (extension == ".pc2" || extension == ".mdd") return cache_targets(path, maker, options.fps);
+  if (extension == ".pc2" || extension == ".mdd") return cache_targets(common, path, maker, options.fps);
   const auto scene =
       std::make_shared<formats::Scene>(formats::read(path, reading_options(options.allow_outside)));
   if (options.as == "take" || options.as == "auto")

@@ -160,6 +160,7 @@ class Calibrator {
   /// Makes gains away from 1 as dear as serves expressions left out best, as far as the evidence foresees
   /// them (cross-validation: Stone 1974).
   void take_caution(const std::vector<Evidence>& all, const Eigen::VectorXd& at) {
+    if (!options_.scales_prior) return;
     double best = std::numeric_limits<double>::infinity(), chosen = 1.0;
     for (const double caution : {1.0, 0.001, 0.01, 0.1, 0.3, 3.0, 10.0, 30.0, 100.0, 1000.0}) {
       caution_ = caution;

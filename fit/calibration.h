@@ -21,6 +21,7 @@ struct CalibrationOptions {
   int rounds = 3;  ///< Gauss-Newton steps
   double prior =
       0.02;  ///< penalty for a gain of 0 or 2 instead of 1, relative to the expressions' mean squared motion
+  bool scales_prior = true;  ///< cross-validation chooses a factor of the prior, from 0.001 to 1000
   double weakest = 0.4;  ///< bounds of a gain: muscle cross-sections of adults vary by about these factors...
   double strongest = 2.0;  ///< ...(docs/fit.md)
   double pairing = 0.1;    ///< penalty for differences between left and right, likewise

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fit/live/bounded_step.h"
 #include "fit/live/dearness.h"
 #include "geometry/alignment.h"
 #include "geometry/dense.h"
@@ -14,8 +13,8 @@
 namespace fascia::fit {
 namespace {
 
-constexpr double square_mm = 1e6;       // of a square metre
-constexpr double along_surface = 0.03;  // what a vertex that may slide costs along the surface, of across it
+constexpr double square_mm = 1e6;        // of a square metre
+constexpr double along_surface = 0.003;  // what a vertex that may slide costs along the surface, of across it
 constexpr double unseen_gaze = 50.0;  // cost of turning an eye that only its lids tell of, of a common muscle
 
 using RowsByAxis = Eigen::Map<const Eigen::MatrixXd, 0, Eigen::Stride<Eigen::Dynamic, 3>>;
@@ -137,8 +136,9 @@ void Fitter::gather_sliding() {
   hessian_ = dense::transposed_product(slopes, scaled);
 }
 
-bool Fitter::linearise(const std::vector<float>& values) {
-  if (!sensitivity_.linearise(subject_->controls(values), subject_->nodes())) return false;
+bool Fitter::linearise(const std::vector<float>& values, const sim::Positions& nodes) {
+  if (!sensitivity_.linearise(subject_->controls(values), nodes)) return false;
+  secants_.clear();
   linear_at_ = values;
   const Eigen::MatrixXd own = sensitivity_.columns(driven_);
   node_columns_.resize(own.rows(), own.cols() + 3);
@@ -207,29 +207,6 @@ void Fitter::find_eyes(const Target& target, std::vector<float>& values) {
   hold(seen);
 }
 
-/// The step of least half-objective in the channels' ranges, by coordinate descent: `slope` is half the
-/// objective's gradient without the price of sizes.
-Eigen::VectorXd Fitter::step(const Eigen::VectorXd& slope, const std::vector<float>& values,
-                             double damping) const {
-  const auto count = static_cast<Eigen::Index>(fitted_.size());
-  Eigen::MatrixXd curvature = hessian_;
-  for (Eigen::Index i = 0; i < count; ++i)
-    curvature(i, i) += damping * hessian_(i, i) + price(options_.ridge, static_cast<size_t>(i)) +
-                       price_of_change(static_cast<size_t>(i)) + 1e-12;
-  std::vector<StepBound> bounds(fitted_.size());
-  for (size_t i = 0; i < bounds.size(); ++i) {
-    const rig::Channel& channel = subject_->channels()[fitted_[i]];
-    bounds[i] = {static_cast<double>(channel.minimum), static_cast<double>(channel.maximum),
-                 price(options_.sparsity, i), is_held_[fitted_[i]]};
-  }
-  Eigen::VectorXd move(count), pull;
-  bounded_step(
-      curvature, slope, [&](Eigen::Index i) -> const StepBound& { return bounds[static_cast<size_t>(i)]; },
-      [&](Eigen::Index i) { return static_cast<double>(values[fitted_[static_cast<size_t>(i)]]); }, move,
-      pull);
-  return move;
-}
-
 void Fitter::take_weights(const Target& target, bool is_next) {
   Eigen::VectorXd weights = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(subject_->vertex_count()));
   for (size_t v = 0; v < subject_->vertex_count(); ++v)
@@ -242,6 +219,13 @@ void Fitter::take_weights(const Target& target, bool is_next) {
   if (target.normals.size() > 0 || slide_normals_.size() > 0) linear_at_.clear();
   vertex_weights_ = weights;
   slide_normals_ = target.normals;
+}
+
+Eigen::VectorXd Fitter::pulls(const Eigen::VectorXd& difference) const {
+  Eigen::VectorXd pulls(difference.size());
+  for (Eigen::Index v = 0; v < vertex_weights_.size(); ++v)
+    pulls.segment<3>(3 * v) = square_mm * weighted(v, difference.segment<3>(3 * v));
+  return pulls;
 }
 
 Eigen::VectorXd Fitter::slope_of(const Eigen::VectorXd& difference, bool by_columns) const {
@@ -265,7 +249,7 @@ Linearised Fitter::linearised(const Target& target, const std::vector<float>& va
   is_sequence_ = false;
   Eigen::VectorXd difference;
   objective(target, values, false, difference);
-  if (!linearise(values))
+  if (!linearise(values, subject_->nodes()))
     throw Error(
         "the pose has no derivative: its stiffness matrix is singular (some tissue is unconstrained)");
   Linearised out{fitted_, hessian_, slope_of(difference, false), 0.0, 0.0};
@@ -276,82 +260,6 @@ Linearised Fitter::linearised(const Target& target, const std::vector<float>& va
     out.target_square += square_mm * wanted.dot(weighted(v, wanted));
   }
   return out;
-}
-
-FitResult Fitter::solve(const Target& target, bool is_next) {
-  take_weights(target, is_next);
-  std::vector<float> values;
-  for (const rig::Channel& channel : subject_->channels())
-    values.push_back(channel.rest);
-  if (is_next)
-    values = last_;
-  else
-    last_.clear();
-  find_eyes(target, values);
-  FitResult result;
-  Eigen::VectorXd difference;
-  double value = objective(target, values, is_next, difference), damping = 0.0;
-  for (; result.iterations < options_.iterations; ++result.iterations) {
-    // The Jacobian is reused until the pose has changed; the adjoint gradient is always exact.
-    double away = linear_at_.empty() ? 1.0 : 0.0;
-    for (size_t c = 0; c < linear_at_.size(); ++c)
-      away = std::max(away, static_cast<double>(std::abs(linear_at_[c] - values[c])));
-    const bool is_fresh = away > (is_next ? 0.15 : 0.25);
-    const double cost_before = cost(values);
-    const bool is_linear =
-        is_fresh ? linearise(values)
-                 : is_next || sensitivity_.linearise(subject_->controls(values), subject_->nodes(), true);
-    if (!is_linear) break;
-    value += cost(values) - cost_before;  // which depends on what of each channel is seen
-    Eigen::VectorXd slope = slope_of(difference, is_next);
-    for (Eigen::Index i = 0; i < slope.size(); ++i) {
-      const uint32_t c = fitted_[static_cast<size_t>(i)];
-      slope[i] += price(options_.ridge, static_cast<size_t>(i)) * static_cast<double>(values[c]);
-      if (!last_.empty())
-        slope[i] += price_of_change(static_cast<size_t>(i)) * static_cast<double>(values[c] - last_[c]);
-    }
-    bool fell = false;
-    double moved = 0.0, gain = 0.0;
-    for (int attempt = 0; attempt < 6 && !fell; ++attempt) {
-      const Eigen::VectorXd move = step(slope, values, damping);
-      moved = move.cwiseAbs().maxCoeff();
-      if (moved < 1e-4) break;
-      std::vector<float> trial = values;
-      for (Eigen::Index i = 0; i < move.size(); ++i)
-        trial[fitted_[static_cast<size_t>(i)]] += static_cast<float>(move[i]);
-      Eigen::VectorXd trial_difference;
-      const double trial_value = objective(target, trial, true, trial_difference);
-      if (trial_value < value) {
-        fell = true;
-        gain = value - trial_value;
-        values = trial;
-        value = trial_value;
-        difference = trial_difference;
-        damping = attempt == 0 ? 0.25 * damping : damping;
-      } else {
-        damping = std::max(0.05, 4.0 * damping);  // Levenberg and Marquardt
-      }
-    }
-    if (!fell) {
-      subject_->pose(values, true);
-      if (!is_fresh && away > 0.0 && moved >= 1e-4) {  // a stale Jacobian is recomputed
-        linear_at_.clear();
-        damping = 0.0;
-        continue;
-      }
-      result.converged = true;  // no step decreases the objective
-      break;
-    }
-    if (moved < 2e-3 || gain < 1e-4 * value + 1e-7) {
-      ++result.iterations;
-      result.converged = true;
-      break;
-    }
-  }
-  result.activations = values;
-  if (is_sequence_) last_ = values;
-  finish(target, result);
-  return result;
 }
 
 void Fitter::finish(const Target& target, FitResult& result) {

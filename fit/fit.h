@@ -22,7 +22,7 @@ struct Target {
 struct FitOptions {
   /// Penalties in square millimetres of mean squared error, on squared and absolute activations. They are
   /// larger for channels that the rig's expression tables rarely use.
-  double ridge = 2e-4;
+  double ridge = 2e-5;
   double sparsity = 2e-4;
   /// The same for squared changes from frame to frame.
   double smoothness = 2e-3;
@@ -73,7 +73,7 @@ struct Linearised {
 /// Fits the activations of a static pose to targets: Gauss-Newton on the full simulation, with contact,
 /// within the channels' ranges (Sifakis, Neverov & Fedkiw 2005, "Automatic determination of facial muscle
 /// activations from sparse motion capture marker data", section 4), gradients by the adjoint of the
-/// equilibrium.
+/// equilibrium, the Jacobian corrected by what each step did.
 ///
 /// Channels that only move the mandible, like its own three, stay at rest, so that the solution is unique;
 /// eyes are fitted to their meshes, or to the lids if their meshes are not observed.
@@ -108,7 +108,7 @@ class Fitter {
   double objective(const Target& target, const std::vector<float>& values, bool warm,
                    Eigen::VectorXd& difference);
   double cost(const std::vector<float>& values) const;
-  bool linearise(const std::vector<float>& values);
+  bool linearise(const std::vector<float>& values, const sim::Positions& nodes);
   bool is_eye(uint32_t channel) const;
   /// Keeps the options' channels, and the gaze of each eye that is seen (left, right), where they are.
   void hold(const std::array<bool, 2>& eyes);
@@ -116,7 +116,40 @@ class Fitter {
   /// Half the Hessian of the mean squared error where vertices may slide along a surface.
   void gather_sliding();
   Vec3 weighted(Eigen::Index vertex, const Vec3& difference) const;
-  Eigen::VectorXd step(const Eigen::VectorXd& slope, const std::vector<float>& values, double damping) const;
+  Eigen::VectorXd step(const Eigen::VectorXd& slope, const std::vector<float>& values, double radius) const;
+  /// Where a fit stands.
+  struct Descent {
+    std::vector<float> values;
+    Eigen::VectorXd difference;   ///< 3 x #vertices, metres: of the pose from the target
+    sim::Positions nodes;         ///< of the pose
+    double value = 0.0;           ///< of the objective
+    double radius = 1.0;          ///< how far a channel may go in a step
+    bool needs_jacobian = false;  ///< the columns at hand mislead
+    bool is_fresh = false;        ///< they were computed here
+  };
+  enum class Progress { falls, ends, stuck };
+  Progress descend(const Target& target, bool is_next, Descent& at);
+  /// Computes the Jacobian where the pose is far from where it was; false where it has none.
+  bool renew_jacobian(bool is_next, Descent& at);
+  Eigen::VectorXd slope_at(const Descent& at) const;
+  /// Half the gradient of the mean squared distance, by the columns and what was learnt since.
+  Eigen::VectorXd slope_by_columns(const Eigen::VectorXd& difference) const;
+  /// The same by vertex: 3 x #vertices, mm^2 a metre.
+  Eigen::VectorXd pulls(const Eigen::VectorXd& difference) const;
+
+  /// A correction of the Jacobian: miss move^T / square.
+  struct Secant {
+    Eigen::VectorXd miss;  ///< 3 x #vertices, metres
+    Eigen::VectorXd move;  ///< #fitted
+    double square = 0.0;
+  };
+  /// The columns come from a semidefinite Hessian, stiffer than the tissue in compression, and steps by them
+  /// alone overshoot. What a step did corrects them (Broyden 1965, "A class of methods for solving nonlinear
+  /// simultaneous equations"), and so does the exact gradient, by the adjoint, where they were computed
+  /// (Schlenkrich, Griewank & Walther 2010, "On the local convergence of adjoint Broyden methods").
+  void learn_step(const Eigen::VectorXd& move, const Eigen::VectorXd& moved);
+  void learn_gradient(const Eigen::VectorXd& difference);
+  void learn(Secant secant);
   void finish(const Target& target, FitResult& result);
 
   Subject* subject_;
@@ -130,6 +163,7 @@ class Fitter {
   std::vector<float> linear_at_;    ///< where the columns below were taken
   Eigen::MatrixXd node_columns_;    ///< 3 #nodes x #fitted
   Eigen::MatrixXd jaw_slopes_;      ///< 3 #vertices x 3
+  std::vector<Secant> secants_;     ///< since the columns were computed
   Eigen::MatrixXd hessian_;         ///< #fitted square: of the mean squared error in mm^2, halved
   Eigen::VectorXd vertex_weights_;  ///< #vertices: confidence over its sum
   double confidence_ = 0.0;         ///< sum of the target's confidences

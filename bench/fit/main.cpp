@@ -3,8 +3,12 @@
 // sum|u-v|^2 / sum|v|^2, by the expression's own row, by bounded activations of the linear response at rest,
 // and by `fit` on the full simulation; means by head.
 //
-//   bench_fit [HEAD|FAMILY]... [--level NAME] [--only SHAPE,...] [--calibrate]
+//   bench_fit [HEAD|FAMILY]... [--level NAME] [--only SHAPE,...] [--calibrate] [--random POSES] [--scans]
+//             [--parts N] [--ridge PRICE] [--sparsity PRICE]
 //
+// --parts fits each of N parts of a head's shapes with muscles and tissue that were calibrated by the others.
+// --random finds that many random poses of each head's own again instead (`embedded` is a head too),
+// --scans its own ARKit expressions from scans of another meshing.
 // --calibrate also finds each head's own muscles from its shapes, and judges them by shapes left out; then
 // the same of the head with muscles of known other strengths.
 #include <algorithm>
@@ -15,6 +19,8 @@
 #include "bench/expressions/score.h"
 #include "bench/expressions/sculpted_head.h"
 #include "bench/fit/calibrated.h"
+#include "bench/fit/round_trip.h"
+#include "bench/fit/scans.h"
 #include "bench/people/arguments.h"
 #include "fit/fit.h"
 #include "geometry/error.h"
@@ -27,6 +33,9 @@ struct FitRequest {
   std::set<std::string> only;
   std::string level = "low";
   bool calibrate = false;
+  int random = 0, parts = 0;
+  bool scans = false;
+  fit::FitOptions fitting;
 };
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -64,7 +73,7 @@ void fit_head(const SculptedHead& head, const FitRequest& request) {
   std::vector<Vec3> rest;
   for (const size_t v : face.face())
     rest.push_back(face.subject().rest().segment<3>(static_cast<Eigen::Index>(3 * v)));
-  fit::Fitter fitter(face.subject());
+  fit::Fitter fitter(face.subject(), request.fitting);
   double by_row = 0.0, linear = 0.0, by_fit = 0.0, error = 0.0, seconds = 0.0;
   int count = 0, iterations = 0;
   for (const auto& [name, shape] : face.shapes()) {
@@ -94,18 +103,26 @@ void fit_head(const SculptedHead& head, const FitRequest& request) {
               head.name.c_str(), count, by_row / count, linear / count, by_fit / count, error / count,
               iterations, seconds);
   if (request.calibrate) calibrate_head(face, table);
+  if (request.parts > 1) fit_calibrated_head(face, table, request.parts, request.fitting);
 }
 
 void run(const FitRequest& request) {
   bool any = false;
-  for (const SculptedHead& head : sculpted_heads()) {
+  std::vector<SculptedHead> heads = sculpted_heads();
+  if (request.random > 0 || request.scans) heads.push_back(generic_head());
+  for (const SculptedHead& head : heads) {
     const auto is_named = [&](const std::string& name) {
       return std::find(request.heads.begin(), request.heads.end(), name) != request.heads.end();
     };
     if (!request.heads.empty() && !is_named(head.name) && !is_named(head.family)) continue;
     any = true;
     try {
-      fit_head(head, request);
+      if (request.scans)
+        find_scans(head, request.level, request.only, request.fitting);
+      else if (request.random > 0)
+        find_random_poses(head, request.level, request.random, request.fitting);
+      else
+        fit_head(head, request);
     } catch (const Error& error) {
       std::printf("%-16s %s\n", head.name.c_str(), error.what());
     }
@@ -123,6 +140,11 @@ int main(int argc, char** argv) {
   arguments.option("--level", "NAME", request.level);
   arguments.option("--only", "SHAPE,...", request.only);
   arguments.flag("--calibrate", request.calibrate);
+  arguments.option("--parts", "N", request.parts);
+  arguments.option("--random", "POSES", request.random);
+  arguments.flag("--scans", request.scans);
+  arguments.option("--ridge", "PRICE", request.fitting.ridge);
+  arguments.option("--sparsity", "PRICE", request.fitting.sparsity);
   if (!arguments.parse(argc, argv, request.heads)) return 2;
   try {
     fascia::bench::run(request);

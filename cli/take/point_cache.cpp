@@ -45,6 +45,20 @@ void in_source_order(const formats::SceneMesh& mesh, CachedObject& object) {
 
 }  // namespace
 
+std::vector<std::filesystem::path> cache_paths(const std::filesystem::path& path,
+                                               const std::vector<std::string>& names) {
+  if (names.size() < 2) return {path};
+  std::vector<std::filesystem::path> paths;
+  std::set<std::string> words;
+  for (size_t i = 0; i < names.size(); ++i) {
+    std::string word = file_word(names[i], i);
+    if (!words.insert(word).second) words.insert(word += "_" + std::to_string(i));
+    paths.push_back(path);
+    paths.back().replace_extension("." + word + path.extension().string());
+  }
+  return paths;
+}
+
 std::vector<CachedObject> cached_objects(const Common& common, const std::filesystem::path& rig,
                                          const Face& face) {
   std::map<uint32_t, CachedObject> by_mesh;
@@ -88,16 +102,12 @@ bool is_cache(const std::filesystem::path& path, CacheKind& kind) {
 PointCaches::PointCaches(const std::filesystem::path& path, CacheKind kind, std::vector<CachedObject> objects,
                          const std::vector<float>& times)
     : kind_(kind), frames_(times.size()) {
-  std::set<std::string> words;
-  for (size_t i = 0; i < objects.size(); ++i) {
-    std::filesystem::path own = path;
-    if (objects.size() > 1) {
-      std::string word = file_word(objects[i].name, i);
-      if (!words.insert(word).second) words.insert(word += "_" + std::to_string(i));
-      own.replace_extension("." + word + path.extension().string());
-    }
-    files_.push_back({own, std::move(objects[i]), formats::NewFile(own)});
-  }
+  std::vector<std::string> names;
+  for (const CachedObject& object : objects)
+    names.push_back(object.name);
+  const std::vector<std::filesystem::path> paths = cache_paths(path, names);
+  for (size_t i = 0; i < objects.size(); ++i)
+    files_.push_back({paths[i], std::move(objects[i]), formats::NewFile(paths[i])});
   for (File& file : files_) {
     const auto points = static_cast<uint32_t>(file.object.points.size());
     const auto frames = static_cast<uint32_t>(frames_);

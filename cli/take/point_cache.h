@@ -26,12 +26,17 @@ struct CachedObject {
 std::vector<CachedObject> cached_objects(const Common& common, const std::filesystem::path& rig,
                                          const Face& face);
 
+/// Where a take's caches stand: `path` itself for one object, else NAME.OBJECT.EXT for each, in the order of
+/// `names`, which are those of the objects.
+std::vector<std::filesystem::path> cache_paths(const std::filesystem::path& path,
+                                               const std::vector<std::string>& names);
+
 enum class CacheKind { pc2, mdd };
 
 /// Point caches as modelling programs read them, frame by frame: PC2 (little-endian; the format of 3ds Max's
 /// Point Cache 2, as Blender's Mesh Cache modifier reads it) or MDD (big-endian, with times; LightWave's).
-/// One file an object: `path` itself when there is one, else NAME.OBJECT.EXT. Files are written beside and
-/// renamed into place by `finish`; without it nothing stays.
+/// One file an object, where `cache_paths` says. Files are written beside and renamed into place by `finish`;
+/// without it nothing stays.
 class PointCaches {
  public:
   /// `times` of all frames, seconds. Throws fascia::Error when a file cannot be made.

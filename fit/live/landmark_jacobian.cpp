@@ -101,4 +101,12 @@ bool LandmarkJacobian::renew(const sim::Controls& controls, std::span<const sim:
   return false;
 }
 
+bool LandmarkJacobian::renew_whole(const sim::Controls& controls, std::span<const sim::Vec3f> nodes,
+                                   Eigen::MatrixXd& jacobian) {
+  do {
+    if (renew(controls, nodes, jacobian)) return true;
+  } while (stage_ != Stage::idle);
+  return false;
+}
+
 }  // namespace fascia::fit

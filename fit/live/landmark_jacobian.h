@@ -24,6 +24,9 @@ class LandmarkJacobian {
   /// pose `nodes`. A new one is begun where the face has gone some way from where the last was. True when
   /// `jacobian` has been made anew, as of where the face stood when it was begun.
   bool renew(const sim::Controls& controls, std::span<const sim::Vec3f> nodes, Eigen::MatrixXd& jacobian);
+  /// The same at once: all parts of the next, if one is due. True when `jacobian` has been made anew.
+  bool renew_whole(const sim::Controls& controls, std::span<const sim::Vec3f> nodes,
+                   Eigen::MatrixXd& jacobian);
 
  private:
   enum class Stage { idle, factoring, solving };

@@ -196,6 +196,19 @@ double Tracker::mean_square(std::span<const Vec3> points, std::span<const double
   return weight > 0.0 ? square_mm * sum / weight : 0.0;
 }
 
+/// What a frame's steps make small, mm^2.
+double Tracker::objective(std::span<const Vec3> points, std::span<const double> weights) const {
+  double seen = 0.0;
+  for (const double weight : weights)
+    seen += std::max(0.0, weight);
+  double sum = mean_square(points, weights) * seen / static_cast<double>(landmarks_.size());
+  for (size_t i = 0; i < fitted_.size(); ++i) {
+    const double value = values_[fitted_[i]], change = value - static_cast<double>(last_[fitted_[i]]);
+    sum += ridge_[i] * value * value + bounds_[i].price * std::abs(value) + smoothness_[i] * change * change;
+  }
+  return sum;
+}
+
 /// The head's pose for the face as it stands.
 bool Tracker::find_head(std::span<const Vec3> points, std::span<const double> weights, bool is_first) {
   constexpr size_t enough = 6;
@@ -294,8 +307,8 @@ double Tracker::step(std::span<const Vec3> points, std::span<const double> weigh
     const double value = values_[fitted_[i]];
     s.curvature(at, at) += ridge_[i] + smoothness_[i] + 1e-12;
     s.slope[at] += ridge_[i] * value + smoothness_[i] * (value - static_cast<double>(last_[fitted_[i]]));
-    bounds_[i].least = std::max(ranges_[i].least, value - farthest_step);
-    bounds_[i].most = std::min(ranges_[i].most, value + farthest_step);
+    bounds_[i].least = std::max(ranges_[i].least, value - farthest_);
+    bounds_[i].most = std::min(ranges_[i].most, value + farthest_);
   }
   bounded_step(
       s.curvature, s.slope,
@@ -360,26 +373,50 @@ const Tracked& Tracker::follow(std::span<const Vec3> points, std::span<const dou
   result_.seen = static_cast<uint32_t>(count_seen(weights));
   if (result_.seen == 0 || !find_head(points, weights, is_first)) {
     result_.rms_mm = 0.0;
+    result_.steps = 0;
+    result_.is_settled = false;
     if (is_first) result_.seen = 0;
     return result_;
   }
   is_tracking_ = true;
+  result_.steps = 0;
   last_ = values_;
   weigh_channels(weights, is_first);
   const bool moves_scale =
       is_first && options_.finds_scale && neutral_scale_ == 0.0 && !options_.camera.has_value();
-  const int iterations = is_first ? first_iterations : options_.iterations;
-  for (int i = 0; i < iterations; ++i) {
-    constexpr double still = 1e-3;
-    const double largest = step(points, weights, moves_scale);
-    pose(false);
-    correct_jacobian();
-    if (largest < still) break;
-  }
+  const int iterations = is_first ? std::max(first_iterations, options_.iterations) : options_.iterations;
+  if (options_.may_take_time) renewed_->renew_whole(controls(), nodes_, jacobian_);
+  iterate(points, weights, iterations, moves_scale);
+  // The first frame may stand far from where the Jacobian was computed.
+  for (int again = 0; options_.may_take_time && is_first && again < 3; ++again)
+    if (renewed_->renew_whole(controls(), nodes_, jacobian_))
+      iterate(points, weights, iterations, moves_scale);
   refine_head(points, weights, 1);
   report(points, weights);
-  renewed_->renew(controls(), nodes_, jacobian_);
+  if (!options_.may_take_time) renewed_->renew(controls(), nodes_, jacobian_);
   return result_;
+}
+
+/// Steps of a frame, until they gain nothing or are too many.
+void Tracker::iterate(std::span<const Vec3> points, std::span<const double> weights, int most,
+                      bool moves_scale) {
+  // Channels that hardly show may go to and fro for ever: what counts is that nothing is gained by it.
+  constexpr double still = 1e-3, no_gain = 1e-3, nothing = 1e-6;
+  farthest_ = farthest_step;
+  result_.is_settled = false;
+  double before = objective(points, weights);
+  for (int i = 0; i < most && !result_.is_settled; ++i) {
+    const double largest = step(points, weights, moves_scale);
+    ++result_.steps;
+    pose(false);
+    correct_jacobian();
+    result_.is_settled = largest < still;
+    if (!options_.may_take_time) continue;
+    const double now = objective(points, weights);
+    result_.is_settled = result_.is_settled || std::abs(before - now) < no_gain * now + nothing;
+    if (now > before) farthest_ *= 0.5;
+    before = now;
+  }
 }
 
 void Tracker::report(std::span<const Vec3> points, std::span<const double> weights) {

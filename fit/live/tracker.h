@@ -21,7 +21,10 @@ struct TrackerOptions {
   double ridge = 1e-3;
   double sparsity = 2e-4;
   double smoothness = 5e-2;
-  int iterations = 2;       ///< Gauss-Newton steps per frame, each with one static pose
+  int iterations = 2;  ///< Gauss-Newton steps per frame at most, each with one static pose
+  /// For recordings: a frame's steps end when they gain nothing more, and the Jacobian is recomputed as a
+  /// whole when the face has moved, whatever that takes.
+  bool may_take_time = false;
   bool finds_scale = true;  ///< of the observed face against the rig's, in the first frame; not of pictures
   std::optional<Camera> camera;  ///< if given, points are its pixels
 };
@@ -34,6 +37,8 @@ struct Tracked {
   std::vector<Vec3> at_rest;       ///< the same of the face at rest in the same pose
   double rms_mm = 0.0;             ///< weighted root mean square residual, on the head
   uint32_t seen = 0;               ///< landmarks used
+  int steps = 0;                   ///< Gauss-Newton steps of this frame
+  bool is_settled = false;         ///< the last of them moved no channel or gained nothing
 };
 
 /// Tracks activations and head pose in a stream of landmarks, frame by frame.
@@ -78,8 +83,10 @@ class Tracker {
   void refine_head(std::span<const Vec3> points, std::span<const double> weights, int steps);
   Vec3 miss(size_t landmark, const Vec3& point, Mat3& seen) const;
   double mean_square(std::span<const Vec3> points, std::span<const double> weights) const;
+  double objective(std::span<const Vec3> points, std::span<const double> weights) const;
   void weigh_channels(std::span<const double> weights, bool is_first);
   double step(std::span<const Vec3> points, std::span<const double> weights, bool moves_scale);
+  void iterate(std::span<const Vec3> points, std::span<const double> weights, int most, bool moves_scale);
   void correct_jacobian();
   void report(std::span<const Vec3> points, std::span<const double> weights);
 
@@ -96,6 +103,7 @@ class Tracker {
   Eigen::MatrixXd jacobian_;  ///< 3 #landmarks x #fitted
   Eigen::MatrixXd reach_;     ///< #landmarks x #fitted: squared lengths of it at rest
   Eigen::VectorXd move_;      ///< of the last step
+  double farthest_ = 0.0;     ///< that a step may move a channel
   std::unique_ptr<System> system_;
   std::unique_ptr<LandmarkJacobian> renewed_;
   HeadPose head_;

@@ -22,7 +22,7 @@ constexpr double jaw_alone = 0.2,
                  coarse = 0.6;  // shares of the rounds in which other channels, or lips, are held
 constexpr int normal_passes = 4;
 constexpr double mutual_slack = 0.002;  // metres
-constexpr double first_cost = 100.0;    // times the costs of activations in the first round; 1 in the last
+constexpr double first_cost = 100.0;    // times the last round's costs of activations in the first
 constexpr double still_weight = 4.0;    // of vertices no muscle moves, in the head's pose
 
 /// The skin of the subject as one surface, by vertices of the subject.
@@ -265,7 +265,7 @@ class ScanFitter {
         pose_ = pose_step(subject_, matches) * pose_;
         matches = near(reach);
       }
-      FitOptions now = steps(fitting_, std::pow(first_cost, 1.0 - share));
+      FitOptions now = steps(fitting_, options_.caution * std::pow(first_cost, 1.0 - share));
       now.held = held(share);
       fitter_.set_options(now);
       out.result = fitter_.follow(target_of(subject_, matches, displacements_));

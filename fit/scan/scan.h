@@ -12,6 +12,9 @@ struct ScanOptions {
   double reach = 0.02;     ///< metres: farther points of the scan are not matched in the first iteration...
   double last_reach = 0.005;  ///< ...and in the last
   int samples = 4000;         ///< vertices matched, at most
+  /// Times the penalties on activations: a scan's triangles are off its surface by more than nothing, the
+  /// same way over whole regions, and so are matches that slide.
+  double caution = 5.0;
 };
 
 struct ScanFit {

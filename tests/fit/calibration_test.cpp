@@ -180,6 +180,19 @@ TEST_F(Calibrate, TheToolWritesARigWithTablesOfItsOwn) {
 
   EXPECT_TRUE(report["physique"].contains("tissue_depth"));
 
+  // The prior weighs what is seen against the tables.
+  const auto farthest_gain = [](const json& from) {
+    double most = 0.0;
+    for (const auto& [name, gain] : from["gains"].items())
+      most = std::max(most, std::abs(gain.get<double>() - 1.0));
+    return most;
+  };
+  const cli::Outcome strict = run("calibrate " + at("rig.glb") + " --scans " + at("scans") +
+                                  " --adjust gains --prior 1000 -o " + at("strict.glb") + " --json");
+  ASSERT_EQ(strict.code, 0) << strict.err;
+  EXPECT_GT(farthest_gain(report), 0.2) << "the scans were made with 0.6";
+  EXPECT_LT(farthest_gain(json::parse(strict.out)), 0.01);
+
   fs::create_directories(*folder / "nothing");
   EXPECT_EQ(run("calibrate " + at("rig.glb") + " --scans " + at("nothing") + " -o " + at("x.glb")).code, 1);
   EXPECT_FALSE(fs::exists(at("x.glb")));

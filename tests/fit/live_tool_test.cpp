@@ -13,22 +13,23 @@ namespace {
 TEST_F(Live, ToolFitsPointsOfDetectors) {
   const std::vector<Vec3> standing = places_of(values_of({{"jaw_open", 0.35F}}), false);
   const Mat4 to_file = subject->file().rig.input_to_metres.cast<double>().inverse();
-  const LandmarkSet set = find_landmark_set("mediapipe478").value();
-  nlohmann::json list(set.points, nullptr);
-  for (const LandmarkSet::Entry& entry : set.entries)
-    for (size_t l = 0; l < landmarks.size(); ++l)
-      if (landmarks[l].entry.landmark == entry.landmark)
-        for (const uint32_t p : entry.points) {
-          const Vec3 place = transform_point(to_file, standing[l]);
-          list[p] = {place.x(), place.y(), place.z()};
-        }
-  std::ofstream(at(set.name + ".json")) << nlohmann::json{{"points", list}};
-  const cli::Outcome fitted =
-      run("fit " + at("rig.glb") + " --target " + at(set.name + ".json") + " -o " + at("a.json") + " --json");
-  ASSERT_EQ(fitted.code, 0) << fitted.err;
-  const nlohmann::json report = nlohmann::json::parse(fitted.out);
-  EXPECT_NEAR(report["activations"].value("jaw_open", 0.0), 0.35, 0.05) << set.name;
-  EXPECT_LT(report["rms_mm"].get<double>(), 0.3) << set.name;
+  for (const LandmarkSet& set : landmark_sets()) {
+    nlohmann::json list(set.points, nullptr);
+    for (const LandmarkSet::Entry& entry : set.entries)
+      for (size_t l = 0; l < landmarks.size(); ++l)
+        if (landmarks[l].entry.landmark == entry.landmark)
+          for (const uint32_t p : entry.points) {
+            const Vec3 place = transform_point(to_file, standing[l]);
+            list[p] = {place.x(), place.y(), place.z()};
+          }
+    std::ofstream(at(set.name + ".json")) << nlohmann::json{{"points", list}};
+    const cli::Outcome fitted = run("fit " + at("rig.glb") + " --target " + at(set.name + ".json") + " -o " +
+                                    at("a.json") + " --json");
+    ASSERT_EQ(fitted.code, 0) << fitted.err;
+    const nlohmann::json report = nlohmann::json::parse(fitted.out);
+    EXPECT_NEAR(report["activations"].value("jaw_open", 0.0), 0.35, 0.05) << set.name;
+    EXPECT_LT(report["rms_mm"].get<double>(), 0.3) << set.name;
+  }
   std::ofstream(at("few.json")) << R"({"points": [[0,0,0],[1,0,0]]})";
   const cli::Outcome refused =
       run("fit " + at("rig.glb") + " --target " + at("few.json") + " -o " + at("a.json"));
@@ -75,7 +76,11 @@ TEST_F(Live, ToolFitsPictures) {
   const cli::Outcome take =
       run(rig + " --target " + at("pictures.json") + camera + " -o " + at("take.csv") + " --json");
   ASSERT_EQ(take.code, 0) << take.err;
-  EXPECT_GT(nlohmann::json::parse(take.out)["share"].get<double>(), 0.95);
+  const nlohmann::json played = nlohmann::json::parse(take.out);
+  EXPECT_GT(played["share"].get<double>(), 0.95);
+  EXPECT_TRUE(played["converged"].get<bool>());
+  for (const nlohmann::json& frame : played["targets"])
+    EXPECT_TRUE(frame["converged"].get<bool>()) << frame["name"];
   EXPECT_EQ(run("play " + at("rig.glb") + " --curves " + at("take.csv") + " -o " + at("take.glb")).code, 0);
 
   const auto expect_error = [&](const std::string& arguments, const std::string& says) {
