@@ -11,16 +11,6 @@ using Eigen::MatrixXf;
 
 constexpr size_t longest_span = 256;  // frames
 
-/// How far frames `first` + 1 .. `last` - 1 are off the straight line between the two: #curves x #frames.
-MatrixXf off_line(const MatrixXf& values, size_t first, size_t last) {
-  const auto from = static_cast<Index>(first), count = static_cast<Index>(last - first) - 1;
-  MatrixXf off = values.middleCols(from + 1, count);
-  const Eigen::VectorXf start = values.col(from), whole = values.col(static_cast<Index>(last)) - start;
-  for (Index f = 0; f < count; ++f)
-    off.col(f) -= start + whole * (static_cast<float>(f + 1) / static_cast<float>(last - first));
-  return off;
-}
-
 /// From each key as far as `fits(first, last)` goes: doubling, then bisection.
 template <class Fits>
 std::vector<size_t> keys(size_t frames, Fits fits) {
@@ -48,6 +38,15 @@ std::vector<size_t> keys(size_t frames, Fits fits) {
 }
 
 }  // namespace
+
+MatrixXf off_line(const MatrixXf& values, size_t first, size_t last) {
+  const auto from = static_cast<Index>(first), count = static_cast<Index>(last - first) - 1;
+  MatrixXf off = values.middleCols(from + 1, count);
+  const Eigen::VectorXf start = values.col(from), whole = values.col(static_cast<Index>(last)) - start;
+  for (Index f = 0; f < count; ++f)
+    off.col(f) -= start + whole * (static_cast<float>(f + 1) / static_cast<float>(last - first));
+  return off;
+}
 
 std::vector<size_t> keys_of(const MatrixXf& values, std::span<const float> tolerances) {
   const Eigen::Map<const Eigen::VectorXf> most(tolerances.data(), static_cast<Index>(tolerances.size()));

@@ -15,6 +15,10 @@ std::vector<size_t> keys_of(const Eigen::MatrixXf& values, std::span<const float
 std::vector<size_t> keys_of_shapes(const Eigen::MatrixXf& weights, const Eigen::MatrixXf& shapes,
                                    double tolerance);
 
+/// How far frames `first` + 1 .. `last` - 1 of `values` are off the straight line between the two:
+/// #curves x #frames between.
+Eigen::MatrixXf off_line(const Eigen::MatrixXf& values, size_t first, size_t last);
+
 /// `values` as they are between the kept frames: linear.
 Eigen::MatrixXf between_keys(const Eigen::MatrixXf& values, std::span<const size_t> keys);
 

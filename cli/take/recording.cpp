@@ -38,27 +38,21 @@ MatrixXf sampled_rows(const std::vector<Eigen::VectorXf>& shapes, Index most) {
 
 /// Adds to `off` (#frames) how far at most linear weights between the keys move a vertex.
 void add_errors_of_keys(const MeshMotion& motion, std::vector<float>& off) {
-  const MatrixXf change = between_keys(motion.weights, motion.keys) - motion.weights;
-  std::vector<Index> changed;
-  for (Index f = 0; f < change.cols(); ++f)
-    if (!change.col(f).isZero(0)) changed.push_back(f);
-  if (changed.empty()) return;
   std::vector<const float*> columns;
   for (const Eigen::VectorXf& shape : motion.shapes)
     columns.push_back(shape.data());
-  constexpr size_t block = 32;
-  tbb::parallel_for(size_t{0}, (changed.size() + block - 1) / block, [&](size_t b) {
-    const std::vector<Index> frames(
-        changed.begin() + static_cast<std::ptrdiff_t>(b * block),
-        changed.begin() + static_cast<std::ptrdiff_t>(std::min(changed.size(), (b + 1) * block)));
+  if (columns.empty()) return;
+  tbb::parallel_for(size_t{1}, motion.keys.size(), [&](size_t k) {
+    const size_t first = motion.keys[k - 1], last = motion.keys[k];
+    if (last - first < 2) return;
     MatrixXf moved;
-    product(columns, motion.shapes[0].size(), change(Eigen::all, frames), moved);
-    for (size_t i = 0; i < frames.size(); ++i)
-      off[static_cast<size_t>(frames[i])] += largest_length(moved.col(static_cast<Index>(i)));
+    product(columns, motion.shapes[0].size(), off_line(motion.weights, first, last), moved);
+    for (size_t f = first + 1; f < last; ++f)
+      off[f] += largest_length(moved.col(static_cast<Index>(f - first - 1)));
   });
 }
 
-/// Saves keys as far as the tolerance allows.
+/// Saves keys as far as the tolerance allows, and keeps the weights at those alone.
 void choose_keys(const std::vector<float>& left, double tolerance, MeshMotion& motion) {
   double share = share_of_keys;
   for (int attempt = 0; attempt < 3; ++attempt, share *= 0.5) {
@@ -68,8 +62,9 @@ void choose_keys(const std::vector<float>& left, double tolerance, MeshMotion& m
     const auto worst = std::max_element(off.begin(), off.end());
     motion.largest_error = static_cast<double>(*worst);
     motion.largest_error_frame = static_cast<size_t>(worst - off.begin());
-    if (motion.largest_error <= tolerance) return;
+    if (motion.largest_error <= tolerance) break;
   }
+  motion.weights = motion.weights(Eigen::all, motion.keys).eval();
 }
 
 /// Shows the frames of each mesh to its taker while the next ones are simulated, on a thread of its own where

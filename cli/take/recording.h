@@ -25,8 +25,8 @@ struct MeshMotion {
   MeshOfFile mesh;
   std::vector<uint32_t> vertices;       ///< those that move, in the order of the shapes' rows
   std::vector<Eigen::VectorXf> shapes;  ///< of 3 #moving vertices each
-  Eigen::MatrixXf weights;              ///< #shapes x #frames
   std::vector<size_t> keys;             ///< frames whose weights are written; between them they are linear
+  Eigen::MatrixXf weights;              ///< #shapes x #keys
   double largest_error =
       0.0;  ///< of what is written, at most, at any vertex of any frame, in the mesh's unit
   size_t largest_error_frame = 0;

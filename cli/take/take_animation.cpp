@@ -67,13 +67,13 @@ std::vector<PrimitiveMotion> shape_of(const MeshMotion& motion, const Face& face
   return shape;
 }
 
-/// The weights of each component at the keys.
-std::vector<std::vector<float>> weights_at_keys(const MeshMotion& motion) {
-  std::vector<std::vector<float>> weights(static_cast<size_t>(motion.weights.rows()));
-  for (size_t k = 0; k < weights.size(); ++k)
-    for (const size_t key : motion.keys)
-      weights[k].push_back(motion.weights(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(key)));
-  return weights;
+std::vector<std::vector<float>> rows_of(const Eigen::MatrixXf& weights) {
+  std::vector<std::vector<float>> rows;
+  for (Eigen::Index k = 0; k < weights.rows(); ++k) {
+    const Eigen::RowVectorXf row = weights.row(k);
+    rows.emplace_back(row.begin(), row.end());
+  }
+  return rows;
 }
 
 void add_pointers(GltfEdit& edit, const Recording& recording, Animation& animation) {
@@ -114,7 +114,7 @@ void add_take(GltfEdit& edit, const std::string& name, const Take& take, const F
     const std::vector<gltf::MeshTargets> targets = gltf::add_morph_targets(
         edit, {motion.mesh.mesh}, names, [&](size_t k) { return shape_of(motion, face, k); }, options,
         &warnings);
-    gltf::add_weight_channels(edit, targets, weights_at_keys(motion), animation.times(motion.keys),
+    gltf::add_weight_channels(edit, targets, rows_of(motion.weights), animation.times(motion.keys),
                               animation.json());
   }
   add_pointers(edit, recording, animation);
