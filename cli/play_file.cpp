@@ -18,13 +18,6 @@ namespace {
 
 constexpr double tolerance_mm = 0.1;  ///< of the written motion, at any vertex of any frame
 
-double metres_in_a_unit(const Face& face) {
-  fascia_asset_info info = {};
-  info.struct_size = sizeof info;
-  check(fascia_asset_get_info(face.asset(), &info), "rig");
-  return static_cast<double>(Eigen::Map<const Eigen::Vector3f>(info.input_to_metres).norm());
-}
-
 void write_caches(const Common& common, const PlayRequest& request, CacheKind kind, const Take& take,
                   Face& face, PlayFigures& figures) {
   std::vector<float> times;
@@ -41,15 +34,15 @@ void write_caches(const Common& common, const PlayRequest& request, CacheKind ki
 }
 
 /// The largest error of all meshes, and what more targets would do.
-void look_at_errors(const Take& take, const Recording& recording, double millimetres, PlayFigures& figures) {
+void look_at_errors(const Take& take, const Recording& recording, PlayFigures& figures) {
   bool is_known = true;
   for (const MeshMotion& motion : recording.meshes) {
     figures.components = std::max(figures.components, static_cast<size_t>(motion.weights.rows()));
     if (motion.wanted == 0) is_known = false;
     figures.wanted = std::max(figures.wanted, motion.wanted);
     figures.keys = std::max(figures.keys, motion.keys.size());
-    if (millimetres * motion.largest_error <= figures.largest_error_mm) continue;
-    figures.largest_error_mm = millimetres * motion.largest_error;
+    if (1e3 * motion.largest_error <= figures.largest_error_mm) continue;
+    figures.largest_error_mm = 1e3 * motion.largest_error;
     figures.largest_error_seconds = take.time(motion.largest_error_frame);
   }
   if (!is_known) figures.wanted = 0;
@@ -74,9 +67,10 @@ std::vector<NodeMotion> turned_nodes(const PlayRequest& request, const Take& tak
 
 void write_animation(const Common& common, const PlayRequest& request, const Take& take, Face& face,
                      PlayFigures& figures) {
-  const double metres = metres_in_a_unit(face);
-  Recording recording = record(common, take, face, {request.most_targets, 1e-3 * tolerance_mm / metres});
-  look_at_errors(take, recording, 1e3 * metres, figures);
+  const Face in_metres(request.rig, {FASCIA_SPACE_METRES, request.solver, request.level});
+  Recording recording = record(common, take, face, meshes_of_file(face, in_metres),
+                               {request.most_targets, 1e-3 * tolerance_mm});
+  look_at_errors(take, recording, figures);
   figures.resets = recording.figures.resets;
   figures.milliseconds_a_frame = recording.figures.milliseconds_a_frame;
 

@@ -3,7 +3,10 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_group.h>
 
+#include <Eigen/QR>
+#include <Eigen/SVD>
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "cli/take/keyframes.h"
@@ -131,7 +134,27 @@ PerformanceFigures show(const Common& common, const Take& take, const Face& face
 
 }  // namespace
 
-std::vector<MeshOfFile> meshes_of_file(const Face& face) {
+namespace {
+
+/// The most that `to` changes for a change of 1 of `from`, where one is an affine function of the other: the
+/// largest singular value of its matrix, from all vertices (three numbers each).
+double largest_scale(std::span<const float> from, std::span<const float> to) {
+  using Places = Eigen::Map<const Eigen::Matrix3Xf>;
+  const auto count = static_cast<Index>(from.size() / 3);
+  if (count == 0) return 1.0;
+  Eigen::Matrix3Xd a = Places(from.data(), 3, count).cast<double>(),
+                   b = Places(to.data(), 3, count).cast<double>();
+  a.colwise() -= a.rowwise().mean().eval();
+  b.colwise() -= b.rowwise().mean().eval();
+  const Eigen::Matrix3d matrix =
+      (a * a.transpose()).completeOrthogonalDecomposition().solve(a * b.transpose());
+  const double scale = matrix.jacobiSvd().singularValues()[0];
+  return scale > 0.0 && std::isfinite(scale) ? scale : 1.0;
+}
+
+}  // namespace
+
+std::vector<MeshOfFile> meshes_of_file(const Face& face, const Face& in_metres) {
   std::map<uint32_t, MeshOfFile> by_mesh;
   for (size_t m = 0; m < face.meshes().size(); ++m) {
     MeshOfFile& mesh = by_mesh[face.meshes()[m].mesh];
@@ -139,6 +162,8 @@ std::vector<MeshOfFile> meshes_of_file(const Face& face) {
     mesh.parts.push_back(m);
     mesh.firsts.push_back(mesh.vertices);
     mesh.vertices += face.meshes()[m].vertex_count;
+    const double metres = largest_scale(face.rest(m), in_metres.rest(m));
+    mesh.metres = mesh.parts.size() == 1 ? metres : std::max(mesh.metres, metres);
   }
   std::vector<MeshOfFile> meshes;
   for (auto& [number, mesh] : by_mesh)
@@ -156,14 +181,14 @@ void displacement(const Face& face, const MeshOfFile& mesh, std::vector<float>& 
   }
 }
 
-Recording record(const Common& common, const Take& take, const Face& face, const RecordingOptions& options) {
+Recording record(const Common& common, const Take& take, const Face& face, std::vector<MeshOfFile> meshes,
+                 const RecordingOptions& options) {
   Recording recording;
-  std::vector<MeshOfFile> meshes = meshes_of_file(face);
   const size_t most = std::min(options.most_targets, most_components);
   std::vector<MotionSpace> spaces;
   for (const MeshOfFile& mesh : meshes) {
     MotionSpace::Options space;
-    space.tolerance = share_of_directions * options.tolerance;
+    space.tolerance = share_of_directions * options.tolerance / mesh.metres;
     space.fine_directions = std::max(space.fine_directions, 3 * most / 2);
     space.most_directions = std::max(space.most_directions, 2 * most);
     spaces.emplace_back(mesh.vertices, space);
@@ -177,9 +202,10 @@ Recording record(const Common& common, const Take& take, const Face& face, const
     MotionSpace space = std::move(spaces[m]);  // its memory is free again when the shapes are found
     space.finish();
     if (space.vertices().empty()) continue;
-    Components parts = components(space, most, share_of_components * options.tolerance);
+    Components parts = components(space, most, share_of_components * options.tolerance / meshes[m].metres);
     MeshMotion motion{meshes[m], space.vertices(), {}, {}, {}, 0.0, 0, parts.wanted};
-    WeightFit::Options fit{share_of_shapes * options.tolerance, options.most_targets - parts.shapes.size()};
+    WeightFit::Options fit{share_of_shapes * options.tolerance / meshes[m].metres,
+                           options.most_targets - parts.shapes.size()};
     moving.push_back(meshes[m]);
     recording.meshes.push_back(std::move(motion));
     fits.emplace_back(space.vertices(), std::move(parts), fit);
@@ -191,7 +217,8 @@ Recording record(const Common& common, const Take& take, const Face& face, const
     WeightFit::Result fitted = fits[m].finish();
     motion.shapes = std::move(fitted.shapes);
     motion.weights = std::move(fitted.weights);
-    choose_keys(fitted.left, options.tolerance, motion);
+    choose_keys(fitted.left, options.tolerance / motion.mesh.metres, motion);
+    motion.largest_error *= motion.mesh.metres;
     if (motion.largest_error <= options.tolerance) motion.wanted = motion.shapes.size();
   }
   return recording;

@@ -67,15 +67,6 @@ std::vector<PrimitiveMotion> shape_of(const MeshMotion& motion, const Face& face
   return shape;
 }
 
-std::vector<std::vector<float>> rows_of(const Eigen::MatrixXf& weights) {
-  std::vector<std::vector<float>> rows;
-  for (Eigen::Index k = 0; k < weights.rows(); ++k) {
-    const Eigen::RowVectorXf row = weights.row(k);
-    rows.emplace_back(row.begin(), row.end());
-  }
-  return rows;
-}
-
 void add_pointers(GltfEdit& edit, const Recording& recording, Animation& animation) {
   bool any = false;
   for (Eigen::Index c = 0; c < recording.values.rows(); ++c) {
@@ -102,19 +93,26 @@ void add_pointers(GltfEdit& edit, const Recording& recording, Animation& animati
 void add_take(GltfEdit& edit, const std::string& name, const Take& take, const Face& face,
               Recording recording, const std::vector<NodeMotion>& nodes, std::vector<std::string>& warnings) {
   Animation animation(edit, take, name);
+  size_t expected = 0;
+  for (const MeshMotion& motion : recording.meshes)
+    expected += motion.shapes.size() * (24 * motion.mesh.vertices + 4 * motion.keys.size());
+  edit.expect(expected);
   for (MeshMotion& recorded : recording.meshes) {
-    const MeshMotion motion = std::move(recorded);  // its memory is free again when it is in the file
+    MeshMotion motion = std::move(recorded);  // its memory is free again when it is in the file
     std::vector<std::string> names;
     for (size_t k = 0; k < motion.shapes.size(); ++k)
       names.push_back("motion_" + std::to_string(k));
     if (names.empty()) continue;
     gltf::MorphOptions options;
     options.is_linear = true;
-    edit.expect(motion.shapes.size() * (24 * motion.mesh.vertices + 4 * motion.keys.size()));
     const std::vector<gltf::MeshTargets> targets = gltf::add_morph_targets(
         edit, {motion.mesh.mesh}, names, [&](size_t k) { return shape_of(motion, face, k); }, options,
         &warnings);
-    gltf::add_weight_channels(edit, targets, rows_of(motion.weights), animation.times(motion.keys),
+    motion.shapes = {};
+    const auto weight = [&](size_t k, size_t key) {
+      return motion.weights(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(key));
+    };
+    gltf::add_weight_channels(edit, targets, motion.keys.size(), weight, animation.times(motion.keys),
                               animation.json());
   }
   add_pointers(edit, recording, animation);

@@ -11,6 +11,32 @@
 namespace fascia::gltf {
 namespace {
 
+/// Names of shapes that meshes have already, by what became of the new ones.
+struct Heard {
+  std::set<std::string> renamed, replaced;
+  std::set<std::string> on;     ///< renamed, though to be replaced: the old ones are on by default
+  std::set<std::string> still;  ///< not replaced everywhere: the new ones move nothing in some mesh
+
+  void tell(std::vector<std::string>& warnings) const {
+    for (const std::string& name : renamed)
+      warnings.push_back(owned(name) + "the new one is called 'fascia_" + name + "'");
+    for (const std::string& name : replaced)
+      warnings.push_back(owned(name) + "it is replaced");
+    for (const std::string& name : on)
+      warnings.push_back(
+          owned(name) +
+          "it is on by default and so part of the face at rest, stays, and the new one is called 'fascia_" +
+          name + "'");
+    for (const std::string& name : still)
+      warnings.push_back(owned(name) + "it stays in the meshes that the new one does not move");
+  }
+
+ private:
+  static std::string owned(const std::string& name) {
+    return "the head has a shape '" + name + "' of its own: ";
+  }
+};
+
 /// One mesh of the file while targets are added to it.
 class MeshMorphs {
  public:
@@ -28,24 +54,33 @@ class MeshMorphs {
 
   /// Adds one shape; returns its index, or -1 when it moves nothing here.
   int add(const std::string& name, const std::vector<PrimitiveMotion>& shape, const MorphOptions& options,
-          std::set<std::string>& renamed) {
+          Heard& heard) {
     const std::vector<std::vector<Vec3f>> displacements = gathered(shape);
     const bool moves =
         std::any_of(displacements.begin(), displacements.end(), [](const std::vector<Vec3f>& motion) {
           return std::any_of(motion.begin(), motion.end(), [](const Vec3f& d) { return !d.isZero(0); });
         });
-    if (!moves) return -1;
-    const auto known = std::find(names_.begin(), names_.begin() + static_cast<std::ptrdiff_t>(before_), name);
-    const bool exists = known != names_.begin() + static_cast<std::ptrdiff_t>(before_);
-    if (exists) renamed.insert(name);
-    const bool replaces = exists && options.existing == MorphOptions::Existing::replace;
-    const std::size_t index = replaces ? static_cast<std::size_t>(known - names_.begin()) : names_.size();
-    if (replaces)
-      clear(index);
-    else
-      names_.push_back(exists ? free_name(name) : name);
-    put(index, displacements, turned(displacements, options));
-    return static_cast<int>(index);
+    const std::vector<std::size_t> known = own_targets(name);
+    const bool replaces = options.existing == MorphOptions::Existing::replace;
+    if (!moves) {
+      if (replaces && !known.empty()) heard.still.insert(name);
+      return -1;
+    }
+    // The rest that is seen is made with a target that is on by default: it must stay what it is.
+    const bool is_on =
+        std::any_of(known.begin(), known.end(), [&](std::size_t t) { return is_on_by_default(t); });
+    if (!known.empty()) (!replaces ? heard.renamed : is_on ? heard.on : heard.replaced).insert(name);
+    if (known.empty() || !replaces || is_on) {
+      names_.push_back(known.empty() ? name : free_name(name));
+      put(names_.size() - 1, displacements, turned(displacements, options));
+      return static_cast<int>(names_.size() - 1);
+    }
+    const MeshShading::Turned turns = turned(displacements, options);
+    for (const std::size_t target : known)
+      clear(target);
+    for (const std::size_t target : known)
+      put(target, displacements, turns);
+    return static_cast<int>(known.front());
   }
 
   /// Names, default weights and normals, once all shapes are in.
@@ -77,6 +112,21 @@ class MeshMorphs {
     while (names.size() < count)
       names.push_back("target_" + std::to_string(names.size()));
     return names;
+  }
+
+  /// The targets of that name that the mesh had before.
+  std::vector<std::size_t> own_targets(const std::string& name) const {
+    std::vector<std::size_t> targets;
+    for (std::size_t t = 0; t < before_; ++t)
+      if (names_[t] == name) targets.push_back(t);
+    return targets;
+  }
+
+  bool is_on_by_default(std::size_t target) const {
+    const std::vector<std::size_t> nodes = edit_.nodes_of(mesh_);
+    return std::any_of(nodes.begin(), nodes.end(), [&](std::size_t node) {
+      return default_weights(edit_.json, edit_.json["nodes"][node], before_)[target] != 0.0F;
+    });
   }
 
   std::string free_name(const std::string& name) const {
@@ -194,7 +244,7 @@ std::vector<MeshTargets> add_morph_targets(
   const tinygltf::Model& model = edit.model();
   std::vector<MeshTargets> result;
   std::vector<std::string> heard;
-  std::set<std::string> existing;
+  Heard existing;
   for (const uint32_t mesh : meshes) {
     MeshMorphs morphs(edit, model, mesh);
     MeshTargets targets{mesh, 0, {}};
@@ -207,17 +257,14 @@ std::vector<MeshTargets> add_morph_targets(
     lengthen_weights(edit, model, mesh, morphs.before(), morphs.count(), heard);
     result.push_back(std::move(targets));
   }
-  const bool replaced = options.existing == MorphOptions::Existing::replace;
-  for (const std::string& name : existing)
-    heard.push_back("the head has a shape '" + name + "' of its own: " +
-                    (replaced ? "it is replaced" : "the new one is called 'fascia_" + name + "'"));
+  existing.tell(heard);
   if (warnings != nullptr) warnings->insert(warnings->end(), heard.begin(), heard.end());
   return result;
 }
 
-void add_weight_channels(Edit& edit, const std::vector<MeshTargets>& meshes,
-                         const std::vector<std::vector<float>>& weights, std::size_t time, Json& animation) {
-  const std::size_t keys = weights.empty() ? 0 : weights[0].size();
+void add_weight_channels(Edit& edit, const std::vector<MeshTargets>& meshes, std::size_t keys,
+                         const std::function<float(std::size_t shape, std::size_t key)>& weight,
+                         std::size_t time, Json& animation) {
   for (const MeshTargets& mesh : meshes)
     for (const std::size_t node : edit.nodes_of(mesh.mesh)) {
       const std::vector<float> still = default_weights(edit.json, edit.json["nodes"][node], mesh.count);
@@ -227,7 +274,7 @@ void add_weight_channels(Edit& edit, const std::vector<MeshTargets>& meshes,
         values.insert(values.end(), still.begin(), still.end());
         for (std::size_t s = 0; s < mesh.targets.size(); ++s)
           if (mesh.targets[s] >= 0)
-            values[f * mesh.count + static_cast<std::size_t>(mesh.targets[s])] = weights[s][f];
+            values[f * mesh.count + static_cast<std::size_t>(mesh.targets[s])] = weight(s, f);
       }
       animation["samplers"].push_back(
           {{"input", time}, {"output", edit.add_floats(values, 1, false)}, {"interpolation", "LINEAR"}});

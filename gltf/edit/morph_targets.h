@@ -64,9 +64,10 @@ std::vector<MeshTargets> add_morph_targets(
     std::vector<std::string>* warnings = nullptr);
 
 /// Adds a linear weights channel to `animation` (with its arrays "samplers" and "channels") for every node
-/// that shows one of `meshes`. `weights[s][f]` is the weight of shape s at key f, `time` the accessor of the
-/// keys' times; other targets stay at the node's default weights.
-void add_weight_channels(Edit& edit, const std::vector<MeshTargets>& meshes,
-                         const std::vector<std::vector<float>>& weights, std::size_t time, Json& animation);
+/// that shows one of `meshes`. `weight(s, k)` is the weight of shape s at key k of `keys`, `time` the
+/// accessor of the keys' times; other targets stay at the node's default weights.
+void add_weight_channels(Edit& edit, const std::vector<MeshTargets>& meshes, std::size_t keys,
+                         const std::function<float(std::size_t shape, std::size_t key)>& weight,
+                         std::size_t time, Json& animation);
 
 }  // namespace fascia::gltf

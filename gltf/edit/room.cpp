@@ -24,6 +24,31 @@ std::size_t uses_in_mesh(const Json& mesh, std::size_t accessor) {
   return uses;
 }
 
+/// All whole numbers in extensions that may hold indices of accessors or views; those of our own rig hold
+/// none of what the file had before.
+void add_numbers(const Json& value, std::set<std::size_t>& numbers) {
+  if (value.is_number_unsigned()) numbers.insert(value.get<std::size_t>());
+  if (!value.is_structured()) return;
+  for (const auto& [key, entry] : value.items())
+    if (!key.starts_with("FASCIA_")) add_numbers(entry, numbers);
+}
+
+std::set<std::size_t> numbers_in_extensions(const Json& root) {
+  std::set<std::size_t> numbers;
+  const auto add = [&](const Json& object) {
+    if (object.contains("extensions")) add_numbers(object["extensions"], numbers);
+  };
+  add(root);
+  for (const Json& node : root.value("nodes", Json::array()))
+    add(node);
+  for (const Json& mesh : root.value("meshes", Json::array())) {
+    add(mesh);
+    for (const Json& primitive : mesh.value("primitives", Json::array()))
+      add(primitive);
+  }
+  return numbers;
+}
+
 std::size_t size_of_component(int type) {
   constexpr int byte = 5120, unsigned_byte = 5121, short_integer = 5122, unsigned_short = 5123;
   if (type == byte || type == unsigned_byte) return 1;
@@ -95,6 +120,9 @@ Others others(const Json& root, std::size_t accessor, const std::vector<Piece>& 
         result.views.insert(piece.view);
       }
   const std::size_t count = root.value("bufferViews", Json::array()).size();
+  for (const std::size_t number : numbers_in_extensions(root))
+    if (number < count && result.views.insert(number).second)
+      result.bytes.push_back(bytes_of_view(root, number));
   for (const Json& image : root.value("images", Json::array()))
     if (image.contains("bufferView") && image["bufferView"] < count) {
       result.views.insert(image["bufferView"].get<std::size_t>());
@@ -104,6 +132,19 @@ Others others(const Json& root, std::size_t accessor, const std::vector<Piece>& 
     if (!own.contains(view) && !result.views.contains(view))
       result.bytes.push_back(bytes_of_view(root, view));
   return result;
+}
+
+/// Adds a range to others that do not meet one another: those it meets become one with it.
+void add_range(ByteRange range, std::vector<ByteRange>& ranges) {
+  for (auto other = ranges.begin(); other != ranges.end();) {
+    if (!other->meets(range)) {
+      ++other;
+      continue;
+    }
+    range = {std::min(range.begin, other->begin), std::max(range.end, other->end)};
+    other = ranges.erase(other);
+  }
+  if (range.size() > 0) ranges.push_back(range);
 }
 
 }  // namespace
@@ -118,7 +159,7 @@ std::size_t uses_of(const Json& root, std::size_t accessor) {
     for (const Json& sampler : animation.value("samplers", Json::array()))
       for (const char* end : {"input", "output"})
         if (sampler.contains(end) && sampler[end] == accessor) ++uses;
-  return uses;
+  return uses + numbers_in_extensions(root).count(accessor);
 }
 
 OwnRoom own_room(const Json& root, std::size_t accessor) {
@@ -128,7 +169,7 @@ OwnRoom own_room(const Json& root, std::size_t accessor) {
   for (const Piece& piece : pieces) {
     if (std::none_of(other.bytes.begin(), other.bytes.end(),
                      [&](const ByteRange& bytes) { return bytes.meets(piece.bytes); }))
-      own.bytes.push_back(piece.bytes);
+      add_range(piece.bytes, own.bytes);
     if (!other.views.contains(piece.view) &&
         std::find(own.views.begin(), own.views.end(), piece.view) == own.views.end())
       own.views.push_back(piece.view);

@@ -14,14 +14,16 @@ struct ByteRange {
   bool meets(const ByteRange& other) const { return begin < other.end && other.begin < end; }
 };
 
-/// How often the file's meshes, skins and animations refer to an accessor.
+/// How often the file's meshes, skins and animations refer to an accessor; a number like it in an extension
+/// of the file, a node, a mesh or a primitive counts as well, since it may be one.
 std::size_t uses_of(const Json& root, std::size_t accessor);
 
 /// What an accessor alone reads.
 struct OwnRoom {
-  /// Bytes that nothing else reads: no accessor, no picture and no buffer view that neither of them uses.
+  /// Bytes that nothing else reads: no accessor, no picture, no extension and no buffer view that none of
+  /// them uses. None of the ranges meets another.
   std::vector<ByteRange> bytes;
-  std::vector<std::size_t> views;  ///< buffer views that no other accessor and no picture refers to
+  std::vector<std::size_t> views;  ///< buffer views that no other accessor, picture or extension refers to
 };
 OwnRoom own_room(const Json& root, std::size_t accessor);
 

@@ -135,17 +135,20 @@ void prefer_intensity(Curves& curves) {
   });
 }
 
-/// Whether a column is percent though the others are shares: it goes beyond 10, and most of what is not zero
-/// in it is beyond 1.5; a single value that high is a fault of the capture.
+constexpr float most_percent = 150.0F;  // captures go beyond 100 a little
+constexpr float most_intensity = 5.5F;  // below, a value may be an intensity from 0 to 5
+
+/// Whether a column is percent though the others are shares: it goes beyond intensities, and more than a few
+/// of its values do beyond 1; one or two in a take are faults of the capture.
 bool is_percent(const Curve& curve) {
   const float most = peak(curve);
-  if (!(most > 10.0F && most <= 101.0F)) return false;
+  if (!(most > most_intensity && most <= most_percent)) return false;
   std::size_t active = 0, beyond = 0;
   for (const float value : curve.values) {
     active += std::abs(value) > 0.02F;
     beyond += std::abs(value) > 1.5F;
   }
-  return beyond > 1 && 2 * beyond >= active;
+  return beyond >= std::min<std::size_t>(2, curve.values.size()) && 10 * beyond >= active;
 }
 
 /// Shares beyond 1: action units from 0 to 5, percent, or a value that will be clamped.
@@ -165,7 +168,7 @@ void scale_to_shares(Curves& curves) {
     return most;
   };
   const float unit_peak = largest(units);
-  if (unit_peak > 1.5F && unit_peak <= 5.5F) {
+  if (unit_peak > 1.5F && unit_peak <= most_intensity) {
     curves.notes.push_back("action units reach " + rounded(unit_peak) + ": taken as intensities from 0 to 5");
     for (Curve* curve : units)
       scale(*curve, 0.2F);
@@ -178,7 +181,7 @@ void scale_to_shares(Curves& curves) {
     beyond += peak(*curve) > 1.5F;
   }
   const float most = largest(shares);
-  if (most > 2.0F && most <= 101.0F && 2 * beyond >= active) {
+  if (most > 2.0F && most <= most_percent && 2 * beyond > active) {
     curves.notes.push_back("values reach " + rounded(most) + ": taken as percent");
     for (Curve* curve : shares)
       scale(*curve, 0.01F);

@@ -200,6 +200,77 @@ TEST(MorphTargets, RoomThatOthersUseIsNotGivenBack) {
             slide);
 }
 
+TEST(MorphTargets, NumbersInExtensionsMayBeAccessors) {
+  SheetOptions with;
+  with.weights = {0.8F, 0};
+  Document document = sheet(with);
+  Json json = Json::parse(document.json);
+  const std::size_t slide = json["meshes"][0]["primitives"][0]["targets"][1]["POSITION"];
+  EXPECT_EQ(uses_of(json, slide), 1U);
+  json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] = slide;
+  EXPECT_EQ(uses_of(json, slide), 2U);
+  json["nodes"][0]["extensions"] = {{"FASCIA_tissue", {{"count", slide}}}};
+  EXPECT_EQ(uses_of(json, slide), 1U);
+}
+
+TEST(MorphTargets, RoomIsGivenBackOnce) {
+  // The base of a sparse accessor and its values in one view.
+  Edit edit(sheet({}));
+  const std::size_t view = edit.json["bufferViews"].size();
+  const std::vector<uint8_t> bytes(25 * 12 + 4);
+  edit.data().add_view(bytes);
+  edit.json["accessors"].push_back(
+      {{"bufferView", view},
+       {"componentType", 5126},
+       {"count", 25},
+       {"type", "VEC3"},
+       {"sparse",
+        {{"count", 2},
+         {"indices", {{"bufferView", view}, {"byteOffset", 300}, {"componentType", 5123}}},
+         {"values", {{"bufferView", view}}}}}});
+  const OwnRoom own = own_room(edit.json, edit.json["accessors"].size() - 1);
+  ASSERT_EQ(own.bytes.size(), 2U);
+  EXPECT_FALSE(own.bytes[0].meets(own.bytes[1]));
+  EXPECT_EQ(own.bytes[0].size() + own.bytes[1].size(), bytes.size());
+  EXPECT_EQ(own.views, std::vector<std::size_t>{view});
+}
+
+TEST(MorphTargets, AShapeThatIsOnByDefaultIsNotReplaced) {
+  SheetOptions with;
+  with.weights = {0.8F, 0};
+  MorphOptions replace;
+  replace.existing = MorphOptions::Existing::replace;
+  const Result result = morphed(with, {"lift"}, {bump(2)}, replace);
+  const Json mesh = result.json["meshes"][0];
+  EXPECT_EQ(mesh["extras"]["targetNames"], Json({"lift", "jawOpen", "fascia_lift"}));
+  EXPECT_EQ(element(floats(result.document, mesh["primitives"][0]["targets"][0]["POSITION"]), 3),
+            Vec3f(0, 0, 1));
+  ASSERT_EQ(result.warnings.size(), 1U);
+  EXPECT_NE(result.warnings[0].find("on by default"), std::string::npos);
+}
+
+TEST(MorphTargets, AllOfOneNameAreReplacedAndWhatStaysIsSaid) {
+  SheetOptions with;
+  with.weights = {0, 0};
+  Document document = sheet(with);
+  Json json = Json::parse(document.json);
+  json["meshes"][0]["extras"]["targetNames"] = {"jawOpen", "jawOpen"};
+  document.json = json.dump();
+  MorphOptions replace;
+  replace.existing = MorphOptions::Existing::replace;
+  Edit edit(document);
+  add_morph_targets(edit, {"jawOpen"}, {bump(1)}, replace);
+  const Document out = glb_document(edit.bytes(), "result");
+  const Json targets = Json::parse(out.json)["meshes"][0]["primitives"][0]["targets"];
+  for (int t = 0; t < 2; ++t) {
+    EXPECT_EQ(element(floats(out, targets[t]["POSITION"]), 12), Vec3f(0, 0, 1));
+    EXPECT_EQ(element(floats(out, targets[t]["POSITION"]), 3), Vec3f(0, 0, 0));
+  }
+  const Result still = morphed(with, {"lift", "new"}, {bump(0), bump(1)}, replace);
+  ASSERT_EQ(still.warnings.size(), 1U);
+  EXPECT_NE(still.warnings[0].find("it stays in the meshes"), std::string::npos);
+}
+
 TEST(MorphTargets, WeightChannelsKeepDefaultWeights) {
   SheetOptions with;
   with.weights = {0.8F, 0};
@@ -207,7 +278,9 @@ TEST(MorphTargets, WeightChannelsKeepDefaultWeights) {
   const std::vector<MeshTargets> targets = add_morph_targets(edit, {"bump"}, {bump(1)});
   Json animation = {{"samplers", Json::array()}, {"channels", Json::array()}};
   const std::vector<float> times = {0, 1};
-  add_weight_channels(edit, targets, {{0, 1}}, edit.add_floats(times, 1, true), animation);
+  add_weight_channels(
+      edit, targets, 2, [](std::size_t, std::size_t key) { return static_cast<float>(key); },
+      edit.add_floats(times, 1, true), animation);
   EXPECT_EQ(floats(glb_document(edit.bytes(), "x"), animation["samplers"][0]["output"]),
             (std::vector<float>{0.8F, 0, 0, 0.8F, 0, 1}));
 }

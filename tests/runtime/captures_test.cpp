@@ -260,6 +260,15 @@ TEST(Values, PercentAndIntensitiesAreScaledWithAWarning) {
   EXPECT_FLOAT_EQ(value(mixed, "a", 0), 1.0F);
   EXPECT_FLOAT_EQ(value(mixed, "b", 1), 40.0F);
   EXPECT_TRUE(has_note(mixed, "taken as percent in jawOpen"));
+  const Curves half = read("time,a,b,c,d\n0,50,40,0.3,0.5\n1,80,60,0.9,0.7\n2,60,70,0.9,0.2\n");
+  EXPECT_FLOAT_EQ(value(half, "a", 1), 0.8F);
+  EXPECT_FLOAT_EQ(value(half, "c", 1), 0.9F);
+  // Beyond 100, in a single row, mostly low, and weak.
+  EXPECT_FLOAT_EQ(value(read("time,a,b\n0,50,20\n1,103,40\n"), "a", 1), 1.03F);
+  EXPECT_FLOAT_EQ(value(read("time,a,b,c\n0,50,0.2,0.3\n"), "a", 0), 0.5F);
+  const Curves low = read("time,a,b,c\n0,0.5,1,1\n1,30,0,0\n2,20,1,1\n3,1,0,0\n4,1.1,1,1\n");
+  EXPECT_FLOAT_EQ(value(low, "a", 1), 0.3F);
+  EXPECT_FLOAT_EQ(value(read("time,a,b,c\n0,0,1,1\n1,5,0,0\n2,8,1,1\n"), "a", 2), 0.08F);
   EXPECT_TRUE(has_note(mixed, "up to 40"));
   // OpenFace: intensities from 0 to 5, presences only where there is no intensity, rows without a face
   // bridged.
