@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <set>
 
+#include "anatomy/anatomy.h"
 #include "formats/scene.h"
 #include "geometry/error.h"
 #include "geometry/text.h"
@@ -60,15 +62,40 @@ bool Curves::head_moves() const {
 
 namespace {
 
-/// Names that the rig knows although they drive nothing: another spelling of theirs does.
-void refuse_repeated(const std::vector<std::string>& unmatched, const Face& face,
-                     const std::filesystem::path& path) {
+/// A name without case and separators, and without what is before the last separator of prefixes.
+std::string bare(const std::string& name) {
+  const size_t prefix = name.find_last_of(".:|/");
+  std::string letters;
+  for (const char c : lower_case(prefix == std::string::npos ? name : name.substr(prefix + 1)))
+    if (c != '_' && c != '-' && c != ' ') letters += c;
+  return letters;
+}
+
+/// Names of other programs, which may stand beside the rig's own for the same thing: avatars have both
+/// jawOpen and mouthOpen.
+std::set<std::string> names_of_other_programs() {
+  std::set<std::string> names;
+  const nlohmann::json table = nlohmann::json::parse(anatomy::embedded_file("aliases.json"));
+  for (const nlohmann::json& vocabulary : table.at("vocabularies"))
+    for (const auto& [name, targets] : vocabulary.at("names").items())
+      names.insert(bare(name));
+  return names;
+}
+
+/// Names that the rig knows although they drive nothing, since another name does. Throws fascia::Error where
+/// it is the same name in another spelling; returns those of other programs, which are left out.
+std::vector<std::string> repeated(const std::vector<std::string>& unmatched, const Face& face,
+                                  const std::filesystem::path& path) {
+  std::vector<std::string> left_out;
   for (const std::string& name : unmatched) {
     float value = 0.0F;
-    if (fascia_face_get(face.handle(), name.c_str(), &value) == FASCIA_OK)
+    if (fascia_face_get(face.handle(), name.c_str(), &value) != FASCIA_OK) continue;
+    if (!names_of_other_programs().contains(bare(name)))
       throw Error("'" + path.string() + "': '" + name +
                   "' is there twice, once in another spelling, and would count twice: take one of them out");
+    left_out.push_back(name);
   }
+  return left_out;
 }
 
 }  // namespace
@@ -82,7 +109,12 @@ MatchedNames match(const Common& common, const Curves& curves, const Face& face,
     if (unmatched.count(name) == 0) names.matched.push_back(name);
   const std::string kind = extension_of(path);
   // Of the meshes of one avatar, which bear the same names, the first speaks.
-  if (kind != ".glb" && kind != ".gltf") refuse_repeated(names.unmatched, face, path);
+  if (kind != ".glb" && kind != ".gltf")
+    for (const std::string& name : repeated(names.unmatched, face, path)) {
+      common.warn("'" + path.filename().string() + "': '" + name +
+                  "' means what another of its columns does, and is left out");
+      std::erase(names.unmatched, name);
+    }
   for (const std::string& note : curves.notes())
     common.warn("'" + path.filename().string() + "': " + note);
   if (names.matched.empty())

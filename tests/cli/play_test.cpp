@@ -133,6 +133,15 @@ TEST_F(Play, OneThingInTwoSpellingsIsRefused) {
   }
 }
 
+TEST_F(Play, AnotherProgramsNameForTheSameIsLeftOut) {
+  const json both = play("time,jawOpen,mouthOpen\n0,0,0\n0.2,0.5,0.5\n", "--fps 30");
+  EXPECT_EQ(both["unmatched"], json::array());
+  EXPECT_NE(said.find("'mouthOpen' means what another of its columns does"), std::string::npos) << said;
+  fs::copy_file(at("out.glb"), at("both.glb"), fs::copy_options::overwrite_existing);
+  play("time,jawOpen\n0,0\n0.2,0.5\n", "--fps 30");
+  EXPECT_EQ(text_of(at("both.glb")), text_of(at("out.glb"))) << "it counts once";
+}
+
 TEST_F(Play, AStillTakeHasAKeyAtItsEndsAndFew) {
   const json report = play("time,jawOpen\n0,0.3\n10,0.3\n", "--fps 60");
   EXPECT_EQ(report["frames"], 601);
