@@ -67,9 +67,11 @@ std::vector<NodeMotion> turned_nodes(const PlayRequest& request, const Take& tak
 
 void write_animation(const Common& common, const PlayRequest& request, const Take& take, Face& face,
                      PlayFigures& figures) {
-  const Face in_metres(request.rig, {FASCIA_SPACE_METRES, request.solver, request.level});
-  Recording recording = record(common, take, face, meshes_of_file(face, in_metres),
-                               {request.most_targets, 1e-3 * tolerance_mm});
+  // The second face is gone when the take is played: it takes memory.
+  std::vector<MeshOfFile> meshes =
+      meshes_of_file(face, Face(request.rig, {FASCIA_SPACE_METRES, request.solver, request.level}));
+  Recording recording =
+      record(common, take, face, std::move(meshes), {request.most_targets, 1e-3 * tolerance_mm});
   look_at_errors(take, recording, figures);
   figures.resets = recording.figures.resets;
   figures.milliseconds_a_frame = recording.figures.milliseconds_a_frame;
