@@ -154,22 +154,20 @@ TEST(Take, VerticesThatMoveOnlyLateAreIncluded) {
   MotionSpace::Options options;
   options.tolerance = 1e-6;
   MotionSpace space(40, options);
-  std::vector<float> frame(120, 0.0F);
-  for (int f = 0; f < 100; ++f) {
-    frame[0] = 0.001F * static_cast<float>(f % 7);
-    if (f >= 70) frame[3 * 39 + 1] = 0.002F * static_cast<float>(f % 5);
-    space.add(frame);
-  }
+  const auto frame = [](int f) {
+    std::vector<float> displacement(120, 0.0F);
+    displacement[0] = 0.001F * static_cast<float>(f % 7);
+    if (f >= 70) displacement[3 * 39 + 1] = 0.002F * static_cast<float>(f % 5);
+    return displacement;
+  };
+  for (int f = 0; f < 100; ++f)
+    space.add(frame(f));
   space.finish();
   ASSERT_EQ(space.vertices(), (std::vector<uint32_t>{0, 39}));
   const Components parts = components(space, 64, 1e-6);
   WeightFit fit(space.vertices(), parts, {});
-  std::fill(frame.begin(), frame.end(), 0.0F);
-  for (int f = 0; f < 100; ++f) {
-    frame[0] = 0.001F * static_cast<float>(f % 7);
-    if (f >= 70) frame[3 * 39 + 1] = 0.002F * static_cast<float>(f % 5);
-    fit.add(frame);
-  }
+  for (int f = 0; f < 100; ++f)
+    fit.add(frame(f));
   const WeightFit::Result result = fit.finish();
   const MatrixXf made = matrix_of(result.shapes) * result.weights;
   EXPECT_NEAR(made(0, 75), 0.001F * (75 % 7), 2e-6);
