@@ -1,8 +1,8 @@
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 
 #include "app/workspace.h"
+#include "formats/content_hash.h"
 #include "formats/files.h"
 #include "geometry/error.h"
 
@@ -12,12 +12,7 @@ namespace {
 
 /// A short name of its own for each text.
 std::string mark_of(const std::string& text) {
-  uint32_t hash = 2166136261U;  // FNV-1a
-  for (const char c : text)
-    hash = (hash ^ static_cast<uint8_t>(c)) * 16777619U;
-  char mark[16];
-  std::snprintf(mark, sizeof mark, "%08x", hash);
-  return mark;
+  return formats::content_hash({reinterpret_cast<const uint8_t*>(text.data()), text.size()}).substr(0, 8);
 }
 
 std::string joined(std::initializer_list<double> numbers) {

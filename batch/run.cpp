@@ -1,9 +1,9 @@
 #include "batch/run.h"
 
 #include <fcntl.h>
-#include <sys/file.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <mutex>
@@ -13,6 +13,7 @@
 
 #include "batch/cause.h"
 #include "batch/places.h"
+#include "formats/file_lock.h"
 #include "formats/files.h"
 #include "geometry/error.h"
 
@@ -25,28 +26,13 @@ using Json = nlohmann::json;
 
 constexpr int exit_check = 4;
 
-/// A head that one process at a time may work at. The lock goes with the process that holds it.
-class Lock {
- public:
-  Lock(const fs::path& folder, const std::string& id) {
-    const std::string path = (folder / (id + ".lock")).string();
-    descriptor_ = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    if (descriptor_ < 0) throw Error("'" + path + "' cannot be written: " + std::strerror(errno));
-    if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
-      close(descriptor_);
-      descriptor_ = -1;
-    }
-  }
-  ~Lock() {
-    if (descriptor_ >= 0) close(descriptor_);
-  }
-  Lock(const Lock&) = delete;
-  Lock& operator=(const Lock&) = delete;
-  bool is_mine() const { return descriptor_ >= 0; }
-
- private:
-  int descriptor_ = -1;
-};
+/// The lock of a head, which one process at a time may work at.
+formats::FileLock lock_of(const fs::path& folder, const std::string& id) {
+  const fs::path path = folder / (id + ".lock");
+  formats::FileLock lock(path, formats::FileLock::Wait::no, formats::FileLock::everyone);
+  if (!lock.is_open()) throw Error("'" + path.string() + "' cannot be written: " + std::strerror(errno));
+  return lock;
+}
 
 /// Lets two folders that are there change places. False, and nothing done, where that cannot be.
 bool exchange(const fs::path& a, const fs::path& b) {
@@ -210,8 +196,8 @@ class Worker {
 Fate settle(const Head& head, const Options& options, const std::atomic<bool>& stop, Record& record) {
   record.id = head.id;
   record.head = head.file.string();
-  const Lock lock(options.output / lock_folder, head.id);
-  if (!lock.is_mine()) return Fate::elsewhere;
+  const formats::FileLock lock = lock_of(options.output / lock_folder, head.id);
+  if (!lock.holds()) return Fate::elsewhere;
   Worker worker(head, options, stop);
   worker.check_replaceable();
   const auto fail = [&](const std::string& message) {

@@ -8,9 +8,8 @@
 
 namespace fascia::formats {
 
-FileLock::FileLock(const std::filesystem::path& file, Wait wait) {
-  const int owner_only = 0600;
-  file_ = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, owner_only);
+FileLock::FileLock(const std::filesystem::path& file, Wait wait, unsigned permissions) {
+  file_ = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, permissions);
   if (file_ < 0) return;
   int result = 0;
   do

@@ -8,23 +8,18 @@
 
 #include "view/face/fibre_tubes.h"
 #include "view/face/lattice_layers.h"
+#include "view/face/points.h"
 #include "view/smooth_normals.h"
 
 namespace fascia::app {
+
+using view::points_of;
 
 namespace {
 
 const Vec3 skin_colour(0.86, 0.69, 0.59), bone_colour(0.90, 0.86, 0.75), tooth_colour(0.95, 0.94, 0.90),
     mucosa_colour(0.72, 0.38, 0.36), hair_colour(0.20, 0.15, 0.12), smas_colour(0.86, 0.62, 0.52),
     selected_colour(1.0, 0.85, 0.35);
-
-std::vector<Vec3> points_of(const std::vector<float>& flat) {
-  std::vector<Vec3> points;
-  points.reserve(flat.size() / 3);
-  for (size_t i = 0; i + 2 < flat.size(); i += 3)
-    points.emplace_back(flat[i], flat[i + 1], flat[i + 2]);
-  return points;
-}
 
 bool starts_with(const std::string& text, const char* start) {
   return text.rfind(start, 0) == 0;
@@ -251,15 +246,6 @@ void SceneStore::add_lattice(view::DrawList& list, const FaceFrame& frame, const
   if (layers.lattice) view::add_lattice(lattice, list);
 }
 
-std::vector<Vec3> SceneStore::skin_of(const FaceFrame& frame) const {
-  std::vector<Vec3> skin;
-  for (const size_t part : skin_parts_) {
-    const std::vector<Vec3> points = points_of(frame.positions[part]);
-    skin.insert(skin.end(), points.begin(), points.end());
-  }
-  return skin;
-}
-
 void SceneStore::add_bones(view::DrawList& list, const FaceFrame& frame, const SkullShift* shift) const {
   const Mat4 still = Mat4::Identity(), jaw = frame.jaw.cast<double>();
   const auto add = [&](FaceSurface bone, std::vector<Vec3> SkullShift::*by, const Mat4& place,
@@ -286,7 +272,8 @@ void SceneStore::add_sheets(view::DrawList& list, const FaceFrame& frame, const 
                 layers.muscles || layers.skull ? 0.5 : 1.0);
   }
   if (layers.ligaments)
-    view::add_ligaments(moving_->ligaments(skin_of(frame), frame.jaw.cast<double>()), list);
+    view::add_ligaments(moving_->ligaments(points_of(frame.positions, skin_parts_), frame.jaw.cast<double>()),
+                        list);
 }
 
 view::DrawList SceneStore::list(const FaceFrame& frame, const SceneOptions& options) const {

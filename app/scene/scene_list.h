@@ -61,7 +61,6 @@ class SceneStore {
   void add_lattice(view::DrawList& list, const FaceFrame& frame, const Layers& layers) const;
   void add_bones(view::DrawList& list, const FaceFrame& frame, const SkullShift* shift) const;
   void add_sheets(view::DrawList& list, const FaceFrame& frame, const Layers& layers) const;
-  std::vector<Vec3> skin_of(const FaceFrame& frame) const;
 
   const FaceAsset& asset_;
   std::optional<view::FaceScene> painted_;          ///< where the file gives any part a look of its own

@@ -20,8 +20,9 @@ using Eigen::VectorXf;
 
 /// Directions of components in the space's coefficients, and how weights are read off coefficients.
 struct Fit {
-  MatrixXf mix;   ///< #directions x #components
-  MatrixXf read;  ///< #components x #directions: weights = read * coefficients
+  MatrixXf mix;             ///< #directions x #components
+  MatrixXf read;            ///< #components x #directions: weights = read * coefficients
+  VectorXf vertex_weights;  ///< #judged: in the squared error it is best for
 };
 
 /// Errors at the judged vertices.
@@ -76,16 +77,27 @@ MatrixXf columns(const MatrixXf& matrix, const std::vector<Index>& which) {
   return result;
 }
 
-/// Principal components: `metric` is that of the weighted sampled vertices in the coefficients, `gram` the
-/// sum over all frames of weighted products of coefficients.
-Fit weighted_fit(const MatrixXd& metric, const MatrixXd& gram, Index count) {
-  const Eigen::LLT<MatrixXd> factor(metric);
+/// The products of the directions at the judged vertices, whose rows are weighted.
+MatrixXd metric_of(const MatrixXf& rows, const VectorXf& vertex_weights) {
+  MatrixXf scaled = rows;
+  for (Index v = 0; v < vertex_weights.size(); ++v)
+    scaled.middleRows<3>(3 * v) *= std::sqrt(vertex_weights[v]);
+  MatrixXf metric = MatrixXf::Zero(rows.cols(), rows.cols());
+  metric.selfadjointView<Eigen::Lower>().rankUpdate(scaled.transpose());
+  return MatrixXf(metric.selfadjointView<Eigen::Lower>()).cast<double>();
+}
+
+/// Principal components at the weighted judged vertices; `gram` is the sum over all frames of weighted
+/// products of coefficients.
+Fit weighted_fit(const MatrixXf& rows, const VectorXf& vertex_weights, const MatrixXd& gram, Index count) {
+  const Eigen::LLT<MatrixXd> factor(metric_of(rows, vertex_weights));
   const MatrixXd upper = factor.matrixU();
   const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(upper * gram * upper.transpose());
   const MatrixXd turn = eigen.eigenvectors().rightCols(count).rowwise().reverse();
   Fit fit;
   fit.read = (turn.transpose() * upper).cast<float>();
   fit.mix = upper.triangularView<Eigen::Upper>().solve(turn).cast<float>();
+  fit.vertex_weights = vertex_weights;
   return fit;
 }
 
@@ -97,18 +109,9 @@ MatrixXd gram_of(const MatrixXf& columns, const VectorXf& weights) {
   return (scaled * columns.transpose()).cast<double>();
 }
 
-MatrixXd metric_of(const MatrixXf& rows, const VectorXf& vertex_weights) {
-  MatrixXf scaled = rows;
-  for (Index v = 0; v < vertex_weights.size(); ++v)
-    scaled.middleRows<3>(3 * v) *= std::sqrt(vertex_weights[v]);
-  MatrixXf metric = MatrixXf::Zero(rows.cols(), rows.cols());
-  metric.selfadjointView<Eigen::Lower>().rankUpdate(scaled.transpose());
-  return MatrixXf(metric.selfadjointView<Eigen::Lower>()).cast<double>();
-}
-
 /// Weighs up what is off most, round by round, and keeps the best. `gram` is that of all coefficients.
 Fit with_least_largest_error(const MatrixXf& rows, const MatrixXf& coefficients, const MatrixXd& gram,
-                             const Fit& plain, Index count, double tolerance, VectorXf& weights_of_best) {
+                             const Fit& plain, Index count, double tolerance) {
   constexpr int rounds = 8;
   const std::vector<Index> telling = telling_frames(coefficients, plain);
   const MatrixXf judged = columns(coefficients, telling);
@@ -131,12 +134,11 @@ Fit with_least_largest_error(const MatrixXf& rows, const MatrixXf& coefficients,
     const float least_weight = frame_weights.minCoeff() * frame_weights.minCoeff();
     const MatrixXd more = gram_of(judged, (frame_weights.array().square() - least_weight).matrix());
     const MatrixXd weighted = static_cast<double>(least_weight) * gram + more;
-    const Fit fit = weighted_fit(metric_of(rows, vertex_weights), weighted, count);
+    const Fit fit = weighted_fit(rows, vertex_weights, weighted, count);
     now = errors(rows, judged, fit);
     if (now.largest < least) {
       least = now.largest;
       best = fit;
-      weights_of_best = vertex_weights;
     }
   }
   return best;
@@ -171,16 +173,15 @@ Components components(const MotionSpace& space, size_t limit, double tolerance) 
   Components result;
   const MatrixXf& coefficients = space.coefficients();
   const Index directions = coefficients.rows();
-  if (directions == 0 || coefficients.cols() == 0) {  // nothing moves farther than the space follows
-    return result;
-  }
+  if (directions == 0 || coefficients.cols() == 0) return result;  // nothing moves farther than it follows
   const MatrixXd gram = (coefficients * coefficients.transpose()).cast<double>();
   const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(gram);
   const MatrixXf turn = eigen.eigenvectors().rowwise().reverse().cast<float>();
-  const auto plain = [&](Index count) { return Fit{turn.leftCols(count), turn.leftCols(count).transpose()}; };
+  const auto plain = [&](Index count) {
+    return Fit{turn.leftCols(count), turn.leftCols(count).transpose(), {}};
+  };
   const Index most = std::min(directions, static_cast<Index>(limit));
   result.judged = telling_vertices(space, gram, plain(most));
-  result.vertex_weights = VectorXf::Ones(static_cast<Index>(result.judged.size()));
   const MatrixXf rows = space.directions_at(result.judged);
   const auto error_of = [&](Index count) {
     const Fit fit = plain(count);
@@ -196,10 +197,12 @@ Components components(const MotionSpace& space, size_t limit, double tolerance) 
   if (space.tolerance() <= tolerance) result.wanted = static_cast<size_t>(high);
   const Index count = std::min(high, most);
   Fit fit = plain(count);
-  if (high > count)
-    fit = with_least_largest_error(rows, coefficients, gram, fit, count, tolerance, result.vertex_weights);
+  if (high > count) fit = with_least_largest_error(rows, coefficients, gram, fit, count, tolerance);
   const std::vector<Index> telling = telling_frames(coefficients, fit);
   result.sampled_error = errors(rows, columns(coefficients, telling), fit).largest;
+  const auto judged = static_cast<Index>(result.judged.size());
+  result.vertex_weights =
+      fit.vertex_weights.size() > 0 ? fit.vertex_weights : VectorXf(VectorXf::Ones(judged));
   const MatrixXf shapes = space.mixed(fit.mix);
   for (Index k = 0; k < count; ++k)
     result.shapes.emplace_back(shapes.col(k));

@@ -86,16 +86,17 @@ std::set<std::string> names_of_other_programs() {
 /// it is the same name in another spelling; returns those of other programs, which are left out.
 std::vector<std::string> repeated(const std::vector<std::string>& unmatched, const Face& face,
                                   const std::filesystem::path& path) {
-  std::vector<std::string> left_out;
-  for (const std::string& name : unmatched) {
-    float value = 0.0F;
-    if (fascia_face_get(face.handle(), name.c_str(), &value) != FASCIA_OK) continue;
-    if (!names_of_other_programs().contains(bare(name)))
+  std::vector<std::string> known;
+  for (const std::string& name : unmatched)
+    if (float value = 0.0F; fascia_face_get(face.handle(), name.c_str(), &value) == FASCIA_OK)
+      known.push_back(name);
+  if (known.empty()) return known;
+  const std::set<std::string> others = names_of_other_programs();
+  for (const std::string& name : known)
+    if (!others.contains(bare(name)))
       throw Error("'" + path.string() + "': '" + name +
                   "' is there twice, once in another spelling, and would count twice: take one of them out");
-    left_out.push_back(name);
-  }
-  return left_out;
+  return known;
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cli/take/largest_length.h"
 #include "geometry/smoothstep.h"
 
 namespace fascia::cli {
@@ -18,13 +19,6 @@ constexpr int rounds = 6;
 constexpr float norm = 10.0F, over_relaxation = 1.5F, floor = 1e-3F;
 
 }  // namespace
-
-float largest_length(const Eigen::Ref<const VectorXf>& column) {
-  float most = 0.0F;
-  for (Index i = 0; i + 2 < column.size(); i += 3)
-    most = std::max(most, column.segment<3>(i).squaredNorm());
-  return std::sqrt(most);
-}
 
 FrameFit::FrameFit(MatrixXf shapes) : shapes_(std::move(shapes)), gram_(shapes_.transpose() * shapes_) {}
 

@@ -20,7 +20,4 @@ class FrameFit {
   Eigen::MatrixXf shapes_, gram_;
 };
 
-/// The largest length of the 3-vectors in a column.
-float largest_length(const Eigen::Ref<const Eigen::VectorXf>& column);
-
 }  // namespace fascia::cli

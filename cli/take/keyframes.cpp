@@ -68,13 +68,4 @@ std::vector<size_t> keys_of_shapes(const MatrixXf& weights, const MatrixXf& shap
   });
 }
 
-MatrixXf between_keys(const MatrixXf& values, std::span<const size_t> keys) {
-  MatrixXf result = values;
-  for (size_t k = 0; k + 1 < keys.size(); ++k)
-    if (keys[k + 1] - keys[k] > 1)
-      result.middleCols(static_cast<Index>(keys[k]) + 1, static_cast<Index>(keys[k + 1] - keys[k]) - 1) -=
-          off_line(values, keys[k], keys[k + 1]);
-  return result;
-}
-
 }  // namespace fascia::cli

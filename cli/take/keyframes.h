@@ -19,7 +19,4 @@ std::vector<size_t> keys_of_shapes(const Eigen::MatrixXf& weights, const Eigen::
 /// #curves x #frames between.
 Eigen::MatrixXf off_line(const Eigen::MatrixXf& values, size_t first, size_t last);
 
-/// `values` as they are between the kept frames: linear.
-Eigen::MatrixXf between_keys(const Eigen::MatrixXf& values, std::span<const size_t> keys);
-
 }  // namespace fascia::cli

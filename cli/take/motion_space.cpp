@@ -3,7 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
-#include "cli/take/frame_fit.h"
+#include "cli/take/largest_length.h"
 #include "cli/take/product.h"
 
 namespace fascia::cli {
@@ -124,7 +124,6 @@ void MotionSpace::take_block() {
     extend(worst);
     loosen_tolerance();
   }
-  frames_ += waiting_;
   kept_frames_ += waiting_;
   waiting_ = 0;
   keep_fewer_frames();

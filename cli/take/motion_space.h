@@ -59,7 +59,7 @@ class MotionSpace {
   Eigen::VectorXf whole(std::span<const float> frame) const;
 
   Options options_;
-  size_t vertex_count_ = 0, stride_ = 0, frames_ = 0, kept_frames_ = 0;
+  size_t vertex_count_ = 0, stride_ = 0, kept_frames_ = 0;
   size_t every_ = 1;                       ///< one of so many frames is kept
   std::vector<uint8_t> moves_;             ///< by vertex
   std::vector<uint32_t> moving_;           ///< in the order they were seen to move

@@ -10,6 +10,7 @@
 #include <map>
 
 #include "cli/take/keyframes.h"
+#include "cli/take/largest_length.h"
 #include "cli/take/product.h"
 #include "cli/take/weight_fit.h"
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cli/take/largest_length.h"
 #include "cli/take/product.h"
 
 namespace fascia::cli {

@@ -18,19 +18,12 @@
 
 #include "geometry/error.h"
 #include "gltf/edit/decompress.h"
+#include "gltf/edit/element.h"
 
 namespace fascia::gltf {
 namespace {
 
 using Mesh = std::unique_ptr<draco::Mesh>;
-
-int components_of(const std::string& type) {
-  if (type == "SCALAR") return 1;
-  if (type == "VEC2") return 2;
-  if (type == "VEC3") return 3;
-  if (type == "VEC4") return 4;
-  return 0;
-}
 
 std::size_t append(Json& root, std::vector<uint8_t>& bin, const void* data, std::size_t size) {
   bin.resize((bin.size() + 7) / 8 * 8, 0);
@@ -96,7 +89,7 @@ void unpack_attribute(Json& root, std::vector<uint8_t>& bin, const draco::Mesh& 
                       std::size_t index, uint32_t id) {
   Json& accessor = root.at("accessors").at(index);
   const draco::PointAttribute* attribute = mesh.GetAttributeByUniqueId(id);
-  const int components = components_of(accessor.at("type"));
+  const auto components = static_cast<int>(components_of(accessor.at("type")));
   if (attribute == nullptr || components == 0) throw Error("attribute " + name + " is not in its data");
   const int type = accessor.at("componentType");
   const std::vector<uint8_t> bytes = converted(mesh, *attribute, type, components);

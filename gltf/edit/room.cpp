@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <set>
 
+#include "gltf/edit/element.h"
+#include "gltf/tinygltf/tinygltf.h"
+
 namespace fascia::gltf {
 namespace {
 
@@ -49,19 +52,16 @@ std::set<std::size_t> numbers_in_extensions(const Json& root) {
   return numbers;
 }
 
-std::size_t size_of_component(int type) {
-  constexpr int byte = 5120, unsigned_byte = 5121, short_integer = 5122, unsigned_short = 5123;
-  if (type == byte || type == unsigned_byte) return 1;
-  return type == short_integer || type == unsigned_short ? 2 : 4;
+std::size_t size_of_component(const Json& accessor) {
+  const int size = tinygltf::GetComponentSizeInBytes(accessor.value("componentType", 0U));
+  return size > 0 ? static_cast<std::size_t>(size) : 0;
 }
 
-/// At most: columns of matrices of small numbers are padded.
+/// Numbers in an element, at most: columns of matrices of small numbers are padded.
 std::size_t most_components(const std::string& type) {
-  if (type == "SCALAR") return 1;
-  if (type == "VEC2") return 2;
-  if (type == "VEC3") return 3;
-  if (type == "VEC4") return 4;
-  return type == "MAT2" ? 8 : 16;
+  constexpr std::size_t largest = 16;
+  const std::size_t count = components_of(type);
+  return count > 0 ? count : largest;
 }
 
 ByteRange bytes_of_view(const Json& root, std::size_t view) {
@@ -87,8 +87,7 @@ Piece piece(const Json& root, const Json& place, std::size_t count, std::size_t 
 
 std::vector<Piece> pieces_of(const Json& root, std::size_t accessor) {
   const Json& entry = root.at("accessors").at(accessor);
-  const std::size_t size = size_of_component(entry.value("componentType", 0)) *
-                           most_components(entry.value("type", std::string()));
+  const std::size_t size = size_of_component(entry) * most_components(entry.value("type", std::string()));
   std::vector<Piece> pieces;
   if (entry.contains("bufferView"))
     pieces.push_back(piece(root, entry, entry.value("count", std::size_t{0}), size));
@@ -96,7 +95,7 @@ std::vector<Piece> pieces_of(const Json& root, std::size_t accessor) {
     const Json& sparse = entry["sparse"];
     const std::size_t count = sparse.at("count");
     const Json& indices = sparse.at("indices");
-    pieces.push_back(piece(root, indices, count, size_of_component(indices.value("componentType", 0))));
+    pieces.push_back(piece(root, indices, count, size_of_component(indices)));
     pieces.push_back(piece(root, sparse.at("values"), count, size));
   }
   return pieces;

@@ -279,6 +279,16 @@ TEST(Take, AProductIsTheSameOnEveryVectorUnit) {
 #endif
 }
 
+/// `values` as they are between the kept frames: linear.
+MatrixXf between_keys(const MatrixXf& values, const std::vector<size_t>& keys) {
+  MatrixXf result = values;
+  for (size_t k = 0; k + 1 < keys.size(); ++k)
+    if (keys[k + 1] - keys[k] > 1)
+      result.middleCols(static_cast<Index>(keys[k]) + 1, static_cast<Index>(keys[k + 1] - keys[k]) - 1) -=
+          off_line(values, keys[k], keys[k + 1]);
+  return result;
+}
+
 TEST(Keys, AreTheCornersOfStraightPieces) {
   MatrixXf values(2, 101);
   for (Index f = 0; f <= 100; ++f) {

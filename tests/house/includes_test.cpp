@@ -100,7 +100,6 @@ TEST(House, IncludeRulesRejectViolations) {
 /// Files are opened in formats/ alone, which contains and replaces them as it should. What must be elsewhere:
 const std::map<std::string, std::string> openers = {
     {"app/engine/tool_job.cpp", "the standard input of a child process"},
-    {"batch/run.cpp", "locks between processes"},
     {"batch/process.cpp", "what a child process reads and writes"},
     {"view/video.cpp", "the pipe to ffmpeg"},
 };

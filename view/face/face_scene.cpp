@@ -6,6 +6,7 @@
 
 #include "geometry/error.h"
 #include "view/face/fibre_tubes.h"
+#include "view/face/points.h"
 #include "view/smooth_normals.h"
 
 namespace fascia::view {
@@ -75,14 +76,6 @@ bool shows_through_glass(const std::string& part) {
 bool has_depth(const std::set<std::string>& layers) {
   return layers.count("skull") || layers.count("smas") || layers.count("muscles") || layers.count("teeth") ||
          layers.count("ligaments") || layers.count("fat") || layers.count("lattice");
-}
-
-std::vector<Vec3> points_of(std::span<const float> flat) {
-  std::vector<Vec3> points;
-  points.reserve(flat.size() / 3);
-  for (size_t i = 0; i + 2 < flat.size(); i += 3)
-    points.emplace_back(flat[i], flat[i + 1], flat[i + 2]);
-  return points;
 }
 
 /// Directions from the eyeball's centre, the gaze along +Z and the head's up as +Y as far as it may be.
@@ -217,16 +210,6 @@ FaceScene::FaceScene(const rig::Rig& rig, std::vector<FacePart> parts, Appearanc
   moving_.emplace(rig, std::move(skin));
 }
 
-/// The vertices of the skin as it stands.
-std::vector<Vec3> FaceScene::skin_of(const FaceState& state) const {
-  std::vector<Vec3> skin;
-  for (const size_t m : skin_parts_) {
-    const std::vector<Vec3> points = points_of(state.positions[m]);
-    skin.insert(skin.end(), points.begin(), points.end());
-  }
-  return skin;
-}
-
 DrawList FaceScene::list(const FaceState& state, const FaceView& view) const {
   if (state.positions.size() != parts_.size())
     throw Error("a face to draw has " + std::to_string(state.positions.size()) + " parts of " +
@@ -239,7 +222,8 @@ DrawList FaceScene::list(const FaceState& state, const FaceView& view) const {
     if (DrawSurface fat = fat_surface(state.lattice); !fat.triangles.empty())
       list.surfaces.push_back(std::move(fat));
   if (view.layers.count("lattice")) add_lattice(state.lattice, list);
-  if (view.layers.count("ligaments")) add_ligaments(moving_->ligaments(skin_of(state), state.jaw), list);
+  if (view.layers.count("ligaments"))
+    add_ligaments(moving_->ligaments(points_of(state.positions, skin_parts_), state.jaw), list);
   if (view.layers.count("landmarks")) add_landmarks(state, list);
   return list;
 }
@@ -370,7 +354,8 @@ void FaceScene::add_landmarks(const FaceState& state, DrawList& list) const {
   balls.shading = Shading::data;
   DrawLines depths{{}, Vec3(0.55, 0.75, 0.85), 2.0, false};
   const Vec3 sure(0.36, 0.74, 0.42), doubtful(0.90, 0.33, 0.26);
-  const std::vector<MovingAnatomy::Band> places = moving_->landmarks(skin_of(state), state.jaw);
+  const std::vector<MovingAnatomy::Band> places =
+      moving_->landmarks(points_of(state.positions, skin_parts_), state.jaw);
   for (size_t i = 0; i < places.size(); ++i) {
     const rig::Landmark& landmark = rig_->skull.landmarks[i];
     const Vec3& centre = places[i][1];

@@ -69,7 +69,6 @@ class FaceScene {
   void add_bones(const FaceState& state, const FaceView& view, DrawList& list) const;
   void add_muscles(const FaceState& state, const FaceView& view, DrawList& list) const;
   void add_landmarks(const FaceState& state, DrawList& list) const;
-  std::vector<Vec3> skin_of(const FaceState& state) const;
 
   const rig::Rig* rig_;
   std::vector<FacePart> parts_;

@@ -102,30 +102,27 @@ std::vector<MovingAnatomy::Band> MovingAnatomy::moved(const Bands& bands, const 
   return moved;
 }
 
+template <class Ends>
+const MovingAnatomy::Bands& MovingAnatomy::bound(std::optional<Bands>& bands,
+                                                 const std::vector<Ends>& rest) const {
+  if (bands) return *bands;
+  std::vector<Vec3> bone, outer;
+  for (const Ends& ends : rest) {
+    bone.push_back(ends.bone.template cast<double>());
+    outer.push_back(ends.skin.template cast<double>());
+  }
+  bands = bind(std::move(bone), std::move(outer));
+  return *bands;
+}
+
 std::vector<MovingAnatomy::Band> MovingAnatomy::ligaments(const std::vector<Vec3>& skin,
                                                           const Mat4& jaw) const {
-  if (!ligaments_) {
-    std::vector<Vec3> bone, outer;
-    for (const rig::Ligament& ligament : rig_.smas.ligaments) {
-      bone.push_back(ligament.bone.cast<double>());
-      outer.push_back(ligament.skin.cast<double>());
-    }
-    ligaments_ = bind(std::move(bone), std::move(outer));
-  }
-  return moved(*ligaments_, skin, jaw);
+  return moved(bound(ligaments_, rig_.smas.ligaments), skin, jaw);
 }
 
 std::vector<MovingAnatomy::Band> MovingAnatomy::landmarks(const std::vector<Vec3>& skin,
                                                           const Mat4& jaw) const {
-  if (!landmarks_) {
-    std::vector<Vec3> bone, outer;
-    for (const rig::Landmark& landmark : rig_.skull.landmarks) {
-      bone.push_back(landmark.bone.cast<double>());
-      outer.push_back(landmark.skin.cast<double>());
-    }
-    landmarks_ = bind(std::move(bone), std::move(outer));
-  }
-  return moved(*landmarks_, skin, jaw);
+  return moved(bound(landmarks_, rig_.skull.landmarks), skin, jaw);
 }
 
 }  // namespace fascia::view

@@ -51,6 +51,9 @@ class MovingAnatomy {
     std::optional<Following> skin;
   };
   Bands bind(std::vector<Vec3> bone, std::vector<Vec3> skin) const;
+  /// `bands`, made from `rest` (with ends on the `bone` and on the `skin`) when they are first asked for.
+  template <class Ends>
+  const Bands& bound(std::optional<Bands>& bands, const std::vector<Ends>& rest) const;
   static std::vector<Band> moved(const Bands& bands, const std::vector<Vec3>& skin, const Mat4& jaw);
 
   const rig::Rig& rig_;
