@@ -130,7 +130,7 @@ struct Muscle {
   int bundles = 1;          ///< sub-bundles side by side that the fibres should make
   double prevalence = 1.0;  ///< share of faces that have it
   std::vector<Variant> variants;
-  std::vector<int> action_units;  ///< FACS; negative: relaxes in that unit
+  std::vector<int> action_units;  ///< FACS units it is a part of; negative: relaxes in that unit
   std::string source;
 };
 
@@ -251,8 +251,10 @@ std::vector<std::string> corrected_files(const std::filesystem::path& directory)
 /// replaces an existing one of the same name. Throws fascia::Error naming the file and the entry at fault.
 std::vector<std::string> add_depth_tables(GenericAnatomy& anatomy, const std::filesystem::path& file);
 
-/// Adds a muscle with its channel, and its name to the members of its group. It replaces an existing muscle
-/// of the same name. Throws fascia::Error if the name belongs to a channel or group of another kind.
+/// Adds a muscle with its channel, its name to the members of its group, and a weight of 1 to the action units
+/// that it lists (-1 where it relaxes), of both sides and of its own. It replaces an existing muscle of the
+/// same name, whose weights stay. Throws fascia::Error if the name belongs to a channel or group of another
+/// kind, or an action unit is unknown.
 void add_muscle(GenericAnatomy& anatomy, Muscle muscle);
 
 /// Adds the muscles of a file of the form of anatomy/data/muscles.json, drawn on the generic head, as

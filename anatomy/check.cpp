@@ -96,10 +96,20 @@ void check_objects(const GenericAnatomy& anatomy) {
 
 }  // namespace
 
+void check_action_units(const GenericAnatomy& anatomy, const Muscle& muscle) {
+  const ExpressionSet* units = anatomy.expression_set("au");
+  for (const int unit : muscle.action_units)
+    if (units && !units->find(std::to_string(std::abs(unit))))
+      throw Error(muscle.name + ": no action unit " + std::to_string(std::abs(unit)) +
+                  " is in expressions/facs.json; correct its \"action_units\"");
+}
+
 void check_references(const GenericAnatomy& anatomy) {
   check_landmarks(anatomy);
   check_channels(anatomy);
   check_expressions(anatomy);
+  for (const Muscle& muscle : anatomy.muscles)
+    check_action_units(anatomy, muscle);
   check_tissue(anatomy);
   check_objects(anatomy);
   unique_names(anatomy.head, "head.obj");

@@ -97,4 +97,7 @@ void load_skin_regions(const DataFiles& files, GenericAnatomy& anatomy);
 /// Throws fascia::Error when a name is used twice or a reference does not resolve.
 void check_references(const GenericAnatomy& anatomy);
 
+/// Throws fascia::Error when an action unit of `muscle` is not an expression of the set of action units.
+void check_action_units(const GenericAnatomy& anatomy, const Muscle& muscle);
+
 }  // namespace fascia::anatomy

@@ -152,6 +152,20 @@ void put(std::vector<Entry>& entries, Entry entry) {
   entries.push_back(std::move(entry));
 }
 
+/// Gives a muscle that is new its weight in the action units it lists: those of both sides and of its own.
+void put_into_action_units(GenericAnatomy& anatomy, const Muscle& muscle) {
+  const auto set = std::find_if(anatomy.expression_sets.begin(), anatomy.expression_sets.end(),
+                                [](const ExpressionSet& known) { return known.name == "au"; });
+  if (set == anatomy.expression_sets.end()) return;
+  const std::string own = muscle.side == Side::left ? "L" : muscle.side == Side::right ? "R" : "";
+  for (const int unit : muscle.action_units)
+    for (Expression& expression : set->expressions) {
+      const std::string number = std::to_string(std::abs(unit));
+      if (expression.name == number || (!own.empty() && expression.name == own + number))
+        expression.weights.emplace_back(muscle.name, unit < 0 ? -1.0 : 1.0);
+    }
+}
+
 }  // namespace
 
 void load_muscles(const DataFiles& files, GenericAnatomy& anatomy) {
@@ -181,6 +195,8 @@ void add_muscle(GenericAnatomy& anatomy, Muscle muscle) {
                   ": there is a channel of that name that is not a muscle's; choose another name");
   if (anatomy.whole(muscle.name))
     throw Error(muscle.name + ": this is the name of several parts together; choose another name");
+  check_action_units(anatomy, muscle);
+  if (!anatomy.actuator(muscle.name)) put_into_action_units(anatomy, muscle);
   put(anatomy.actuators, muscle_actuator(muscle));
   if (muscle.whole != muscle.name) {
     Whole whole{muscle.whole, {}};

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "anatomy/anatomy.h"
+#include "geometry/error.h"
 
 namespace fascia::anatomy {
 namespace {
@@ -225,6 +226,31 @@ TEST(Expressions, VocabulariesAreComplete) {
   for (const int unit :
        {1, 2, 4, 5, 6, 7, 9, 10, 11, 12, 14, 15, 16, 17, 18, 20, 22, 23, 24, 25, 26, 27, 28, 43, 45})
     EXPECT_NE(generic().expression_set("au")->find(std::to_string(unit)), nullptr) << unit;
+}
+
+TEST(Expressions, ANewMuscleTakesPartInTheActionUnitsItLists) {
+  GenericAnatomy anatomy = generic();
+  Muscle muscle = anatomy.muscles.front();
+  muscle.name = muscle.whole = "malaris_left";
+  muscle.side = Side::left;
+  muscle.action_units = {6, -43};
+  add_muscle(anatomy, muscle);
+  const auto weight = [&](const char* unit) {
+    for (const auto& [name, value] : anatomy.expression_set("au")->find(unit)->weights)
+      if (name == "malaris_left") return value;
+    return 0.0;
+  };
+  EXPECT_EQ(weight("6"), 1.0);
+  EXPECT_EQ(weight("L6"), 1.0);
+  EXPECT_EQ(weight("R6"), 0.0) << "the other side";
+  EXPECT_EQ(weight("43"), -1.0) << "it relaxes";
+  EXPECT_EQ(weight("12"), 0.0);
+  const size_t members = anatomy.expression_set("au")->find("6")->weights.size();
+  add_muscle(anatomy, muscle);
+  EXPECT_EQ(anatomy.expression_set("au")->find("6")->weights.size(), members) << "replaced, not doubled";
+  muscle.name = muscle.whole = "another_left";
+  muscle.action_units = {99};
+  EXPECT_THROW(add_muscle(anatomy, muscle), Error);
 }
 
 TEST(Expressions, WeightsStayInTheChannelsRange) {

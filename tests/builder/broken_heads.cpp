@@ -301,7 +301,7 @@ void add_blemishes(std::map<std::string, Break>& kinds) {
           0.5 * (mesh.vertices[static_cast<size_t>(t[0])] + mesh.vertices[static_cast<size_t>(t[1])]));
       mesh.triangles.push_back({t[0], mesh.vertex_count() - 1, t[1]});
     }
-    made.says = are_flat;
+    made.says = {"stand on edges that two others share"};
   };
   kinds["collapsed_vertices"] = [](Made& made, Random& random) {
     TriangleMesh& mesh = skin_of(made).mesh;
