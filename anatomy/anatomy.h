@@ -251,10 +251,10 @@ std::vector<std::string> corrected_files(const std::filesystem::path& directory)
 /// replaces an existing one of the same name. Throws fascia::Error naming the file and the entry at fault.
 std::vector<std::string> add_depth_tables(GenericAnatomy& anatomy, const std::filesystem::path& file);
 
-/// Adds a muscle with its channel, its name to the members of its group, and a weight of 1 to the action units
-/// that it lists (-1 where it relaxes), of both sides and of its own. It replaces an existing muscle of the
-/// same name, whose weights stay. Throws fascia::Error if the name belongs to a channel or group of another
-/// kind, or an action unit is unknown.
+/// Adds a muscle with its channel, its name to the members of its group, and a weight of 1 to the action
+/// units that it lists (-1 where it relaxes), of both sides and of its own. It replaces an existing muscle of
+/// the same name, whose weights stay. Throws fascia::Error if the name belongs to a channel or group of
+/// another kind, or an action unit is unknown.
 void add_muscle(GenericAnatomy& anatomy, Muscle muscle);
 
 /// Adds the muscles of a file of the form of anatomy/data/muscles.json, drawn on the generic head, as
