@@ -4,10 +4,10 @@
 #include <cstring>
 #include <string_view>
 
+#include "gltf/edit/element.h"
+
 namespace fascia::gltf {
 namespace {
-
-constexpr int component_byte = 5121, component_short = 5123, component_int = 5125, component_float = 5126;
 
 const char* element_type(std::size_t components) {
   constexpr const char* types[] = {"SCALAR", "VEC2", "VEC3", "VEC4"};
@@ -60,7 +60,7 @@ std::span<const float> flat(std::span<const Vec3f> vectors) {
 
 }  // namespace
 
-std::size_t Appendix::add_view(std::span<const uint8_t> bytes, int target) {
+std::size_t Appendix::add_view(std::span<const uint8_t> bytes, int target, std::size_t stride) {
   const auto hash =
       std::hash<std::string_view>{}({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
   Json& views = array_of(root_, "bufferViews");
@@ -68,12 +68,14 @@ std::size_t Appendix::add_view(std::span<const uint8_t> bytes, int target) {
     const Json& view = views[at->second];
     const std::size_t begin = view["byteOffset"];
     if (view["byteLength"] == bytes.size() && view.value("target", 0) == target &&
+        view.value("byteStride", std::size_t{0}) == stride &&
         std::equal(bytes.begin(), bytes.end(), bin_.begin() + static_cast<std::ptrdiff_t>(begin)))
       return at->second;
   }
   const std::size_t begin = place_for(bytes.size());
   std::copy(bytes.begin(), bytes.end(), bin_.begin() + static_cast<std::ptrdiff_t>(begin));
   Json view = {{"buffer", 0}, {"byteOffset", begin}, {"byteLength", bytes.size()}};
+  if (stride != 0) view["byteStride"] = stride;
   if (target != 0) view["target"] = target;
   const std::size_t number = free_entry(free_views_, views);
   put_entry(views, number, std::move(view));
@@ -132,15 +134,14 @@ void Appendix::give_back(std::size_t accessor) {
     root_["bufferViews"][view] = {{"buffer", 0}, {"byteOffset", 0}, {"byteLength", 1}};
     free_views_.push_back(view);
   }
-  root_["accessors"][accessor] = {
-      {"componentType", component_float}, {"count", 1}, {"type", element_type(1)}};
+  root_["accessors"][accessor] = {{"componentType", float32}, {"count", 1}, {"type", element_type(1)}};
   free_accessors_.push_back(accessor);
 }
 
 std::size_t Appendix::add_floats(std::span<const float> numbers, std::size_t components, bool bounds,
                                  int target) {
   return add_accessor(
-      accessor_over(add_view(as_bytes(numbers), target), component_float, numbers, components, bounds));
+      accessor_over(add_view(as_bytes(numbers), target), float32, numbers, components, bounds));
 }
 
 std::size_t Appendix::add_whole(std::span<const uint32_t> numbers, std::size_t components) {
@@ -149,14 +150,14 @@ std::size_t Appendix::add_whole(std::span<const uint32_t> numbers, std::size_t c
   if (greatest < UINT8_MAX) {
     const std::vector<uint8_t> bytes(numbers.begin(), numbers.end());
     return add_accessor(
-        accessor_over(add_view(bytes), component_byte, std::span<const uint8_t>(bytes), components, true));
+        accessor_over(add_view(bytes), uint8, std::span<const uint8_t>(bytes), components, true));
   }
   if (greatest < UINT16_MAX) {
     const std::vector<uint16_t> words(numbers.begin(), numbers.end());
     const std::span<const uint16_t> span(words);
-    return add_accessor(accessor_over(add_view(as_bytes(span)), component_short, span, components, true));
+    return add_accessor(accessor_over(add_view(as_bytes(span)), uint16, span, components, true));
   }
-  return add_accessor(accessor_over(add_view(as_bytes(numbers)), component_int, numbers, components, true));
+  return add_accessor(accessor_over(add_view(as_bytes(numbers)), uint32, numbers, components, true));
 }
 
 std::size_t Appendix::add_indices(std::span<const uint32_t> corners) {
@@ -164,11 +165,9 @@ std::size_t Appendix::add_indices(std::span<const uint32_t> corners) {
   if (greatest < UINT16_MAX) {
     const std::vector<uint16_t> words(corners.begin(), corners.end());
     const std::span<const uint16_t> span(words);
-    return add_accessor(
-        accessor_over(add_view(as_bytes(span), index_target), component_short, span, 1, false));
+    return add_accessor(accessor_over(add_view(as_bytes(span), index_target), uint16, span, 1, false));
   }
-  return add_accessor(
-      accessor_over(add_view(as_bytes(corners), index_target), component_int, corners, 1, false));
+  return add_accessor(accessor_over(add_view(as_bytes(corners), index_target), uint32, corners, 1, false));
 }
 
 std::size_t Appendix::add_sparse(std::span<const Vec3f> vectors, const std::vector<uint32_t>& moved,
@@ -185,15 +184,14 @@ std::size_t Appendix::add_sparse(std::span<const Vec3f> vectors, const std::vect
   const std::size_t index_view =
       is_short ? add_view(as_bytes(std::span<const uint16_t>(words))) : add_view(as_bytes(std::span(moved)));
   const std::size_t value_view = add_view(as_bytes(flat(values)));
-  Json accessor = {{"componentType", component_float}, {"count", vectors.size()}, {"type", "VEC3"}};
+  Json accessor = {{"componentType", float32}, {"count", vectors.size()}, {"type", "VEC3"}};
   if (bounds) {
     accessor["min"] = {low[0], low[1], low[2]};
     accessor["max"] = {high[0], high[1], high[2]};
   }
   accessor["sparse"] = {
       {"count", moved.size()},
-      {"indices",
-       {{"bufferView", index_view}, {"componentType", is_short ? component_short : component_int}}},
+      {"indices", {{"bufferView", index_view}, {"componentType", is_short ? uint16 : uint32}}},
       {"values", {{"bufferView", value_view}}}};
   return add_accessor(std::move(accessor));
 }

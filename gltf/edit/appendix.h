@@ -26,8 +26,12 @@ class Appendix {
   /// Everything goes behind what `root` and `bin` hold already; both must outlive this.
   Appendix(Json& root, std::vector<uint8_t>& bin) : root_(root), bin_(bin) {}
 
-  /// A buffer view over `bytes`, aligned to eight; returns its index. `target` 0: none.
-  std::size_t add_view(std::span<const uint8_t> bytes, int target = 0);
+  /// A buffer view over `bytes`, aligned to eight; returns its index. `target` 0: none; `stride` 0: its
+  /// elements lie one after the other.
+  std::size_t add_view(std::span<const uint8_t> bytes, int target = 0, std::size_t stride = 0);
+
+  /// An accessor given as JSON; returns its index.
+  std::size_t add_accessor(Json accessor);
 
   /// An accessor over floats, `components` (1 to 4) an element, with its bounds where `bounds` asks for them
   /// (POSITION and the input of an animation need them); returns its index.
@@ -51,7 +55,6 @@ class Appendix {
  private:
   std::size_t place_for(std::size_t size);
   std::size_t free_entry(std::vector<std::size_t>& free, const Json& list);
-  std::size_t add_accessor(Json accessor);
   std::size_t add_sparse(std::span<const Vec3f> vectors, const std::vector<uint32_t>& moved, bool bounds);
 
   Json& root_;

@@ -4,6 +4,16 @@
 #include "gltf/read/container.h"
 
 namespace fascia::gltf {
+namespace {
+
+/// Tells buffer 0 how long the binary chunk is.
+void say_length(Json& root, std::size_t length) {
+  if (length == 0) return;
+  if (!root.contains("buffers") || root["buffers"].empty()) root["buffers"] = Json::array({Json::object()});
+  root["buffers"][0]["byteLength"] = length;
+}
+
+}  // namespace
 
 Edit::Edit(Document document)
     : json(parsed(document.json, "head")), bin_(std::move(document.bin)), appendix_(json, bin_) {}
@@ -29,20 +39,20 @@ const tinygltf::Model& Edit::model() {
   return *model_;
 }
 
+Document Edit::document() const {
+  Json out = json;
+  say_length(out, bin_.size());
+  return {text_of(out), bin_};
+}
+
 std::vector<uint8_t> Edit::bytes() const {
   Json out = json;
-  if (!bin_.empty()) {
-    if (!out.contains("buffers")) out["buffers"] = Json::array({Json::object()});
-    out["buffers"][0]["byteLength"] = bin_.size();
-  }
+  say_length(out, bin_.size());
   return glb_bytes(text_of(out), bin_);
 }
 
 Edit::Parts Edit::parts() {
-  if (!bin_.empty()) {
-    if (!json.contains("buffers")) json["buffers"] = Json::array({Json::object()});
-    json["buffers"][0]["byteLength"] = bin_.size();
-  }
+  say_length(json, bin_.size());
   GlbFrame frame = glb_frame(text_of(json), bin_.size());
   return {std::move(frame.before), bin_, std::move(frame.after)};
 }

@@ -35,6 +35,12 @@ class Edit {
   /// The file as tinygltf read it at the first call; what has been appended since is not in it.
   const tinygltf::Model& model();
 
+  /// Bytes of the binary chunk, with what has been appended so far.
+  std::span<const uint8_t> binary() const { return bin_; }
+
+  /// The file as its two chunks.
+  Document document() const;
+
   /// The file as GLB.
   std::vector<uint8_t> bytes() const;
 

@@ -52,11 +52,6 @@ std::set<std::size_t> numbers_in_extensions(const Json& root) {
   return numbers;
 }
 
-std::size_t size_of_component(const Json& accessor) {
-  const int size = tinygltf::GetComponentSizeInBytes(accessor.value("componentType", 0U));
-  return size > 0 ? static_cast<std::size_t>(size) : 0;
-}
-
 /// Numbers in an element, at most: columns of matrices of small numbers are padded.
 std::size_t most_components(const std::string& type) {
   constexpr std::size_t largest = 16;
@@ -87,7 +82,8 @@ Piece piece(const Json& root, const Json& place, std::size_t count, std::size_t 
 
 std::vector<Piece> pieces_of(const Json& root, std::size_t accessor) {
   const Json& entry = root.at("accessors").at(accessor);
-  const std::size_t size = size_of_component(entry) * most_components(entry.value("type", std::string()));
+  const std::size_t size =
+      bytes_of(entry.value("componentType", 0)) * most_components(entry.value("type", std::string()));
   std::vector<Piece> pieces;
   if (entry.contains("bufferView"))
     pieces.push_back(piece(root, entry, entry.value("count", std::size_t{0}), size));
@@ -95,7 +91,7 @@ std::vector<Piece> pieces_of(const Json& root, std::size_t accessor) {
     const Json& sparse = entry["sparse"];
     const std::size_t count = sparse.at("count");
     const Json& indices = sparse.at("indices");
-    pieces.push_back(piece(root, indices, count, size_of_component(indices)));
+    pieces.push_back(piece(root, indices, count, bytes_of(indices.value("componentType", 0))));
     pieces.push_back(piece(root, sparse.at("values"), count, size));
   }
   return pieces;

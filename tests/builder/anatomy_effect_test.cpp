@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstring>
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -17,6 +16,7 @@
 #include "formats/scene.h"
 #include "geometry/error.h"
 #include "rig/model/fields.h"
+#include "tests/builder/field_digest.h"
 
 /// Whatever a specialist corrects in the anatomy changes the rig: each number of mechanics.json by itself,
 /// the other files list by list. (That every single number of those is read is test_anatomy's to show.)
@@ -28,87 +28,6 @@ namespace fs = std::filesystem;
 using anatomy::GenericAnatomy;
 using anatomy::Json;
 using Pointer = Json::json_pointer;
-
-/// Everything that a part of a rig holds, as one number (FNV-1a), and how often each list of it was met.
-class Digest {
- public:
-  uint64_t value() const { return hash_; }
-  void text(std::string_view, const std::string& text) { bytes(text.data(), text.size()); }
-  template <class T>
-  void number(std::string_view, const T& number) {
-    bytes(&number, sizeof number);
-  }
-  void bounded(std::string_view name, double value, double /*least*/, double /*most*/) {
-    number(name, value);
-  }
-  template <class T>
-  void hash(std::string_view name, const T& value) {
-    number(name, value);
-  }
-  template <class T>
-  void vector(std::string_view, const T& vector) {
-    bytes(vector.data(), sizeof vector);
-  }
-  template <class T>
-  void matrix(std::string_view, const T& matrix) {
-    bytes(matrix.data(), sizeof matrix);
-  }
-  template <class T, class Names>
-  void choice(std::string_view name, const T& value, const Names&) {
-    number(name, value);
-  }
-  template <class Body>
-  void object(std::string_view, Body body) {
-    body(*this);
-  }
-  template <class T, class Body>
-  void array(std::string_view, const std::vector<T>& list, Body body) {
-    for (size_t i = 0; i < list.size(); ++i)
-      body(*this, list[i], i);
-  }
-  template <class T, class... Checks>
-  void list(std::string_view, const std::vector<T>& list, Checks...) {
-    bytes(list.data(), list.size() * sizeof(T));
-  }
-  template <class T, class... Checks>
-  void unbounded(std::string_view name, const std::vector<T>& values, Checks...) {
-    list(name, values);
-  }
-  template <class T, class... Checks>
-  void index(std::string_view name, const std::vector<T>& values, Checks...) {
-    list(name, values);
-  }
-  template <class T, class... Checks>
-  void offsets(std::string_view name, const std::vector<T>& values, Checks...) {
-    list(name, values);
-  }
-  template <class T, class... Checks>
-  void triangles(std::string_view name, const std::vector<T>& values, Checks...) {
-    list(name, values);
-  }
-  template <class T, class Member>
-  void names(std::string_view name, const std::vector<T>& list, Member member) {
-    for (const T& element : list)
-      text(name, element.*member);
-  }
-  template <class T, class Member>
-  void column(std::string_view, const std::vector<T>& list, Member member) {
-    for (const T& element : list)
-      bytes(&(element.*member), sizeof(element.*member));
-  }
-  void texts(std::string_view name, const std::vector<std::string>& list) {
-    for (const std::string& element : list)
-      text(name, element);
-  }
-
- private:
-  void bytes(const void* data, size_t count) {
-    for (size_t i = 0; i < count; ++i)
-      hash_ = (hash_ ^ static_cast<const unsigned char*>(data)[i]) * 1099511628211U;
-    hash_ = (hash_ ^ count) * 1099511628211U;
-  }
-  uint64_t hash_ = 14695981039346656037U;
-};
 
 /// The stages of a build of the generic head, each to be run alone with a changed anatomy.
 class Stages {
@@ -135,7 +54,7 @@ class Stages {
   const GenericAnatomy& anatomy() const { return anatomy_; }
 
   uint64_t skull(const GenericAnatomy& changed) const {
-    Digest digest;
+    FieldDigest digest;
     const skull::FitResult fitted = rigging::fit_skull(changed, found_, 1.0);
     const rig::Skull built = rigging::rig_skull(fitted, found_.head, found_.landmarks);
     rig::skull_fields(digest, built);
@@ -144,26 +63,26 @@ class Stages {
   uint64_t jaw(const GenericAnatomy& changed) const {
     skull::FitResult fitted = skull_;
     fitted.jaw.motion = changed.mechanics.jaw;
-    Digest digest;
+    FieldDigest digest;
     const rig::Skull built = rigging::rig_skull(fitted, found_.head, found_.landmarks);
     rig::skull_fields(digest, built);
     return digest.value();
   }
   uint64_t smas(const GenericAnatomy& changed) const {
-    Digest digest;
+    FieldDigest digest;
     const rig::Smas built = rigging::rig_smas(smas_of(changed), skull_, changed);
     rig::smas_fields(digest, built);
     return digest.value();
   }
   uint64_t zones(const GenericAnatomy& changed) const {
-    Digest digest;
+    FieldDigest digest;
     const rig::Smas built = rigging::rig_smas(smas_, skull_, changed);
     rig::smas_fields(digest, built);
     return digest.value();
   }
   uint64_t muscles(const GenericAnatomy& changed, const rigging::Edits& edits = {}) const {
     rigging::BuildReport report;
-    Digest digest;
+    FieldDigest digest;
     for (const rig::Muscle& muscle :
          rigging::build_muscles(changed, found_.head, skull_, smas_, points_, edits, report)) {
       rig::muscle_fields(digest, muscle);
@@ -176,7 +95,7 @@ class Stages {
   }
   uint64_t muscles_alone(const GenericAnatomy& changed) const { return muscles(changed); }
   uint64_t actuation(const GenericAnatomy& changed) const {
-    Digest digest;
+    FieldDigest digest;
     const rig::Actuation built = rigging::rig_actuation(changed, rig_.muscles);
     rig::actuation_fields(digest, built);
     return digest.value();
@@ -198,7 +117,7 @@ class Stages {
     tissue::TissueOptions options;
     options.levels = {{"coarse", 350}};
     options.contact = contact;
-    Digest digest;
+    FieldDigest digest;
     const tissue::TissueResult built = tissue::build(inputs, options);
     for (const rig::TissueLevel& level : built.tissue.levels)
       rig::tissue_level_fields(digest, level, rig::TissueLimits{});
