@@ -49,21 +49,13 @@ void split_long_edges(SurfaceField* field, SurfaceMesh* mesh) {
 
 namespace {
 
-// The vertices around `v`, sorted.
-void ring(const SurfaceMesh& m, int v, std::vector<int>* out) {
-  out->clear();
-  m.around(v, [&](int h) { out->push_back(m.to(h)), out->push_back(m.apex(h)); });
-  std::sort(out->begin(), out->end());
-  out->erase(std::unique(out->begin(), out->end()), out->end());
-}
-
 struct CollapseCheck {
   std::vector<int> ring_from, ring_to;
 
   // Whether `from` can be merged into `to`: the mesh stays manifold (link condition), nothing folds or
   // stretches.
   bool operator()(const SurfaceMesh& m, int from, int to) {
-    ring(m, from, &ring_from), ring(m, to, &ring_to);
+    m.ring(from, ring_from), m.ring(to, ring_to);
     int wings = 0, shared = 0;
     for (int w : ring_from)
       shared += std::binary_search(ring_to.begin(), ring_to.end(), w);

@@ -3,30 +3,30 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <iterator>
+#include <utility>
 
 #include "builder/spatial/triangle.h"
+#include "geometry/half_edges.h"
 
 namespace fascia::tissue {
 namespace {
 
-using Face = std::array<int, 3>;
-
-/// A triangle mesh being changed: dead triangles are marked by a negative corner.
+/// A surface being remeshed: its half-edges, where its vertices are, and which point of the source each is.
 class Sculptor {
  public:
   Sculptor(const TriangleMesh& source, const std::vector<double>& lengths)
-      : source_(source), lengths_(lengths), source_around_(triangles_around(source)) {
-    points_ = source.vertices;
-    faces_.assign(source.triangles.begin(), source.triangles.end());
-    around_ = source_around_;
-    places_.resize(points_.size());
-    for (size_t v = 0; v < points_.size(); ++v) {
-      if (around_[v].empty()) continue;
-      places_[v].triangle = around_[v][0];
-      const Face& t = faces_[at(around_[v][0])];
-      for (size_t k = 0; k < 3; ++k)
-        if (t[k] == static_cast<int>(v)) places_[v].barycentric[static_cast<int>(k)] = 1.0;
+      : source_(source),
+        lengths_(lengths),
+        source_around_(triangles_around(source)),
+        links_(source),
+        points_(source.vertices),
+        places_(source.vertices.size()) {
+    for (int v = 0; v < source.vertex_count(); ++v) {
+      if (source_around_[v].empty()) continue;
+      places_[v].triangle = source_around_[v][0];
+      for (int k = 0; k < 3; ++k)
+        if (source.triangles[places_[v].triangle][k] == v) places_[v].barycentric[k] = 1.0;
     }
   }
 
@@ -41,15 +41,14 @@ class Sculptor {
   RemeshResult result() const {
     RemeshResult out;
     std::vector<int> index(points_.size(), -1);
-    for (const Face& f : faces_) {
-      if (f[0] < 0) continue;
+    for (const fascia::Triangle& corners : links_.triangles) {
       fascia::Triangle t;
-      for (size_t k = 0; k < 3; ++k) {
-        int& i = index[at(f[k])];
+      for (int k = 0; k < 3; ++k) {
+        int& i = index[corners[k]];
         if (i < 0) {
           i = out.mesh.vertex_count();
-          out.mesh.vertices.push_back(points_[at(f[k])]);
-          out.source.push_back(places_[at(f[k])]);
+          out.mesh.vertices.push_back(points_[corners[k]]);
+          out.source.push_back(places_[corners[k]]);
         }
         t[k] = i;
       }
@@ -59,63 +58,35 @@ class Sculptor {
   }
 
  private:
-  static size_t at(int i) { return static_cast<size_t>(i); }
-
   double wanted(int v) const {
-    const SurfacePoint& p = places_[at(v)];
+    const SurfacePoint& p = places_[v];
     double sum = 0.0;
     for (int k = 0; k < 3; ++k)
-      sum += p.barycentric[k] * lengths_[at(source_.triangles[at(p.triangle)][at(k)])];
+      sum += p.barycentric[k] * lengths_[source_.triangles[p.triangle][k]];
     return sum;
   }
   double wanted(int a, int b) const { return 0.5 * (wanted(a) + wanted(b)); }
-  double length(int a, int b) const { return (points_[at(a)] - points_[at(b)]).norm(); }
+  double length(int a, int b) const { return (points_[a] - points_[b]).norm(); }
 
-  std::vector<int> shared(int a, int b) const {
-    std::vector<int> out;
-    for (const int f : around_[at(a)])
-      if (std::find(faces_[at(f)].begin(), faces_[at(f)].end(), b) != faces_[at(f)].end()) out.push_back(f);
-    return out;
-  }
-  std::vector<int> ring(int v) const {
-    std::vector<int> out;
-    for (const int f : around_[at(v)])
-      for (const int c : faces_[at(f)])
-        if (c != v) out.push_back(c);
-    std::sort(out.begin(), out.end());
-    out.erase(std::unique(out.begin(), out.end()), out.end());
-    return out;
-  }
-  bool on_border(int v) const {
-    for (const int n : ring(v))
-      if (shared(v, n).size() != 2) return true;
-    return false;
-  }
+  /// Every edge by its ends, the lower first, ascending: the order does not depend on that of the triangles.
   std::vector<std::pair<int, int>> edges() const {
     std::vector<std::pair<int, int>> out;
-    for (const Face& f : faces_)
-      if (f[0] >= 0)
-        for (size_t k = 0; k < 3; ++k)
-          out.emplace_back(std::min(f[k], f[(k + 1) % 3]), std::max(f[k], f[(k + 1) % 3]));
+    for (int h = 0; h < static_cast<int>(links_.twin.size()); ++h) {
+      if (links_.gone(h)) continue;
+      const int a = links_.from(h), b = links_.to(h);
+      if (links_.across(h) < 0 || a < b) out.emplace_back(std::min(a, b), std::max(a, b));
+    }
     std::sort(out.begin(), out.end());
     out.erase(std::unique(out.begin(), out.end()), out.end());
     return out;
   }
-  Vec3 normal(const Face& f) const {
-    return (points_[at(f[1])] - points_[at(f[0])]).cross(points_[at(f[2])] - points_[at(f[0])]);
-  }
-  void detach(int f, int v) {
-    auto& list = around_[at(v)];
-    list.erase(std::find(list.begin(), list.end(), f));
+  Vec3 normal(const Vec3& a, const Vec3& b, const Vec3& c) const { return (b - a).cross(c - a); }
+  Vec3 normal(int h) const {
+    return normal(points_[links_.from(h)], points_[links_.to(h)], points_[links_.apex(h)]);
   }
   void put(int v, const Vec3& point, int start) {
-    places_[at(v)] = walk_to(source_, source_around_, point, start);
-    points_[at(v)] = position(source_, places_[at(v)]);
-  }
-  int corner_against(int f, int a, int b) const {
-    for (const int c : faces_[at(f)])
-      if (c != a && c != b) return c;
-    return -1;
+    places_[v] = walk_to(source_, source_around_, point, start);
+    points_[v] = position(source_, places_[v]);
   }
 
   void split_long() {
@@ -123,175 +94,132 @@ class Sculptor {
       bool any = false;
       for (const auto& [a, b] : edges()) {
         if (length(a, b) <= 4.0 / 3.0 * wanted(a, b)) continue;
-        const std::vector<int> both = shared(a, b);
-        if (both.empty() || both.size() > 2) continue;
+        const int h = links_.find_either(a, b);
+        if (h < 0 || !links_.may_edit(h)) continue;
         any = true;
-        const int middle = static_cast<int>(points_.size());
+        const int middle = links_.split(h);
         points_.emplace_back();
         places_.emplace_back();
-        around_.emplace_back();
-        const Vec3 half = 0.5 * (points_[at(a)] + points_[at(b)]);
-        if (both.size() ==
-            1) {  // keep the border's own line: project only within the source's border triangle
-          places_[at(middle)] = walk_to(source_, source_around_, half, places_[at(a)].triangle);
-          points_[at(middle)] = position(source_, places_[at(middle)]);
-        } else {
-          put(middle, half, places_[at(a)].triangle);
-        }
-        for (const int f : both) {
-          const int added = static_cast<int>(faces_.size());
-          Face copy = faces_[at(f)];
-          std::replace(copy.begin(), copy.end(), a, middle);
-          std::replace(faces_[at(f)].begin(), faces_[at(f)].end(), b, middle);
-          faces_.push_back(copy);
-          detach(f, b);
-          around_[at(b)].push_back(added);
-          around_[at(middle)].push_back(f);
-          around_[at(middle)].push_back(added);
-          around_[at(corner_against(f, a, middle))].push_back(added);
-        }
+        put(middle, 0.5 * (points_[a] + points_[b]), places_[a].triangle);
       }
       if (!any) break;
     }
   }
 
-  bool may_collapse(int gone, int kept, const Vec3& target, const std::vector<int>& both) const {
-    const std::vector<int> a = ring(gone), b = ring(kept);
-    std::vector<int> common;
+  /// Whether the ends of `h` can be merged at `target`: the mesh stays manifold (link condition), nothing
+  /// folds or becomes too long.
+  bool may_collapse(int h, int gone, int kept, const Vec3& target) const {
+    std::vector<int> a, b, common;
+    links_.ring(gone, a);
+    links_.ring(kept, b);
     std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(common));
-    if (common.size() != both.size()) return false;
+    if (common.size() != (links_.across(h) < 0 ? 1 : 2)) return false;
+    bool may = true;
     for (const int v : {gone, kept}) {
       const int other = v == gone ? kept : gone;
-      for (const int f : around_[at(v)]) {
-        Face face = faces_[at(f)];
-        if (std::find(face.begin(), face.end(), other) != face.end()) continue;
-        const Vec3 before = normal(face);
-        Vec3 p[3];
-        for (size_t k = 0; k < 3; ++k) {
-          p[k] = face[k] == v ? target : points_[at(face[k])];
-          if (face[k] != v && (points_[at(face[k])] - target).norm() > 4.0 / 3.0 * wanted(kept, face[k]))
-            return false;
-        }
-        const Vec3 after = (p[1] - p[0]).cross(p[2] - p[0]);
-        if (after.dot(before) < 0.3 * after.norm() * before.norm() || after.norm() < 1e-3 * before.norm())
-          return false;
-      }
+      links_.around(v, [&](int k) {
+        const int c = links_.to(k), d = links_.apex(k);
+        if (!may || c == other || d == other) return;
+        const Vec3 before = normal(k), after = normal(target, points_[c], points_[d]);
+        for (const int w : {c, d})
+          may = may && (points_[w] - target).norm() <= 4.0 / 3.0 * wanted(kept, w);
+        may = may && after.dot(before) >= 0.3 * after.norm() * before.norm() &&
+              after.norm() >= 1e-3 * before.norm();
+      });
     }
-    return true;
+    return may;
   }
 
   void collapse_short() {
     for (int round = 0; round < 6; ++round) {
       bool any = false;
       for (auto [a, b] : edges()) {
-        if (around_[at(a)].empty() || around_[at(b)].empty()) continue;
-        const std::vector<int> both = shared(a, b);
-        if (both.empty() || both.size() > 2 || length(a, b) >= 0.8 * wanted(a, b)) continue;
-        const bool border_a = on_border(a), border_b = on_border(b);
-        if (border_a && border_b && both.size() == 2) continue;  // would pinch the surface
-        if (border_a && !border_b) std::swap(a, b);              // b stays
+        if (length(a, b) >= 0.8 * wanted(a, b)) continue;
+        const int h = links_.find_either(a, b);
+        if (h < 0 || !links_.may_edit(h)) continue;
+        const bool border_a = links_.on_boundary(a), border_b = links_.on_boundary(b);
+        if (border_a && border_b && links_.across(h) >= 0) continue;  // would pinch the surface
+        if (border_a && !border_b) std::swap(a, b);                   // b stays
         const bool keep_place = border_a != border_b;
-        const Vec3 target = keep_place ? points_[at(b)] : Vec3(0.5 * (points_[at(a)] + points_[at(b)]));
-        if (border_a && border_b && ring(a).size() <= 2) continue;
-        if (!may_collapse(a, b, target, both)) continue;
+        const Vec3 target = keep_place ? points_[b] : Vec3(0.5 * (points_[a] + points_[b]));
+        if (border_a && border_b && links_.valence(a) < 2) continue;
+        if (!may_collapse(h, a, b, target)) continue;
         any = true;
-        for (const int f : both) {
-          for (const int c : faces_[at(f)])
-            detach(f, c);
-          faces_[at(f)] = {-1, -1, -1};
-        }
-        for (const int f : around_[at(a)]) {
-          std::replace(faces_[at(f)].begin(), faces_[at(f)].end(), a, b);
-          around_[at(b)].push_back(f);
-        }
-        around_[at(a)].clear();
-        if (!keep_place) put(b, target, places_[at(b)].triangle);
+        links_.collapse(h, b);
+        if (!keep_place) put(b, target, places_[b].triangle);
       }
       if (!any) break;
     }
+    const std::vector<int> stay = links_.compact();
+    keep_only(stay, points_);
+    keep_only(stay, places_);
   }
 
   double angle_at(int c, int a, int b) const {
-    const Vec3 u = points_[at(a)] - points_[at(c)], v = points_[at(b)] - points_[at(c)];
+    const Vec3 u = points_[a] - points_[c], v = points_[b] - points_[c];
     return std::atan2(u.cross(v).norm(), u.dot(v));
   }
 
   void flip() {
     for (int round = 0; round < 3; ++round) {
       bool any = false;
-      for (const auto& [a, b] : edges()) {
-        const std::vector<int> both = shared(a, b);
-        if (both.size() != 2) continue;
-        const int c = corner_against(both[0], a, b), d = corner_against(both[1], a, b);
-        if (c == d || angle_at(c, a, b) + angle_at(d, a, b) <= 3.1416 + 0.05 || !shared(c, d).empty())
+      for (const auto& [low, high] : edges()) {
+        const int h = links_.find(low, high);
+        if (h < 0 || links_.across(h) < 0 || !links_.may_edit(h)) continue;
+        const int a = low, b = high, c = links_.apex(h), d = links_.apex(links_.across(h));
+        if (c == d || angle_at(c, a, b) + angle_at(d, a, b) <= 3.1416 + 0.05 || links_.find_either(c, d) >= 0)
           continue;
-        const Vec3 n0 = normal(faces_[at(both[0])]), n1 = normal(faces_[at(both[1])]);
-        // New faces keep the old ones' direction: in face both[0] the edge runs a -> b or b -> a.
-        const Face& f0 = faces_[at(both[0])];
-        size_t k = 0;
-        while (f0[k] != a)
-          ++k;
-        const bool forward = f0[(k + 1) % 3] == b;
-        const Face first = forward ? Face{a, d, c} : Face{a, c, d},
-                   second = forward ? Face{b, c, d} : Face{b, d, c};
-        const Vec3 mean = n0.normalized() + n1.normalized(), m0 = normal(first), m1 = normal(second);
-        if (m0.dot(mean) <= 0.5 * m0.norm() * mean.norm() || m1.dot(mean) <= 0.5 * m1.norm() * mean.norm())
+        const Vec3 mean = normal(h).normalized() + normal(links_.across(h)).normalized(),
+                   first = normal(points_[a], points_[d], points_[c]),
+                   second = normal(points_[b], points_[c], points_[d]);
+        if (first.dot(mean) <= 0.5 * first.norm() * mean.norm() ||
+            second.dot(mean) <= 0.5 * second.norm() * mean.norm())
           continue;
         any = true;
-        detach(both[0], b);
-        detach(both[1], a);
-        faces_[at(both[0])] = first;
-        faces_[at(both[1])] = second;
-        around_[at(d)].push_back(both[0]);
-        around_[at(c)].push_back(both[1]);
+        links_.flip(h);
       }
       if (!any) break;
     }
   }
 
   void smooth() {
-    for (size_t v = 0; v < points_.size(); ++v) {
-      const int i = static_cast<int>(v);
-      if (around_[v].empty() || on_border(i)) continue;
+    for (int v = 0; v < static_cast<int>(points_.size()); ++v) {
+      if (links_.leaving[v] < 0 || links_.on_boundary(v) || links_.fixed[v]) continue;
       Vec3 sum = Vec3::Zero(), up = Vec3::Zero();
       double weight = 0.0;
-      for (const int f : around_[v]) {
-        const Face& t = faces_[at(f)];
-        const Vec3 n = normal(t);
-        const double size = wanted(t[0]) + wanted(t[1]) + wanted(t[2]);
-        const double w = n.norm() / (size * size);
-        sum += w * (points_[at(t[0])] + points_[at(t[1])] + points_[at(t[2])]) / 3.0;
+      std::vector<std::pair<int, Vec3>> before;
+      links_.around(v, [&](int h) {
+        const int b = links_.to(h), c = links_.apex(h);
+        const Vec3 n = normal(h);
+        const double size = wanted(v) + wanted(b) + wanted(c), w = n.norm() / (size * size);
+        sum += w * (points_[v] + points_[b] + points_[c]) / 3.0;
         weight += w;
         up += n;
-      }
+        before.emplace_back(h, n);
+      });
       if (weight <= 0.0 || up.norm() == 0.0) continue;
       up.normalize();
       Vec3 move = sum / weight - points_[v];
       move -= up.dot(move) * up;
       const Vec3 old_point = points_[v];
       const SurfacePoint old_place = places_[v];
-      std::vector<Vec3> before;
-      for (const int f : around_[v])
-        before.push_back(normal(faces_[at(f)]));
-      put(i, points_[v] + 0.7 * move, places_[v].triangle);
-      for (size_t k = 0; k < before.size(); ++k) {
-        const Vec3 after = normal(faces_[at(around_[v][k])]);
-        if (after.dot(before[k]) < 0.3 * after.norm() * before[k].norm()) {  // turned a triangle: stay
-          points_[v] = old_point;
-          places_[v] = old_place;
-          break;
-        }
-      }
+      put(v, points_[v] + 0.7 * move, places_[v].triangle);
+      const bool turns = std::any_of(before.begin(), before.end(), [&](const std::pair<int, Vec3>& triangle) {
+        const Vec3 after = normal(triangle.first);
+        return after.dot(triangle.second) < 0.3 * after.norm() * triangle.second.norm();
+      });
+      if (!turns) continue;
+      points_[v] = old_point;
+      places_[v] = old_place;
     }
   }
 
   const TriangleMesh& source_;
   const std::vector<double>& lengths_;
   std::vector<std::vector<int>> source_around_;
+  HalfEdges links_;
   std::vector<Vec3> points_;
   std::vector<SurfacePoint> places_;
-  std::vector<Face> faces_;
-  std::vector<std::vector<int>> around_;
 };
 
 }  // namespace

@@ -2,97 +2,60 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <functional>
+#include <iterator>
 #include <queue>
 #include <tuple>
+#include <utility>
 
 #include "geometry/connectivity.h"
+#include "geometry/half_edges.h"
 
 namespace fascia::skull_maker {
 namespace {
 
 struct Collapser {
-  TriangleMesh& mesh;
+  const std::vector<Vec3>& points;
   const std::vector<double>& sizes;
   const std::vector<Vec3>& normals;
-  std::vector<std::vector<int>> fans;  ///< live triangles around each vertex
-  std::vector<bool> dead;              ///< triangles
-  std::vector<bool> gone;              ///< vertices
-  std::vector<bool> border;
+  HalfEdges links;
 
-  const Vec3& at(int v) const { return mesh.vertices[static_cast<std::size_t>(v)]; }
-  Triangle& triangle(int t) { return mesh.triangles[static_cast<std::size_t>(t)]; }
-  std::vector<int>& fan(int v) { return fans[static_cast<std::size_t>(v)]; }
+  const Vec3& at(int v) const { return points[static_cast<std::size_t>(v)]; }
+  bool is_gone(int v) const { return links.leaving[static_cast<std::size_t>(v)] < 0; }
 
   double shortness(int a, int b) const {
     return (at(a) - at(b)).norm() * 2 /
            (sizes[static_cast<std::size_t>(a)] + sizes[static_cast<std::size_t>(b)]);
   }
 
-  std::vector<int> ring(int v) {
-    std::vector<int> out;
-    for (const int t : fan(v)) {
-      for (const int w : triangle(t)) {
-        if (w != v) out.push_back(w);
-      }
-    }
-    std::sort(out.begin(), out.end());
-    out.erase(std::unique(out.begin(), out.end()), out.end());
-    return out;
+  /// Whether the triangle of corners `from`, `b`, `c` stays sound with `to` for `from`.
+  bool stays_sound(int to, int b, int c) const {
+    const Vec3 after = (at(b) - at(to)).cross(at(c) - at(to));
+    const double longest = std::max(
+        {(at(to) - at(b)).squaredNorm(), (at(b) - at(c)).squaredNorm(), (at(c) - at(to)).squaredNorm()});
+    return after.norm() >= 0.06 * longest &&
+           after.dot(normals[static_cast<std::size_t>(to)]) >= 0.3 * after.norm();
   }
 
-  static bool has(const Triangle& t, int v) { return t[0] == v || t[1] == v || t[2] == v; }
-
-  Vec3 area_normal(const Triangle& t) const { return (at(t[1]) - at(t[0])).cross(at(t[2]) - at(t[0])); }
-
-  /// May `from` move to `to`?
-  bool allowed(int from, int to) {
-    int wings = 0;
-    for (const int t : fan(from))
-      wings += has(triangle(t), to);
-    const bool at_border = border[static_cast<std::size_t>(from)];
-    if (at_border && !(border[static_cast<std::size_t>(to)] && wings == 1)) return false;
-    if (!at_border && wings != 2) return false;
-    const std::vector<int> a = ring(from);
-    const std::vector<int> b = ring(to);
-    std::vector<int> shared;
+  /// May the end of `h` other than `to` be merged into `to`?
+  bool allowed(int h, int to) const {
+    const int from = links.from(h) == to ? links.to(h) : links.from(h);
+    const std::size_t wings = links.across(h) < 0 ? 1 : 2;
+    if (links.on_boundary(from) ? wings == 2 : wings == 1) return false;
+    std::vector<int> a, b, shared;
+    links.ring(from, a);
+    links.ring(to, b);
     std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(shared));
-    if (static_cast<int>(shared.size()) != wings || a.size() < 4) return false;
+    if (shared.size() != wings || a.size() < 4 || !links.may_edit(h)) return false;
     for (const int w : a) {
       if (w != to && shortness(w, to) > 1.7) return false;
     }
-    for (const int t : fan(from)) {
-      Triangle moved = triangle(t);
-      if (has(moved, to)) continue;
-      for (int& v : moved)
-        v = v == from ? to : v;
-      const Vec3 after = area_normal(moved);
-      const double longest =
-          std::max({(at(moved[0]) - at(moved[1])).squaredNorm(), (at(moved[1]) - at(moved[2])).squaredNorm(),
-                    (at(moved[2]) - at(moved[0])).squaredNorm()});
-      if (after.norm() < 0.06 * longest ||
-          after.dot(normals[static_cast<std::size_t>(to)]) < 0.3 * after.norm()) {
-        return false;
-      }
-    }
-    return true;
-  }
-
-  void collapse(int from, int to) {
-    for (const int t : fan(from)) {
-      Triangle& corners = triangle(t);
-      if (has(corners, to)) {
-        dead[static_cast<std::size_t>(t)] = true;
-        for (const int w : corners) {
-          if (w != from) std::erase(fan(w), t);
-        }
-      } else {
-        for (int& v : corners)
-          v = v == from ? to : v;
-        fan(to).push_back(t);
-      }
-    }
-    fan(from).clear();
-    gone[static_cast<std::size_t>(from)] = true;
+    bool sound = true;
+    links.around(from, [&](int k) {
+      if (links.to(k) != to && links.apex(k) != to)
+        sound = sound && stays_sound(to, links.to(k), links.apex(k));
+    });
+    return sound;
   }
 };
 
@@ -100,26 +63,13 @@ struct Collapser {
 
 void thin_out(double share, const std::vector<Vec3>& normals, TriangleMesh* mesh,
               std::vector<double>* sizes) {
-  const std::size_t count = mesh->vertices.size();
-  Collapser work{*mesh,
-                 *sizes,
-                 normals,
-                 std::vector<std::vector<int>>(count),
-                 std::vector<bool>(mesh->triangles.size(), false),
-                 std::vector<bool>(count, false),
-                 std::vector<bool>(count, false)};
-  for (int t = 0; t < mesh->triangle_count(); ++t) {
-    for (const int v : work.triangle(t))
-      work.fan(v).push_back(t);
-  }
-  for (const auto& loop : boundary_loops(*mesh, connectivity(*mesh))) {
-    for (const int v : loop)
-      work.border[static_cast<std::size_t>(v)] = true;
-  }
+  Collapser work{mesh->vertices, *sizes, normals, HalfEdges(*mesh)};
   using Candidate = std::tuple<double, int, int>;
   std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> queue;
+  std::vector<int> ring;
   const auto consider = [&](int v) {
-    for (const int w : work.ring(v)) {
+    work.links.ring(v, ring);
+    for (const int w : ring) {
       const double shortness = work.shortness(v, w);
       if (shortness < share) queue.push({shortness, v, w}), queue.push({shortness, w, v});
     }
@@ -139,18 +89,19 @@ void thin_out(double share, const std::vector<Vec3>& normals, TriangleMesh* mesh
       collapsed = 0;
       refill();
     }
-    if (work.gone[static_cast<std::size_t>(from)] || work.gone[static_cast<std::size_t>(to)]) continue;
-    const std::vector<int> near = work.ring(from);
-    if (!std::binary_search(near.begin(), near.end(), to) || !work.allowed(from, to)) continue;
-    work.collapse(from, to);
+    if (work.is_gone(from) || work.is_gone(to)) continue;
+    const int h = work.links.find_either(from, to);
+    if (h < 0 || !work.allowed(h, to)) continue;
+    work.links.collapse(h, to);
     ++collapsed;
     consider(to);
   }
   std::vector<bool> keep;
-  for (const bool is_dead : work.dead)
-    keep.push_back(!is_dead);
+  for (int h = 0; h < static_cast<int>(work.links.twin.size()); h += 3)
+    keep.push_back(!work.links.gone(h));
   std::vector<int> map;
-  const TriangleMesh out = submesh(*mesh, keep, &map);
+  // Numbered in the order of the triangles: what comes next works on them in that order.
+  const TriangleMesh out = submesh({mesh->vertices, work.links.triangles}, keep, &map);
   std::vector<double> lengths(out.vertices.size());
   for (std::size_t v = 0; v < map.size(); ++v) {
     if (map[v] >= 0) lengths[static_cast<std::size_t>(map[v])] = (*sizes)[v];

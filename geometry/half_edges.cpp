@@ -1,16 +1,16 @@
-#include "builder/smas/surface_mesh.h"
+#include "geometry/half_edges.h"
+
+#include <algorithm>
 
 #include "geometry/connectivity.h"
 
-namespace fascia::smas {
+namespace fascia {
 
-SurfaceMesh::SurfaceMesh(const TriangleMesh& mesh, const std::vector<Vec3>& vertex_normals,
-                         const std::vector<double>& vertex_sizes)
-    : points(mesh.vertices), normals(vertex_normals), sizes(vertex_sizes), triangles(mesh.triangles) {
+HalfEdges::HalfEdges(const TriangleMesh& mesh) : triangles(mesh.triangles) {
   const Connectivity links = connectivity(mesh);
   twin.assign(3 * triangles.size(), -1);
-  leaving.assign(points.size(), -1);
-  std::vector<int> corners(points.size(), 0);
+  leaving.assign(mesh.vertices.size(), -1);
+  std::vector<int> corners(mesh.vertices.size(), 0);
   for (int h = 0; h < static_cast<int>(twin.size()); ++h) {
     const int v = from(h), other = links.neighbours[h / 3][h % 3];
     for (int e = 0; other >= 0 && e < 3; ++e)
@@ -18,20 +18,27 @@ SurfaceMesh::SurfaceMesh(const TriangleMesh& mesh, const std::vector<Vec3>& vert
     if (leaving[v] < 0 || (twin[h] < 0 && twin[leaving[v]] >= 0)) leaving[v] = h;
     ++corners[v];
   }
-  fixed.assign(points.size(), 0);
-  for (int v = 0; v < static_cast<int>(points.size()); ++v)
+  fixed.assign(mesh.vertices.size(), 0);
+  for (int v = 0; v < static_cast<int>(fixed.size()); ++v)
     fixed[v] = valence(v) != corners[v];
   dead_triangle_.assign(triangles.size(), 0);
-  dead_vertex_.assign(points.size(), 0);
+  dead_vertex_.assign(fixed.size(), 0);
 }
 
-int SurfaceMesh::valence(int v) const {
+int HalfEdges::valence(int v) const {
   int count = 0;
   around(v, [&](int) { ++count; });
   return count;
 }
 
-int SurfaceMesh::find(int a, int b) const {
+void HalfEdges::ring(int v, std::vector<int>& out) const {
+  out.clear();
+  around(v, [&](int h) { out.push_back(to(h)), out.push_back(apex(h)); });
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+}
+
+int HalfEdges::find(int a, int b) const {
   int found = -1;
   around(a, [&](int h) {
     if (to(h) == b) found = h;
@@ -39,23 +46,28 @@ int SurfaceMesh::find(int a, int b) const {
   return found;
 }
 
-int SurfaceMesh::before_on_boundary(int v) const {
+int HalfEdges::find_either(int a, int b) const {
+  const int h = find(a, b);
+  return h >= 0 ? h : find(b, a);
+}
+
+int HalfEdges::before_on_boundary(int v) const {
   int last = -1;
   around(v, [&](int h) { last = h; });
   return last < 0 ? -1 : from(prev(last));
 }
 
-bool SurfaceMesh::may_edit(int h) const {
+bool HalfEdges::may_edit(int h) const {
   if (fixed[from(h)] || fixed[to(h)] || fixed[apex(h)]) return false;
   return twin[h] < 0 || !fixed[apex(twin[h])];
 }
 
-void SurfaceMesh::link(int g, int h) {
+void HalfEdges::link(int g, int h) {
   if (g >= 0) twin[g] = h;
   if (h >= 0) twin[h] = g;
 }
 
-void SurfaceMesh::flip(int h) {
+void HalfEdges::flip(int h) {
   const int g = twin[h], t = 3 * (h / 3), o = 3 * (g / 3);
   const int a = from(h), b = to(h), c = apex(h), d = apex(g);
   const int bc = twin[next(h)], ca = twin[prev(h)], ad = twin[next(g)], db = twin[prev(g)];
@@ -71,12 +83,9 @@ void SurfaceMesh::flip(int h) {
   if (d_moves) leaving[d] = o;
 }
 
-int SurfaceMesh::split(int h, const Vec3& point, const Vec3& normal, double size) {
-  const int g = twin[h], t = 3 * (h / 3), m = static_cast<int>(points.size());
+int HalfEdges::split(int h) {
+  const int g = twin[h], t = 3 * (h / 3), m = static_cast<int>(leaving.size());
   const int a = from(h), b = to(h), c = apex(h);
-  points.push_back(point);
-  normals.push_back(normal);
-  sizes.push_back(size);
   leaving.push_back(-1);
   fixed.push_back(0);
   dead_vertex_.push_back(0);
@@ -109,7 +118,7 @@ int SurfaceMesh::split(int h, const Vec3& point, const Vec3& normal, double size
   return m;
 }
 
-void SurfaceMesh::collapse(int h, int kept) {
+void HalfEdges::collapse(int h, int kept) {
   const int g = twin[h], b = kept, a = from(h) == kept ? to(h) : from(h);
   // What will leave b.
   std::vector<int> fan;
@@ -132,40 +141,34 @@ void SurfaceMesh::collapse(int h, int kept) {
   dead_vertex_[a] = 1;
 }
 
-std::vector<int> SurfaceMesh::compact() {
-  std::vector<int> stay;
-  std::vector<int> vertex(points.size()), triangle(triangles.size());
-  int vertices = 0, count = 0;
-  for (size_t v = 0; v < points.size(); ++v) {
-    vertex[v] = vertices;
+std::vector<int> HalfEdges::compact() {
+  std::vector<int> stay, live, vertex(leaving.size(), -1), triangle(triangles.size(), -1);
+  for (int v = 0; v < static_cast<int>(leaving.size()); ++v) {
     if (dead_vertex_[v]) continue;
-    stay.push_back(static_cast<int>(v));
-    points[vertices] = points[v];
-    normals[vertices] = normals[v];
-    sizes[vertices] = sizes[v];
-    leaving[vertices] = leaving[v];
-    fixed[vertices] = fixed[v];
-    ++vertices;
+    vertex[v] = static_cast<int>(stay.size());
+    stay.push_back(v);
   }
-  for (size_t t = 0; t < triangles.size(); ++t)
-    triangle[t] = dead_triangle_[t] ? -1 : count++;
-  const auto moved = [&](int h) { return h < 0 ? -1 : 3 * triangle[h / 3] + h % 3; };
-  for (size_t t = 0; t < triangles.size(); ++t) {
+  for (int t = 0; t < static_cast<int>(triangles.size()); ++t) {
     if (dead_triangle_[t]) continue;
-    const size_t to = static_cast<size_t>(triangle[t]);
-    for (size_t e = 0; e < 3; ++e) {
-      triangles[to][e] = vertex[triangles[t][e]];
-      twin[3 * to + e] = moved(twin[3 * t + e]);
-    }
+    triangle[t] = static_cast<int>(live.size());
+    live.push_back(t);
   }
-  points.resize(vertices), normals.resize(vertices), sizes.resize(vertices), leaving.resize(vertices),
-      fixed.resize(vertices);
+  const auto moved = [&](int h) { return h < 0 ? -1 : 3 * triangle[h / 3] + h % 3; };
+  for (size_t to = 0; to < live.size(); ++to)
+    for (size_t e = 0; e < 3; ++e) {
+      const int t = live[to];
+      triangles[to][e] = vertex[triangles[t][e]];
+      twin[3 * to + e] = moved(twin[3 * static_cast<size_t>(t) + e]);
+    }
+  triangles.resize(live.size());
+  twin.resize(3 * live.size());
+  keep_only(stay, leaving);
+  keep_only(stay, fixed);
   for (int& h : leaving)
     h = moved(h);
-  triangles.resize(count), twin.resize(3 * static_cast<size_t>(count));
-  dead_vertex_.assign(points.size(), 0);
-  dead_triangle_.assign(triangles.size(), 0);
+  dead_vertex_.assign(stay.size(), 0);
+  dead_triangle_.assign(live.size(), 0);
   return stay;
 }
 
-}  // namespace fascia::smas
+}  // namespace fascia
