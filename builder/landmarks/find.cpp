@@ -281,9 +281,13 @@ FoundFace find(const GenericFace& face, const anatomy::GenericAnatomy& anatomy,
     }
     const auto eye = seen.find(landmark.name);
     const Vec3 carried = eye != seen.end() ? eye->second : found.fit(*landmark.skin);
-    const auto place =
-        facing_point(skin, carried, carried_normal(found.fit, *landmark.skin, landmark.normal));
-    if (!place) continue;
+    // Margins of lids and lips turn within a millimetre or two: what was seen there is on the surface nearest
+    // to it, wherever that faces.
+    const std::optional<spatial::ClosestPoint> place =
+        eye != seen.end()
+            ? std::optional(skin.closest(carried))
+            : facing_point(skin, carried, carried_normal(found.fit, *landmark.skin, landmark.normal));
+    if (!place || !place->found()) continue;
     const double distance = place->distance / placement.scale;
     const double off = std::exp(-distance / 0.015);
     const double confidence = std::max(eye != seen.end() ? confidence_of_openings : 0.0,

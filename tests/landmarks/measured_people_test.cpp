@@ -8,6 +8,7 @@
 #include <string>
 
 #include "builder/rigging/find_landmarks.h"
+#include "builder/spatial/surface_query.h"
 #include "tests/landmarks/measured_heads.h"
 #include "tests/paths/paths.h"
 
@@ -161,6 +162,22 @@ TEST_F(MeasuredPeople, LipsLidsAndLiningKeepTheirPlacesVertexByVertex) {
     // head already.
     for (const auto& [what, count] : mixed)
       EXPECT_LE(count, 3) << person << ": " << count << " vertices, " << what;
+  }
+}
+
+/// A coarse head with sockets in place of eyes, whose lids are a row of vertices: behind their edge the skin
+/// goes back and up, and faces as a lid does again at the socket's end.
+TEST_F(MeasuredPeople, LidsBeforeAnEmptySocketAreThoseOneSees) {
+  const std::filesystem::path file = test::measured_data() / "data/wild/african_head.obj";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "needs " << file;
+  const rigging::FoundLandmarks found = rigging::find_landmarks(formats::read(file), {}, generic_anatomy());
+  const spatial::SurfaceQuery skin(found.head.skin);
+  for (const char* name : {"palpebrale_superius_left", "palpebrale_superius_right",
+                           "palpebrale_inferius_left", "palpebrale_inferius_right"}) {
+    const Vec3 p = found.landmarks.at(name).position;
+    const auto hit = skin.first_hit(p + Vec3(0, 0, 0.1), -Vec3::UnitZ(), 0.2);
+    ASSERT_TRUE(hit.has_value()) << name;
+    EXPECT_LT(hit->position.z() - p.z(), 0.003) << name << " is hidden from the front";
   }
 }
 
