@@ -126,6 +126,23 @@ TEST(Lids, ThatAreShutAtRestAndStayAreClosed) {
   EXPECT_LT(state.widest, 3.0 * slit * 0.012);
 }
 
+TEST(Lids, ThatAreShutButForALineOfLashesAreShut) {
+  // Over two of nine stations the edges lie 1 mm apart: the rest tells that nothing opens here.
+  Head shut = eye_with_lids(0.004, -0.004);
+  shut.parts.pop_back();
+  std::vector<Vec3>& skin = shut.parts[0].mesh.vertices;
+  shut.parts[0].is_still.assign(skin.size(), true);
+  for (size_t v = 0; v < skin.size() / 2; ++v) {
+    const double azimuth = std::atan2(skin[v].x(), skin[v].z()), elevation = std::asin(skin[v].y() / 0.0125);
+    if (std::abs(azimuth + 0.122) > 0.2 || elevation > 0.08) continue;
+    skin[v] =
+        0.0125 * Vec3(std::sin(azimuth) * std::cos(0.08), std::sin(0.08), std::cos(azimuth) * std::cos(0.08));
+  }
+  const LidState state = lids_of(shut, shut);
+  EXPECT_EQ(state.gaps.size(), 9U);
+  EXPECT_NEAR(state.widest, 0.084 * 0.012, 1e-4);
+}
+
 TEST(Lids, SeamFollowsBothEdges) {
   const Head open = eye_with_lids(0.5, -0.3);
   const Skin skin(open, Vec3::Zero(), 0.1);
