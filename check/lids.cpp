@@ -77,7 +77,7 @@ LidState LidLook::look(const std::vector<Vec3>& skin, const Shape& shape) const 
   LidState out;
   if (lids_.triangles.empty()) return out;
   const spatial::SurfaceQuery lids(lids_.mesh(skin));
-  const double start = farthest * eye_.radius, reach = (farthest - nearest) * eye_.radius;
+  const double start = outside * eye_.radius, reach = (outside - nearest) * eye_.radius;
   constexpr double step = 0.004;  // radians: .05 mm on an adult's globe
   constexpr double more = 0.1;    // radians looked at beyond the edges at rest
   const auto is_covered = [&](const Vec3& ray) {

@@ -1,6 +1,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "builder/tissue/actuators.h"
 #include "builder/tissue/lids.h"
@@ -30,15 +31,16 @@ void carry(rig::TissueLevel& level, int channel, size_t node, const Fissure& f, 
   level.carrier_drive.push_back(static_cast<float>(stiffness));
 }
 
-/// Distance of the cornea's apex from the centre of the eye of a side, or the eye's radius if the head has no
-/// eyeball.
-double apex_of(const TissueInputs& inputs, bool left, const Fissure& f) {
-  double apex = f.radius;
+/// Distance of the cornea's apex from the centre of the eye of a side, at least the eye's radius: a ball
+/// without a bulge is its own cornea. Nothing if the head has no eyeball.
+std::optional<double> apex_of(const TissueInputs& inputs, bool left, const Fissure& f) {
+  std::optional<double> apex;
   for (const PartMesh& part : inputs.parts)
     if (part.part == (left ? "eye_left" : "eye_right"))
       for (const Vec3& p : part.vertices) {
         const double distance = (p - f.centre).norm();
-        if (distance < inputs.mechanics.lids.cornea_apex_limit * f.radius) apex = std::max(apex, distance);
+        if (distance < inputs.mechanics.lids.cornea_apex_limit * f.radius)
+          apex = std::max(apex.value_or(f.radius), distance);
       }
   return apex;
 }
@@ -94,13 +96,13 @@ void add_eye(const TissueInputs& inputs, const FaceRegion& region, const Columns
   const bool is_closed = f.is_closed();
   level.globe_centre.push_back(f.centre.cast<float>());
   level.globe_radius.push_back(static_cast<float>(f.radius));
-  const double bulge = m.cornea_radius_share * f.radius, apex = apex_of(inputs, left, f);
-  const bool has_cornea = apex > f.radius + 1e-4;
+  const double bulge = m.cornea_radius_share * f.radius;
+  const std::optional<double> apex = apex_of(inputs, left, f);
   const double clearance = chord_clearance(c, opening, bulge, m.cornea_clearance);
   const double growth = m.cornea_crease_depth / (cornea_spheres - 1);
   const auto first = static_cast<uint32_t>(level.globe_centre.size());
-  for (uint32_t step = 0; has_cornea && step < cornea_spheres; ++step) {
-    level.globe_centre.push_back((f.centre + (apex - bulge) * f.front).cast<float>());
+  for (uint32_t step = 0; apex && step < cornea_spheres; ++step) {
+    level.globe_centre.push_back((f.centre + (*apex - bulge) * f.front).cast<float>());
     level.globe_radius.push_back(static_cast<float>(bulge + clearance + step * growth));
   }
   const auto& skin_opening =
@@ -122,7 +124,7 @@ void add_eye(const TissueInputs& inputs, const FaceRegion& region, const Columns
     for (const size_t node : {v, n + v}) {
       level.globe_contact_node.push_back(static_cast<uint32_t>(node));
       level.globe_contact_globe.push_back(first - 1);
-      if (!has_cornea) continue;
+      if (!apex) continue;
       level.globe_contact_node.push_back(static_cast<uint32_t>(node));
       level.globe_contact_globe.push_back(first + step);
     }

@@ -62,6 +62,25 @@ TEST(Lids, AnEyeballThatStandsOutIsMeasured) {
   EXPECT_NEAR(lids_of(open, posed).cornea_out, 7e-4, 1e-4);
 }
 
+TEST(Lids, AFoldFarBeforeTheLidHidesTheEye) {
+  // Above its edge the lid hangs over in a fold 21 mm from the eye's centre, and its lining lies within the
+  // ball: what one sees there is the fold, not the eye.
+  const auto folded = [](double upper, double lower) {
+    Head head = eye_with_lids(upper, lower);
+    std::vector<Vec3>& skin = head.parts[0].mesh.vertices;
+    const TriangleMesh lid = head.parts[0].mesh;
+    for (Vec3& p : skin)
+      if (std::asin(p.y() / p.norm()) > 0.52) p *= 21.0 / 12.5;
+    TriangleMesh lining = lid;
+    for (Vec3& p : lining.vertices)
+      p *= std::asin(p.y() / p.norm()) > 0.52 ? 10.0 / 12.5 : 1.0;
+    append(head.parts[0].mesh, lining);
+    return head;
+  };
+  const Head open = folded(0.5, -0.3);
+  EXPECT_EQ(lids_of(open, folded(0.0, 0.0)).cornea_out, 0.0);
+}
+
 /// The eyeball as a part of the skin that nothing moves, as in scans.
 Head scanned(Head head) {
   head.parts[0].is_still.assign(head.parts[0].mesh.vertices.size(), false);
@@ -105,6 +124,23 @@ TEST(Lids, ThatAreShutAtRestAndStayAreClosed) {
   const LidState state = lids_of(shut, shut);
   EXPECT_EQ(state.gaps.size(), 9U);
   EXPECT_LT(state.widest, 3.0 * slit * 0.012);
+}
+
+TEST(Lids, ThatAreShutButForALineOfLashesAreShut) {
+  // Over two of nine stations the edges lie 1 mm apart: the rest tells that nothing opens here.
+  Head shut = eye_with_lids(0.004, -0.004);
+  shut.parts.pop_back();
+  std::vector<Vec3>& skin = shut.parts[0].mesh.vertices;
+  shut.parts[0].is_still.assign(skin.size(), true);
+  for (size_t v = 0; v < skin.size() / 2; ++v) {
+    const double azimuth = std::atan2(skin[v].x(), skin[v].z()), elevation = std::asin(skin[v].y() / 0.0125);
+    if (std::abs(azimuth + 0.122) > 0.2 || elevation > 0.08) continue;
+    skin[v] =
+        0.0125 * Vec3(std::sin(azimuth) * std::cos(0.08), std::sin(0.08), std::cos(azimuth) * std::cos(0.08));
+  }
+  const LidState state = lids_of(shut, shut);
+  EXPECT_EQ(state.gaps.size(), 9U);
+  EXPECT_NEAR(state.widest, 0.084 * 0.012, 1e-4);
 }
 
 TEST(Lids, SeamFollowsBothEdges) {
