@@ -4,8 +4,10 @@
 // --sheet FILE.png draws every kind of head with its landmarks, --sheet FILE.png HEAD... the heads of those
 // files;
 // --poses HEAD... says how far landmarks of turned copies differ;
-// --people COUNT [FIRST] measures random people of the face model, from seed FIRST (1) on.
+// --people COUNT [FIRST [GIVEN]] measures random people of the face model, from seed FIRST (1) on, with the
+// first GIVEN (0) of their known landmarks given.
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstring>
@@ -32,10 +34,10 @@ struct Sums {
 };
 
 void measure(const testing::MeasuredHead& head, const anatomy::GenericAnatomy& anatomy,
-             std::map<std::string, Sums>& by_landmark, Sums& all) {
+             std::map<std::string, Sums>& by_landmark, Sums& all, const formats::LandmarkFile& given = {}) {
   const double start = seconds();
   try {
-    const rigging::FoundLandmarks found = rigging::find_landmarks(head.scene, {}, anatomy);
+    const rigging::FoundLandmarks found = rigging::find_landmarks(head.scene, given, anatomy);
     const double time = seconds() - start;
     const Mat4 to_file = found.head.input_to_metres.inverse();
     double sum = 0, most = 0, least = 1;
@@ -200,8 +202,24 @@ void draw_files(const std::string& path, const std::vector<std::string>& files,
   view::write_png(path, view::contact_sheet(tiles, 6));
 }
 
+/// `count` of the landmarks that are known of `head`, those that matter most first; as our definitions have
+/// them.
+formats::LandmarkFile some_given(const testing::MeasuredHead& head, size_t count,
+                                 const anatomy::GenericAnatomy& anatomy) {
+  std::vector<std::string> order = {"exocanthion_left", "exocanthion_right", "pronasale",
+                                    "cheilion_left",    "cheilion_right",    "menton"};
+  for (const auto& [name, p] : head.truth)
+    if (std::find(order.begin(), order.end(), name) == order.end()) order.push_back(name);
+  formats::LandmarkFile given;
+  for (const std::string& name : order)
+    if (const auto at = head.truth.find(name); at != head.truth.end() && given.points.size() < count)
+      given.points[name] = at->second - testing::offset_of_definition(name, *anatomy.landmark(name)->skin) *
+                                            (1e3 / head.millimetres);
+  return given;
+}
+
 /// Mean and worst person of `count` random ones, by the mean error of their landmarks.
-void measure_people(uint32_t first, uint32_t count, const anatomy::GenericAnatomy& anatomy) {
+void measure_people(uint32_t first, uint32_t count, size_t given, const anatomy::GenericAnatomy& anatomy) {
   const bench::FaceModel model;
   const auto vertices = testing::ict_model_vertices();
   Sums all;
@@ -214,7 +232,7 @@ void measure_people(uint32_t first, uint32_t count, const anatomy::GenericAnatom
       head.truth[name] = head.scene.meshes[0].positions[static_cast<size_t>(vertex)];
     std::map<std::string, Sums> by_landmark;
     Sums one;
-    measure(head, anatomy, by_landmark, one);
+    measure(head, anatomy, by_landmark, one, some_given(head, given, anatomy));
     if (one.count) worst = std::max(worst, one.sum / one.count);
     all.sum += one.sum;
     all.count += one.count;
@@ -241,7 +259,8 @@ int main(int argc, char** argv) {
   }
   if (argc > 2 && std::strcmp(argv[1], "--people") == 0) {
     measure_people(argc > 3 ? static_cast<uint32_t>(std::atoi(argv[3])) : 1,
-                   static_cast<uint32_t>(std::atoi(argv[2])), anatomy);
+                   static_cast<uint32_t>(std::atoi(argv[2])),
+                   argc > 4 ? static_cast<size_t>(std::atoi(argv[4])) : 0, anatomy);
     return 0;
   }
   const bool is_one_variant = argc > 2 && std::strcmp(argv[1], "--variant") == 0;
