@@ -3,7 +3,8 @@
 // the landmarks of those were found instead;
 // --sheet FILE.png draws every kind of head with its landmarks, --sheet FILE.png HEAD... the heads of those
 // files;
-// --poses HEAD... says how far landmarks of turned copies differ;
+// --same HEAD... says how far landmarks of changed copies differ, and of those with landmarks, skin or up
+// axis given;
 // --people COUNT [FIRST [GIVEN]] measures random people of the face model, from seed FIRST (1) on, with the
 // first GIVEN (0) of their known landmarks given.
 #include <Eigen/Geometry>
@@ -14,6 +15,7 @@
 #include <ctime>
 #include <functional>
 
+#include "bench/landmarks/same_head.h"
 #include "bench/landmarks/sheet.h"
 #include "bench/people/model_person.h"
 #include "builder/rigging/find_landmarks.h"
@@ -93,39 +95,6 @@ testing::MeasuredHead stretched(testing::MeasuredHead head, const std::string& n
     for (Vec3& p : mesh.positions)
       p = change(p);
   return head;
-}
-
-/// Largest and mean distance in millimetres (of a head as large as a person's) between the landmarks of a
-/// file and those of turned copies.
-void measure_poses(const std::string& file, const anatomy::GenericAnatomy& anatomy) {
-  const formats::Scene scene = formats::read(file);
-  const rigging::FoundLandmarks first = rigging::find_landmarks(scene, {}, anatomy);
-  const Mat4 back = first.head.input_to_metres.inverse();
-  double most = 0, sum = 0, count = 0;
-  for (int pose = 1; pose <= 4; ++pose) {
-    const Mat3 turn = Eigen::AngleAxisd(pose < 4 ? 0.12 * pose : 2.5, Vec3(pose, 2 - pose, 1).normalized())
-                          .toRotationMatrix();
-    formats::Scene turned = scene;
-    for (formats::SceneMesh& mesh : turned.meshes)
-      for (Vec3& p : mesh.positions)
-        p = turn * p;
-    try {
-      const rigging::FoundLandmarks found = rigging::find_landmarks(turned, {}, anatomy);
-      const Mat4 there = found.head.input_to_metres.inverse();
-      for (const auto& [name, landmark] : found.landmarks) {
-        const Vec3 a = turn * transform_point(back, first.landmarks.at(name).position);
-        const double off = 1e3 * first.head.input_to_metres.topLeftCorner<3, 1>().norm() *
-                           (transform_point(there, landmark.position) - a).norm();
-        most = std::max(most, off);
-        sum += off;
-        count += 1;
-      }
-    } catch (const std::exception& error) {
-      std::printf("  pose %d: %s\n", pose, error.what());
-    }
-  }
-  std::printf("%-24s turned: mean %.2f max %.2f mm\n", std::filesystem::path(file).filename().c_str(),
-              sum / count, most);
 }
 
 /// The contact sheet of docs/heads.md.
@@ -252,9 +221,9 @@ int main(int argc, char** argv) {
       draw_sheet(argv[2], anatomy);
     return 0;
   }
-  if (argc > 2 && std::strcmp(argv[1], "--poses") == 0) {
+  if (argc > 2 && std::strcmp(argv[1], "--same") == 0) {
     for (int a = 2; a < argc; ++a)
-      measure_poses(argv[a], anatomy);
+      bench::measure_same_head(argv[a], anatomy);
     return 0;
   }
   if (argc > 2 && std::strcmp(argv[1], "--people") == 0) {

@@ -232,8 +232,8 @@ Registration with_fitting_length(const GenericFace& face, const Samples& samples
   for (const double growth : {step, 1.0 / step}) {
     bool has_changed = false;
     for (int round = 0; round < rounds; ++round) {
-      Registration other = register_face(face, samples, fit.placement, anchors, options,
-                                         stretched(face, fit.warp, growth));
+      Registration other =
+          register_face(face, samples, fit.placement, anchors, options, stretched(face, fit.warp, growth));
       const double here = likeness(face, other, surface).score();
       if (here < gain * score) break;
       fit = std::move(other);
