@@ -3,15 +3,19 @@
 // the landmarks of those were found instead;
 // --sheet FILE.png draws every kind of head with its landmarks, --sheet FILE.png HEAD... the heads of those
 // files;
-// --poses HEAD... says how far landmarks of turned copies differ;
-// --people COUNT [FIRST] measures random people of the face model, from seed FIRST (1) on.
+// --same HEAD... says how far landmarks of changed copies differ, and of those with landmarks, skin or up
+// axis given;
+// --people COUNT [FIRST [GIVEN]] measures random people of the face model, from seed FIRST (1) on, with the
+// first GIVEN (0) of their known landmarks given.
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <ctime>
 #include <functional>
 
+#include "bench/landmarks/same_head.h"
 #include "bench/landmarks/sheet.h"
 #include "bench/people/model_person.h"
 #include "builder/rigging/find_landmarks.h"
@@ -32,10 +36,10 @@ struct Sums {
 };
 
 void measure(const testing::MeasuredHead& head, const anatomy::GenericAnatomy& anatomy,
-             std::map<std::string, Sums>& by_landmark, Sums& all) {
+             std::map<std::string, Sums>& by_landmark, Sums& all, const formats::LandmarkFile& given = {}) {
   const double start = seconds();
   try {
-    const rigging::FoundLandmarks found = rigging::find_landmarks(head.scene, {}, anatomy);
+    const rigging::FoundLandmarks found = rigging::find_landmarks(head.scene, given, anatomy);
     const double time = seconds() - start;
     const Mat4 to_file = found.head.input_to_metres.inverse();
     double sum = 0, most = 0, least = 1;
@@ -91,39 +95,6 @@ testing::MeasuredHead stretched(testing::MeasuredHead head, const std::string& n
     for (Vec3& p : mesh.positions)
       p = change(p);
   return head;
-}
-
-/// Largest and mean distance in millimetres (of a head as large as a person's) between the landmarks of a
-/// file and those of turned copies.
-void measure_poses(const std::string& file, const anatomy::GenericAnatomy& anatomy) {
-  const formats::Scene scene = formats::read(file);
-  const rigging::FoundLandmarks first = rigging::find_landmarks(scene, {}, anatomy);
-  const Mat4 back = first.head.input_to_metres.inverse();
-  double most = 0, sum = 0, count = 0;
-  for (int pose = 1; pose <= 4; ++pose) {
-    const Mat3 turn = Eigen::AngleAxisd(pose < 4 ? 0.12 * pose : 2.5, Vec3(pose, 2 - pose, 1).normalized())
-                          .toRotationMatrix();
-    formats::Scene turned = scene;
-    for (formats::SceneMesh& mesh : turned.meshes)
-      for (Vec3& p : mesh.positions)
-        p = turn * p;
-    try {
-      const rigging::FoundLandmarks found = rigging::find_landmarks(turned, {}, anatomy);
-      const Mat4 there = found.head.input_to_metres.inverse();
-      for (const auto& [name, landmark] : found.landmarks) {
-        const Vec3 a = turn * transform_point(back, first.landmarks.at(name).position);
-        const double off = 1e3 * first.head.input_to_metres.topLeftCorner<3, 1>().norm() *
-                           (transform_point(there, landmark.position) - a).norm();
-        most = std::max(most, off);
-        sum += off;
-        count += 1;
-      }
-    } catch (const std::exception& error) {
-      std::printf("  pose %d: %s\n", pose, error.what());
-    }
-  }
-  std::printf("%-24s turned: mean %.2f max %.2f mm\n", std::filesystem::path(file).filename().c_str(),
-              sum / count, most);
 }
 
 /// The contact sheet of docs/heads.md.
@@ -200,8 +171,24 @@ void draw_files(const std::string& path, const std::vector<std::string>& files,
   view::write_png(path, view::contact_sheet(tiles, 6));
 }
 
+/// `count` of the landmarks that are known of `head`, those that matter most first; as our definitions have
+/// them.
+formats::LandmarkFile some_given(const testing::MeasuredHead& head, size_t count,
+                                 const anatomy::GenericAnatomy& anatomy) {
+  std::vector<std::string> order = {"exocanthion_left", "exocanthion_right", "pronasale",
+                                    "cheilion_left",    "cheilion_right",    "menton"};
+  for (const auto& [name, p] : head.truth)
+    if (std::find(order.begin(), order.end(), name) == order.end()) order.push_back(name);
+  formats::LandmarkFile given;
+  for (const std::string& name : order)
+    if (const auto at = head.truth.find(name); at != head.truth.end() && given.points.size() < count)
+      given.points[name] = at->second - testing::offset_of_definition(name, *anatomy.landmark(name)->skin) *
+                                            (1e3 / head.millimetres);
+  return given;
+}
+
 /// Mean and worst person of `count` random ones, by the mean error of their landmarks.
-void measure_people(uint32_t first, uint32_t count, const anatomy::GenericAnatomy& anatomy) {
+void measure_people(uint32_t first, uint32_t count, size_t given, const anatomy::GenericAnatomy& anatomy) {
   const bench::FaceModel model;
   const auto vertices = testing::ict_model_vertices();
   Sums all;
@@ -214,7 +201,7 @@ void measure_people(uint32_t first, uint32_t count, const anatomy::GenericAnatom
       head.truth[name] = head.scene.meshes[0].positions[static_cast<size_t>(vertex)];
     std::map<std::string, Sums> by_landmark;
     Sums one;
-    measure(head, anatomy, by_landmark, one);
+    measure(head, anatomy, by_landmark, one, some_given(head, given, anatomy));
     if (one.count) worst = std::max(worst, one.sum / one.count);
     all.sum += one.sum;
     all.count += one.count;
@@ -234,14 +221,15 @@ int main(int argc, char** argv) {
       draw_sheet(argv[2], anatomy);
     return 0;
   }
-  if (argc > 2 && std::strcmp(argv[1], "--poses") == 0) {
+  if (argc > 2 && std::strcmp(argv[1], "--same") == 0) {
     for (int a = 2; a < argc; ++a)
-      measure_poses(argv[a], anatomy);
+      bench::measure_same_head(argv[a], anatomy);
     return 0;
   }
   if (argc > 2 && std::strcmp(argv[1], "--people") == 0) {
     measure_people(argc > 3 ? static_cast<uint32_t>(std::atoi(argv[3])) : 1,
-                   static_cast<uint32_t>(std::atoi(argv[2])), anatomy);
+                   static_cast<uint32_t>(std::atoi(argv[2])),
+                   argc > 4 ? static_cast<size_t>(std::atoi(argv[4])) : 0, anatomy);
     return 0;
   }
   const bool is_one_variant = argc > 2 && std::strcmp(argv[1], "--variant") == 0;

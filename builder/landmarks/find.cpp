@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "builder/landmarks/lid_opening.h"
+#include "builder/landmarks/likeness.h"
 #include "builder/landmarks/lip_opening.h"
 
 namespace fascia::landmarks {
@@ -203,6 +204,47 @@ std::map<std::string, Vec3> lip_landmarks(const GenericFace& face, const anatomy
   return {{"cheilion_left", on_left}, {"cheilion_right", on_right}};
 }
 
+/// `warp` with the face higher or lower below and above the eyes, by the factor `growth`.
+splines::Warp stretched(const GenericFace& face, const splines::Warp& warp, double growth) {
+  constexpr double smooth = 1e-4;
+  std::vector<Vec3> from, to;
+  for (size_t i : some_face_points(face, 8))
+    from.push_back(face.points.points[i]);
+  const double eyes = warp(Vec3(0.5 * (face.eye_left.centre + face.eye_right.centre))).y();
+  for (const Vec3& p : from) {
+    to.push_back(warp(p));
+    to.back().y() = eyes + growth * (to.back().y() - eyes);
+  }
+  splines::WarpOptions plate;
+  plate.lambda = smooth;
+  return splines::fit_warp(from, to, plate);
+}
+
+/// `fit` begun again from longer and from shorter faces while that makes it more like a face: the lips of a
+/// long face are drawn to its chin's furrow or nose, those of a short one to its chin, and stay there.
+Registration with_fitting_length(const GenericFace& face, const Samples& samples,
+                                 const std::vector<Anchor>& anchors, const RegistrationOptions& options,
+                                 Registration fit) {
+  constexpr double step = 1.12, gain = 1.01;
+  constexpr int rounds = 4;
+  const Neighbours surface(samples);
+  double score = likeness(face, fit, surface).score();
+  for (const double growth : {step, 1.0 / step}) {
+    bool has_changed = false;
+    for (int round = 0; round < rounds; ++round) {
+      Registration other =
+          register_face(face, samples, fit.placement, anchors, options, stretched(face, fit.warp, growth));
+      const double here = likeness(face, other, surface).score();
+      if (here < gain * score) break;
+      fit = std::move(other);
+      score = here;
+      has_changed = true;
+    }
+    if (has_changed) break;
+  }
+  return fit;
+}
+
 std::vector<Anchor> anchors_of(const std::map<std::string, Vec3>& points,
                                const anatomy::GenericAnatomy& anatomy, double weight) {
   std::vector<Anchor> anchors;
@@ -250,6 +292,7 @@ FoundFace find(const GenericFace& face, const anatomy::GenericAnatomy& anatomy,
     anchors.insert(anchors.end(), of_eyes.begin(), of_eyes.end());
     found.fit = register_face(face, samples, placement, anchors, first);
   }
+  found.fit = with_fitting_length(face, samples, anchors, first, std::move(found.fit));
   const bool has_eyes_by_hand = known.count("exocanthion_left") || known.count("exocanthion_right");
   const Openings lids =
       eye_openings(skin, fitted_eye(face, anatomy, found.fit, true, eyes.left),

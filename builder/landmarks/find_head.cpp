@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 
+#include "builder/landmarks/eye_pairs.h"
 #include "builder/landmarks/searched_surface.h"
 #include "builder/landmarks/spheres.h"
 #include "geometry/error.h"
@@ -28,6 +29,7 @@ struct Candidate {
   double distance = 1.0;  ///< of the face from the mesh, metres of the generic head
   Likeness likeness;
   Registration fit;
+  std::vector<Anchor> held;  ///< places it is held to; if none, the given ones
 };
 
 bool are_alike(const GenericFace& face, const Placement& a, const Placement& b) {
@@ -98,6 +100,38 @@ class Search {
     const Ball all = surface_.all();
     try_all(guess_by_eyes(face_, surface_.mesh(), surface_.about(all), 24), all, 8);
   }
+  const std::vector<EyePair>& pairs() {
+    if (!pairs_) pairs_ = eye_pairs(surface_);
+    return *pairs_;
+  }
+  /// Whether the best place has its eyes elsewhere than the surface has eyeballs.
+  bool is_beside_eyes() {
+    return !pairs().empty() && std::none_of(pairs().begin(), pairs().end(), [&](const EyePair& pair) {
+      return !pair.are_balls || has_its_eyes(face_, best_.placement, pair);
+    });
+  }
+  /// By two eyes with a nose below, held to where they are: for faces so unlike people's that closest points
+  /// lead away. Whether there are any.
+  bool by_eye_pairs() {
+    std::vector<Candidate> candidates;
+    for (const EyePair& pair : pairs()) {
+      if (!pair.has_nose) continue;
+      const std::vector<Guess> guesses = guess_by_eye_pair(face_, pair);
+      const size_t before = candidates.size();
+      add(candidates, guesses, vault_of(face_, guesses.front().placement));
+      for (size_t k = before; k < candidates.size(); ++k)
+        candidates[k].held = guesses.front().held;
+    }
+    if (candidates.empty()) return false;
+    best_ = {};
+    std::vector<Candidate*> refined;
+    for (Candidate& candidate : candidates)
+      refined.push_back(&candidate);
+    refine(refined, 12, 2);
+    bend(candidates);
+    about_best();
+    return true;
+  }
   /// From beside the best place: nodding, larger and smaller, higher and lower. A fit may rest with lips on
   /// chin or nose on lips, and what is next to it is better; that the same head ends in the same place
   /// however it is turned depends on this too.
@@ -131,6 +165,11 @@ class Search {
   const ForEach& for_each_;
   std::vector<size_t> few_;
   Candidate best_;
+  std::optional<std::vector<EyePair>> pairs_;
+
+  const std::vector<Anchor>& held(const Candidate& candidate) const {
+    return candidate.held.empty() ? hints_.given : candidate.held;
+  }
 
   void add(std::vector<Candidate>& candidates, const std::vector<Guess>& guesses, const Ball& about) const {
     for (const Guess& guess : guesses) {
@@ -176,7 +215,7 @@ class Search {
       Candidate& candidate = candidates[k];
       const double guessed = candidate.placement.scale;
       candidate.placement =
-          refine_placement(face_, *samples[k], candidate.placement, 8, 6, nullptr, hints_.given);
+          refine_placement(face_, *samples[k], candidate.placement, 8, 6, nullptr, held(candidate));
       // A head shrunk to nothing fits anywhere.
       if (std::abs(std::log(candidate.placement.scale / guessed)) > std::log(1.8)) return;
       candidate.distance = distance_from(face_, few_, *samples[k], candidate.placement);
@@ -197,7 +236,7 @@ class Search {
     run_each(for_each_, candidates.size(), [&](size_t k) {
       if (samples[k]->samples().size() < least_samples) return;
       candidates[k]->placement = refine_placement(face_, *samples[k], candidates[k]->placement, rounds,
-                                                  stride, nullptr, hints_.given);
+                                                  stride, nullptr, held(*candidates[k]));
     });
   }
 
@@ -211,7 +250,7 @@ class Search {
       const std::vector<const Neighbours*> samples = samples_about(left);
       run_each(for_each_, left.size(), [&](size_t k) {
         if (samples[k]->samples().size() < least_samples) return;
-        left[k]->fit = register_face(face_, samples[k]->samples(), left[k]->placement, hints_.given);
+        left[k]->fit = register_face(face_, samples[k]->samples(), left[k]->placement, held(*left[k]));
         left[k]->likeness = likeness(face_, left[k]->fit, *samples[k]);
       });
       std::vector<Candidate*> again;
@@ -275,13 +314,21 @@ FoundHead find_head(const GenericFace& face, std::span<const TriangleMesh> surfa
     if (looked[s].search->has_face(0.5 * least_score)) looked[s].search->about_best();
     is_plain = judge(looked[s]);
   }
-  if (!best || (!is_told && !best->search->has_face(least_score))) refuse(path, surfaces.size());
+  if (!is_told && best && !is_plain &&
+      (!best->search->has_face(least_score) || best->search->is_beside_eyes()))
+    best = nullptr;
+  const bool is_by_eyes = !is_told && !best && std::any_of(looked.begin(), looked.end(), [&](Looked& one) {
+    if (one.search->by_eye_pairs()) best = &one;
+    return best != nullptr;
+  });
+  if (!best) refuse(path, surfaces.size());
   FoundHead found;
   found.fit = best->search->best().fit;
   found.likeness = best->search->best().likeness;
   found.surface = best->index;
   found.is_inside_out = best->surface->is_inside_out();
-  found.is_doubtful = !best->search->has_face(plain_score);
+  found.is_doubtful = is_by_eyes || !best->search->has_face(plain_score);
+  if (is_by_eyes) found.eyes = best->search->best().held;
   return found;
 }
 

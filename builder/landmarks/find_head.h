@@ -19,6 +19,8 @@ struct FoundHead {
   size_t surface = 0;          ///< which of the surfaces searched
   bool is_inside_out = false;  ///< its triangles face inward
   bool is_doubtful = false;    ///< a low face score: to be inspected
+  std::vector<Anchor> eyes;    ///< unlike people's faces: taken for one by these, left and right, the
+                               ///< symmetry about them and a nose below
 };
 
 /// Prior information about the pose of a head.
@@ -32,10 +34,12 @@ struct HeadHints {
 /// most likely first: the search ends with the first conclusive face, otherwise the best is used.
 ///
 /// Candidates come from round lumps, pairs of eyeballs, nose-like protrusions, and the given landmarks, of
-/// which two or more determine the pose. Each candidate is refined by iterative closest points, the generic
-/// head is deformed slightly onto the mesh, and the candidates are compared by Likeness::score. Throws
-/// fascia::Error if nothing resembles a face and fewer than two landmarks are given; `path` names the file in
-/// the message. Candidates are tried side by side by `for_each`; the result does not depend on it.
+/// which two or more determine the pose; where none of these leads to a face, from two eyes, the symmetry
+/// about them and a nose or muzzle below (eye_pairs.h). Each candidate is refined by iterative closest
+/// points, the generic head is deformed slightly onto the mesh, and the candidates are compared by
+/// Likeness::score. Throws fascia::Error if nothing resembles a face and fewer than two landmarks are given;
+/// `path` names the file in the message. Candidates are tried side by side by `for_each`; the result does not
+/// depend on it.
 FoundHead find_head(const GenericFace& face, std::span<const TriangleMesh> surfaces, const std::string& path,
                     const HeadHints& hints = {}, const ForEach& for_each = {});
 

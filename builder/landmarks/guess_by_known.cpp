@@ -3,9 +3,8 @@
 #include <cmath>
 
 #include "builder/landmarks/placement.h"
-#include "builder/landmarks/spheres.h"
+#include "builder/landmarks/round_parts.h"
 #include "geometry/alignment.h"
-#include "geometry/connectivity.h"
 
 namespace fascia::landmarks {
 
@@ -37,36 +36,6 @@ std::vector<Guess> about_line(const GenericFace& face, const Vec3& from, const V
   return all;
 }
 
-/// The connected parts of `mesh` that are balls, or caps of balls as eyes often are.
-std::vector<Ball> round_parts(const TriangleMesh& mesh) {
-  const double extent = bounds(mesh.vertices).size().norm();
-  const TriangleMesh welded = weld(mesh, 1e-6 * extent, nullptr);
-  int count = 0;
-  const std::vector<int> component = components(welded, &count);
-  std::vector<std::vector<int>> members(static_cast<size_t>(count));
-  for (size_t t = 0; t < component.size(); ++t)
-    for (int v : welded.triangles[t])
-      members[static_cast<size_t>(component[t])].push_back(v);
-  std::vector<Ball> balls;
-  for (std::vector<int>& part : members) {
-    std::sort(part.begin(), part.end());
-    part.erase(std::unique(part.begin(), part.end()), part.end());
-    if (part.size() < 16 || part.size() > 20000) continue;
-    std::vector<Vec3> points;
-    for (int v : part)
-      points.push_back(welded.vertices[static_cast<size_t>(v)]);
-    const Ball ball = fit_ball(points);
-    double sum = 0.0;
-    for (const Vec3& p : points)
-      sum += std::pow((p - ball.centre).norm() - ball.radius, 2);
-    const double rms = std::sqrt(sum / static_cast<double>(points.size()));
-    const bool is_ball = ball.radius > 0.0 && rms < 0.08 * ball.radius &&
-                         bounds(points).size().maxCoeff() > 0.9 * ball.radius && ball.radius < 0.25 * extent;
-    if (is_ball) balls.push_back(ball);
-  }
-  return balls;
-}
-
 }  // namespace
 
 std::vector<Guess> guess_by_eyes(const GenericFace& face, const TriangleMesh& mesh, const Neighbours& samples,
@@ -82,9 +51,11 @@ std::vector<Guess> guess_by_eyes(const GenericFace& face, const TriangleMesh& me
       const bool is_pair = i != j && std::abs(left.radius - right.radius) < 0.15 * radius &&
                            apart > 1.8 * radius && apart < 9.0 * radius;
       if (!is_pair) continue;
-      for (const Guess& guess : about_line(face, face.eye_right.centre, face.eye_left.centre, right.centre,
-                                           left.centre, samples, 3))
-        all.push_back(guess);
+      for (Guess& guess : about_line(face, face.eye_right.centre, face.eye_left.centre, right.centre,
+                                     left.centre, samples, 3)) {
+        guess.held = {{face.eye_left.centre, left.centre}, {face.eye_right.centre, right.centre}};
+        all.push_back(std::move(guess));
+      }
     }
   std::stable_sort(all.begin(), all.end(), [](const Guess& a, const Guess& b) { return a.cost < b.cost; });
   if (static_cast<int>(all.size()) > count) all.resize(static_cast<size_t>(count));

@@ -27,6 +27,7 @@ struct Anchor {
 struct Guess {
   Placement placement;
   double cost = 0.0;
+  std::vector<Anchor> held;  ///< what led to it, where that was known places: a pair of eyeballs
 };
 std::vector<Guess> guess_placements(const GenericFace& face, const spatial::SurfaceQuery& surface,
                                     const Ball& lump, int count);

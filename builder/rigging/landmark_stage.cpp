@@ -122,6 +122,14 @@ void place_landmarks(FoundLandmarks& result, const LocatedHead& located, const f
     if (head.eye_left) eyes.left = {head.eye_left->centre, head.eye_left->radius};
     if (head.eye_right) eyes.right = {head.eye_right->centre, head.eye_right->radius};
     const landmarks::Placement placement = mapped(located.found->placement(), head.input_to_metres);
+    // Sockets that the face was found by stand for the eyeballs they have none of.
+    for (const landmarks::Anchor& anchor : located.found->eyes) {
+      const landmarks::Ball& generic = located.generic->eye_left;
+      const landmarks::Ball ball{transform_point(head.input_to_metres, anchor.target),
+                                 generic.radius * placement.scale};
+      auto& eye = anchor.generic.x() > 0.0 ? eyes.left : eyes.right;
+      if (!eye) eye = ball;
+    }
     landmarks::FoundFace face = landmarks::find(*located.generic, anatomy, skin, placement, by_hand, eyes);
     result.landmarks = std::move(face.landmarks);
     unknown = std::move(face.unknown);
@@ -146,11 +154,14 @@ formats::Scene turned_over(formats::Scene scene) {
 }
 
 /// The warning about an unlikely face, with a remedy that has not been tried yet.
-std::string doubt(const formats::Scene& scene, const formats::LandmarkFile& given) {
+std::string doubt(const formats::Scene& scene, const formats::LandmarkFile& given, bool is_by_eyes) {
   const std::string found =
-      "'" + scene.path.string() +
-      "': the face found in it is unlike most faces; look at its landmarks (fascia render "
-      "RIG.glb --layers skin,landmarks) and, where they are off, ";
+      "'" + scene.path.string() + "': " +
+      (is_by_eyes
+           ? "no face like a person's was found in it; two eyes, the symmetry about them and a nose or "
+             "muzzle below were taken for one"
+           : "the face found in it is unlike most faces") +
+      "; look at its landmarks (fascia render RIG.glb --layers skin,landmarks) and, where they are off, ";
   if (given.points.size() < 2) return found + "give exocanthion_left and exocanthion_right with --landmarks";
   return found + "give more of them with --landmarks: " + std::to_string(given.points.size()) + " were given";
 }
@@ -243,7 +254,8 @@ FoundLandmarks find_landmarks(const formats::Scene& file, const formats::Landmar
           "the triangles of '" + scene.path.string() +
           "' face inward: they were taken as turned over; the file's own stay as they are");
     result.is_doubtful = located.found->is_doubtful;
-    if (located.found->is_doubtful) result.warnings.push_back(doubt(scene, given));
+    if (located.found->is_doubtful)
+      result.warnings.push_back(doubt(scene, given, !located.found->eyes.empty()));
   }
   const double located_at = now();
   const Points reference = reference_points(anatomy);

@@ -96,6 +96,18 @@ TEST(AnyHead, OfEveryProportion) {
   expect_found(made("creature", as_creature), 4.0, 10.0);
 }
 
+/// The face below the eyes longer by `growth`, the vault as it is.
+Bend with_long_face(double growth) {
+  return [growth](const Vec3& p) {
+    return Vec3(p.x(), p.y() < 0.035 ? 0.035 + growth * (p.y() - 0.035) : p.y(), p.z());
+  };
+}
+
+TEST(AnyHead, WithALongOrAShortFace) {
+  for (const double growth : {0.75, 1.2, 1.3})
+    expect_found(made("face times " + std::to_string(growth), with_long_face(growth)), 2.5, 8.0);
+}
+
 TEST(AnyHead, WithEyesDrawnLowAndLarge) {
   // As toys and dolls have them: a fifth of the face lower than people's and half as large again, their
   // sockets empty.

@@ -141,8 +141,9 @@ MeasuredHead decimated(MeasuredHead head, int triangles) {
     total += mesh.triangles.size();
   const double ratio = static_cast<double>(triangles) / static_cast<double>(total);
   for (formats::SceneMesh& mesh : head.scene.meshes)
-    simplify(mesh,
-             std::max<size_t>(12, static_cast<size_t>(ratio * static_cast<double>(mesh.triangles.size()))));
+    if (mesh.triangles.size() > 12)
+      simplify(mesh,
+               std::max<size_t>(12, static_cast<size_t>(ratio * static_cast<double>(mesh.triangles.size()))));
   head.name += " decimated";
   return head;
 }
