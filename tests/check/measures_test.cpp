@@ -266,6 +266,26 @@ TEST(Mirror, AHalfThatMovesTwoMillimetresMoreIsFound) {
   EXPECT_NEAR(mirror.asymmetry(posed, place), 0.002, 2e-4);
 }
 
+TEST(Mirror, WhereLipsMeetEachIsComparedWithItself) {
+  Head head = flat_mouth();
+  // The left half of the lips meets .4 mm higher than the right.
+  for (Vec3& p : head.parts[0].mesh.vertices)
+    if (p.x() > 0.002 && p.x() < 0.024 && std::abs(p.y()) < 0.004) p.y() += 0.0004;
+  std::map<std::string, Vec3> landmarks = head.landmarks;
+  for (int k = 0; k < 20; ++k) {
+    const double x = 0.003 + 0.001 * k;
+    landmarks["edge_" + std::to_string(k) + "_left"] = Vec3(x, 0.0004 + 1.5e-4, 0);
+    landmarks["edge_" + std::to_string(k) + "_right"] = Vec3(-x, 1.5e-4, 0);
+  }
+  const Skin skin(head, Vec3::Zero(), 0.2);
+  const Seam seam = mouth_seam(skin, head.landmarks, 1.0);
+  std::vector<Vec3> posed = skin.rest().vertices;
+  for (size_t v = 0; v < posed.size(); ++v)
+    if (seam.sides[v] == Seam::lower && std::abs(posed[v].x()) < 0.0249) posed[v].y() -= 0.01;
+  Vec3 place;
+  EXPECT_LT(MirrorPoints(skin, landmarks, 1.0, seam.sides).asymmetry(posed, place), 5e-4);
+}
+
 TEST(Motion, DirectionsAreTheSubjects) {
   EXPECT_EQ(along(Vec3(1, 2, 3), "out", true), 1);
   EXPECT_EQ(along(Vec3(1, 2, 3), "out", false), -1);
