@@ -75,7 +75,7 @@ class SidedSkin {
   }
 
   spatial::SurfaceQuery query_;
-  std::vector<uint8_t> side_;                                // of the triangles
+  std::vector<uint8_t> side_;  // of the triangles
   std::array<std::optional<spatial::SurfaceQuery>, 3> of_side_;
   std::array<std::vector<int>, 3> own_;  // triangles of the skin, by side
 };

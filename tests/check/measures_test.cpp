@@ -228,6 +228,19 @@ TEST(Damage, CountsTurnedTrianglesAndStretchedEdges) {
   EXPECT_EQ(damage(skin, turned, 1e-4).turned, expected);
 }
 
+TEST(Damage, WhatStaysUnderAFoldIsNotTurned) {
+  // A sheet folds down over what it is one with, as a lid over an eye that is its own skin: the strip between
+  // the two turns over, and the rows above and below it face against that without having turned.
+  Head head;
+  head.parts.push_back(
+      {"skin", grid(4, 20, [](double u, double v) { return Vec3(0.02 * u, 0.02 * v, 0.0); })});
+  const Skin skin(head, Vec3(0.01, 0.01, 0), 1.0);
+  std::vector<Vec3> folded = skin.rest().vertices;
+  for (Vec3& p : folded)
+    if (p.y() > 0.0105) p += Vec3(0.0, -0.0025, 0.001);
+  EXPECT_EQ(damage(skin, folded, 1e-4).turned, 0);
+}
+
 TEST(Eyes, TurnAboutAnotherPointThanTheirCentre) {
   const Head head = eye_with_lids(0.5, -0.3);
   const std::vector<Vec3>& rest = head.parts[1].mesh.vertices;
