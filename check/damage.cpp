@@ -34,11 +34,13 @@ Damage damage(const Skin& skin, const std::vector<Vec3>& vertices, double least_
   const TriangleMesh& rest = skin.rest();
   const std::vector<Vec3> before = area_normals(rest.triangles, rest.vertices),
                           now = area_normals(rest.triangles, vertices);
-  constexpr double over = -0.2;  // cosine: beyond a sharp fold
+  constexpr double over = -0.2;     // cosine: beyond a sharp fold
+  constexpr double unturned = 0.5;  // cosine, to itself at rest: then its neighbours turned, and they count
   for (size_t t = 0; t < rest.triangles.size(); ++t) {
     const auto& neighbours = skin.links().neighbours[t];
     if (before[t].norm() > least_edge * least_edge && against_neighbours(before, neighbours, t) > 0.0 &&
-        against_neighbours(now, neighbours, t) < over) {
+        against_neighbours(now, neighbours, t) < over &&
+        before[t].dot(now[t]) < unturned * before[t].norm() * now[t].norm()) {
       ++out.turned;
       out.turned_place = vertices[static_cast<size_t>(rest.triangles[t][0])];
     }

@@ -8,7 +8,8 @@ namespace fascia::check {
 
 /// Inverted triangles and stretched edges of the skin in a pose.
 struct Damage {
-  int turned = 0;        ///< triangles inverted relative to their neighbours
+  int turned = 0;  ///< triangles inverted relative to their neighbours, and turned themselves: what stays
+                   ///< while a fold goes over it, as an eye does that is one surface with its lids, is sound
   int stretched = 0;     ///< edges longer than `most_stretch` times their length at rest
   double longest = 0.0;  ///< largest ratio of an edge's length to that at rest
   Vec3 turned_place = Vec3::Zero(), stretched_place = Vec3::Zero();  ///< of one turned; of the longest

@@ -38,6 +38,17 @@ bool is_hollow(const std::vector<Vec3>& vertices, const Vec3& centre, const Eye&
   return (centre - middle).dot(eye.gaze) > 0.5 * eye.radius;
 }
 
+/// Of each vertex the side it is of in the first of `seams` that knows.
+std::vector<uint8_t> sides_of(std::initializer_list<const Seam*> seams) {
+  std::vector<uint8_t> sides;
+  for (const Seam* seam : seams) {
+    if (sides.empty()) sides.resize(seam->sides.size(), Seam::none);
+    for (size_t v = 0; v < seam->sides.size(); ++v)
+      if (sides[v] == Seam::none) sides[v] = seam->sides[v];
+  }
+  return sides;
+}
+
 Vec3 middle_of_face(const Head& head) {
   Vec3 sum = Vec3::Zero();
   int count = 0;
@@ -65,7 +76,6 @@ Examination::Examination(const Head& head, const anatomy::Checks& checks, bool i
         "the rig moves no skin near the landmarks of the face; build it again, with --skin NAME if another "
         "mesh was taken for the skin");
   landmarks_ = std::make_unique<TrackedLandmarks>(*skin_, head.landmarks);
-  if (!is_quick) mirror_ = std::make_unique<MirrorPoints>(*skin_, head.landmarks, sizes_.face);
   mouth_ = mouth_seam(*skin_, head.landmarks, sizes_.face);
   for (const bool left : {true, false}) {
     const size_t k = left ? 0 : 1;
@@ -78,6 +88,8 @@ Examination::Examination(const Head& head, const anatomy::Checks& checks, bool i
     lids_at_rest_[k] = lid_looks_[k]->look(skin_->rest().vertices, rest_shape(head));
   }
   if (is_quick) return;
+  mirror_ = std::make_unique<MirrorPoints>(*skin_, head.landmarks, sizes_.face,
+                                           sides_of({&mouth_, &lid_seams_[0], &lid_seams_[1]}));
   crossings_ = crossings_of(*skin_, mouth_, lid_seams_[0], lid_seams_[1], sizes_.face);
   if (!mouth_.empty()) lips_ = std::make_unique<LipLook>(head, *skin_, *landmarks_, sizes_.face);
 }

@@ -1,6 +1,10 @@
 #include "check/mirror.h"
 
 #include <algorithm>
+#include <array>
+#include <optional>
+
+#include "check/seam.h"
 
 namespace fascia::check {
 namespace {
@@ -32,21 +36,66 @@ spatial::MirrorPlane between(const std::map<std::string, Vec3>& landmarks) {
   return spatial::plane_between(pairs).value_or(spatial::MirrorPlane{});
 }
 
+/// The skin, and what of it is of either side of an opening.
+class SidedSkin {
+ public:
+  SidedSkin(const TriangleMesh& skin, const std::vector<uint8_t>& sides) : query_(skin) {
+    if (sides.empty()) return;
+    side_.resize(skin.triangles.size(), Seam::none);
+    std::vector<fascia::Triangle> triangles[3];
+    for (int t = 0; t < skin.triangle_count(); ++t) {
+      const fascia::Triangle& corners = skin.triangles[static_cast<size_t>(t)];
+      const auto side = [&](size_t k) { return sides[static_cast<size_t>(corners[k])]; };
+      if (side(0) == Seam::none || side(1) != side(0) || side(2) != side(0)) continue;
+      side_[static_cast<size_t>(t)] = side(0);
+      triangles[side(0)].push_back(corners);
+      own_[side(0)].push_back(t);
+    }
+    for (const Seam::Side side : {Seam::upper, Seam::lower})
+      if (!triangles[side].empty()) of_side_[side].emplace(TriangleMesh{skin.vertices, triangles[side]});
+  }
+
+  const spatial::SurfaceQuery& all() const { return query_; }
+
+  /// The place nearest to the image `p` of `here` within `reach`, of the same side if `here` is of one.
+  std::optional<SurfacePoint> image(const SurfacePoint& here, const Vec3& p, double reach) const {
+    const spatial::ClosestPoint any = query_.nearest_place(p, reach);
+    if (!any.found()) return {};
+    const uint8_t side = side_of(here), other = side_of(any.surface);
+    if (side == Seam::none || other == Seam::none || side == other) return any.surface;
+    if (!of_side_[side]) return {};
+    const spatial::ClosestPoint own = of_side_[side]->nearest_place(p, reach);
+    if (!own.found()) return {};
+    return SurfacePoint{own_[side][static_cast<size_t>(own.surface.triangle)], own.surface.barycentric};
+  }
+
+ private:
+  uint8_t side_of(const SurfacePoint& point) const {
+    return side_.empty() ? static_cast<uint8_t>(Seam::none) : side_[static_cast<size_t>(point.triangle)];
+  }
+
+  spatial::SurfaceQuery query_;
+  std::vector<uint8_t> side_;  // of the triangles
+  std::array<std::optional<spatial::SurfaceQuery>, 3> of_side_;
+  std::array<std::vector<int>, 3> own_;  // triangles of the skin, by side
+};
+
 }  // namespace
 
-MirrorPoints::MirrorPoints(const Skin& skin, const std::map<std::string, Vec3>& landmarks, double size)
+MirrorPoints::MirrorPoints(const Skin& skin, const std::map<std::string, Vec3>& landmarks, double size,
+                           const std::vector<uint8_t>& sides)
     : skin_(skin) {
-  const spatial::SurfaceQuery query(skin.rest());
+  const SidedSkin sided(skin.rest(), sides);
   const std::vector<Vec3> places = places_of(skin.rest(), landmarks);
-  plane_ = spatial::fit_mirror_plane(query, places, between(landmarks), 0.008 * size).plane;
+  plane_ = spatial::fit_mirror_plane(sided.all(), places, between(landmarks), 0.008 * size).plane;
   for (const Vec3& p : places) {
-    const spatial::ClosestPoint here = query.nearest_place(p, 0.01 * size);
+    const spatial::ClosestPoint here = sided.all().nearest_place(p, 0.01 * size);
     if (!here.found()) continue;
-    const spatial::ClosestPoint there = query.nearest_place(plane_.image(here.position), 0.0025 * size);
-    if (!there.found()) continue;
+    const auto there = sided.image(here.surface, plane_.image(here.position), 0.0025 * size);
+    if (!there) continue;
     const Vec3 facing = plane_.turned(triangle_normal(skin.rest(), here.surface.triangle));
-    if (facing.dot(triangle_normal(skin.rest(), there.surface.triangle)) < 0.3) continue;
-    pairs_.push_back({here.surface, there.surface});
+    if (facing.dot(triangle_normal(skin.rest(), there->triangle)) < 0.3) continue;
+    pairs_.push_back({here.surface, *there});
   }
 }
 

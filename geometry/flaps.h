@@ -12,6 +12,16 @@ namespace fascia {
 /// Returns one flag per triangle, true to keep it.
 std::vector<bool> without_flaps(const TriangleMesh& mesh, double largest = 0.02);
 
+/// Opens edges on which a small closed patch hangs between two others, as lips do that were modelled for
+/// themselves and merged with a face along their outline: the surface then leads from one of the others over
+/// the patch to the other instead of past it. Such an edge has four triangles, two of them the patch's own,
+/// whose outer sides alternate around it; each is joined to the next one across the air between them. Patches
+/// as in `without_flaps`; one with an open border, or with any other non-manifold edge, stays as it is.
+///
+/// Vertices on such edges are doubled: the new ones follow the mesh's own, which stay with the larger side.
+/// The triangles keep their order.
+TriangleMesh with_hanging_patches_joined(const TriangleMesh& mesh, double largest = 0.02);
+
 /// Selects the triangles of `mesh` to flip for a consistent orientation: in each patch connected by manifold
 /// edges, those of the orientation with less area.
 ///

@@ -7,6 +7,7 @@
 #include "builder/landmarks/lid_opening.h"
 #include "builder/landmarks/likeness.h"
 #include "builder/landmarks/lip_opening.h"
+#include "builder/landmarks/nose_profile.h"
 
 namespace fascia::landmarks {
 
@@ -245,6 +246,26 @@ Registration with_fitting_length(const GenericFace& face, const Samples& samples
   return fit;
 }
 
+/// Tip and base of the nose by the profile, where `fit` shows it.
+std::map<std::string, Vec3> nose_landmarks(const anatomy::GenericAnatomy& anatomy, const Registration& fit,
+                                           const spatial::SurfaceQuery& skin) {
+  const auto fitted = [&](const char* name) { return fit(*anatomy.landmark(name)->skin); };
+  const auto nose = nose_profile(
+      skin, {fitted("sellion"), fitted("menton"), fit.placement.rotation.col(2), fit.placement.scale});
+  if (!nose) return {};
+  std::map<std::string, Vec3> places{{"pronasale", nose->tip}};
+  if (nose->base) places["subnasale"] = *nose->base;
+  return places;
+}
+
+/// How far `fit` has its nose from the tip seen in the profile, metres of the generic head; 0 where none was.
+double off_nose(const anatomy::GenericAnatomy& anatomy, const Registration& fit,
+                const std::map<std::string, Vec3>& nose) {
+  const auto tip = nose.find("pronasale");
+  if (tip == nose.end()) return 0.0;
+  return (fit(*anatomy.landmark("pronasale")->skin) - tip->second).norm() / fit.placement.scale;
+}
+
 std::vector<Anchor> anchors_of(const std::map<std::string, Vec3>& points,
                                const anatomy::GenericAnatomy& anatomy, double weight) {
   std::vector<Anchor> anchors;
@@ -293,6 +314,9 @@ FoundFace find(const GenericFace& face, const anatomy::GenericAnatomy& anatomy,
     found.fit = register_face(face, samples, placement, anchors, first);
   }
   found.fit = with_fitting_length(face, samples, anchors, first, std::move(found.fit));
+  constexpr double seen_weight = 20.0;
+  std::map<std::string, Vec3> nose;
+  if (!known.count("pronasale") && !known.count("subnasale")) nose = nose_landmarks(anatomy, found.fit, skin);
   const bool has_eyes_by_hand = known.count("exocanthion_left") || known.count("exocanthion_right");
   const Openings lids =
       eye_openings(skin, fitted_eye(face, anatomy, found.fit, true, eyes.left),
@@ -307,11 +331,22 @@ FoundFace find(const GenericFace& face, const anatomy::GenericAnatomy& anatomy,
   const std::map<std::string, Vec3> corners =
       has_mouth_by_hand ? std::map<std::string, Vec3>() : lip_landmarks(face, anatomy, found.fit, skin);
   seen.insert(corners.begin(), corners.end());
-  for (const Anchor& anchor : anchors_of(seen, anatomy, 20.0))
+  for (const Anchor& anchor : anchors_of(seen, anatomy, seen_weight))
     anchors.push_back(anchor);
   const bool are_corners_far =
       !corners.empty() && (corners.at("cheilion_left") - fitted_corner).norm() > far_off * placement.scale;
-  if (lids.are_far || are_corners_far) found.fit = register_face(face, samples, placement, anchors, first);
+  if (lids.are_far || are_corners_far) {
+    constexpr double lost = 0.006;  // metres of the generic head
+    const double before = off_nose(anatomy, found.fit, nose);
+    found.fit = register_face(face, samples, placement, anchors, first);
+    // Eyes much lower than people's draw the nose down onto the lips with them.
+    if (off_nose(anatomy, found.fit, nose) > before + lost) {
+      seen.insert(nose.begin(), nose.end());
+      for (const Anchor& anchor : anchors_of(nose, anatomy, seen_weight))
+        anchors.push_back(anchor);
+      found.fit = register_face(face, samples, placement, anchors, first);
+    }
+  }
   RegistrationOptions second;
   second.stages = {{0.03, 2, 1}, {0.01, 1, 1}, {0.004, 1, 1}};
   second.reach = 0.01;

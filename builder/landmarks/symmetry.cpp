@@ -77,8 +77,8 @@ std::optional<FaceMirror> face_mirror(const std::map<std::string, SkinLandmark>&
   const std::vector<Vec3> places = places_of(landmarks, skin);
   const spatial::MirrorFit fit = spatial::fit_mirror_plane(skin, places, *plane, within * unit);
   const double most = fit.most_apart();
-  if (!fit.covers(places.size()) || most > alike * unit) return {};
-  return FaceMirror{fit.plane, most <= exact * unit, unit};
+  if (!fit.covers(places.size())) return {};
+  return FaceMirror{fit.plane, most <= alike * unit, most <= exact * unit, unit};
 }
 
 int make_symmetric(const FaceMirror& mirror, const spatial::SurfaceQuery& skin,

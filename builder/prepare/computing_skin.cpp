@@ -43,7 +43,7 @@ ComputingSkin computing_skin(const formats::Scene& scene, const WeldedScene& wel
   constexpr double lowest = 2e-6;  // metres: what single precision leaves of a height in a whole body
   ComputingSkin skin;
   std::vector<int> mended, bare, last;
-  const TriangleMesh whole = submesh(welded.surface, is_skin, &skin.vertex);
+  const TriangleMesh whole = with_hanging_patches_joined(submesh(welded.surface, is_skin, &skin.vertex));
   const std::vector<bool> stays = without_flaps(whole);
   std::vector<size_t> fins, flat;
   for (size_t t = 0, own = 0; t < is_skin.size(); ++t) {

@@ -22,7 +22,7 @@ struct FoundLandmarks {
   std::map<std::string, landmarks::SkinLandmark> landmarks;  ///< metres, rig frame
   std::optional<landmarks::FaceRegions>
       regions;  ///< of the vertices of `head.skin`; nothing when nothing was searched
-  std::optional<spatial::MirrorPlane> mirror;  ///< between the face's sides, where these are alike
+  std::optional<spatial::MirrorPlane> midplane;  ///< between the face's sides; nothing where it is not seen
   double likeness = 1.0;            ///< how face-like what was found is, 0 to 1; 1 when nothing was searched
   bool is_doubtful = false;         ///< what was found is unlike most faces
   bool is_inside_out = false;       ///< the file's triangles face inward; those of `head` were turned

@@ -169,8 +169,8 @@ std::string doubt(const formats::Scene& scene, const formats::LandmarkFile& give
 /// Changes the rig frame: x becomes rotation * x + translation (metres).
 void move_frame(FoundLandmarks& result, const Mat3& rotation, const Vec3& translation) {
   prepare::move(result.head, rotation, translation);
-  if (result.mirror)
-    result.mirror = {rotation * result.mirror->point + translation, rotation * result.mirror->normal};
+  if (result.midplane)
+    result.midplane = {rotation * result.midplane->point + translation, rotation * result.midplane->normal};
   for (auto& [name, landmark] : result.landmarks)
     landmark.position = rotation * landmark.position + translation;
 }
@@ -269,10 +269,12 @@ FoundLandmarks find_landmarks(const formats::Scene& file, const formats::Landmar
   Mat3 turn = Mat3::Identity();
   if (const auto mirror = landmarks::face_mirror(result.landmarks, *result.head.surface,
                                                  anatomy.mechanics.smas_shape.adult_width)) {
-    landmarks::make_symmetric(*mirror, *result.head.surface, result.landmarks);
+    if (mirror->is_alike) {
+      landmarks::make_symmetric(*mirror, *result.head.surface, result.landmarks);
+      turn = upright_turn(*mirror);
+    }
     if (mirror->is_exact) pair_eyes(result.head, mirror->plane);
-    result.mirror = mirror->plane;
-    turn = upright_turn(*mirror);
+    result.midplane = mirror->plane;
   }
   settle_frame(result, turn);
   place_pupils(result, given);

@@ -117,7 +117,8 @@ skull::FitResult fit_skull(const anatomy::GenericAnatomy& anatomy, const FoundLa
   if (!upper.empty()) options.teeth_upper = &upper;
   if (!lower.empty()) options.teeth_lower = &lower;
   skull::FitResult fit = fit_with_teeth(generic, skin, targets, options);
-  if (found.mirror) fit.jaw.hinge = found.mirror->normal;
+  // A sound jaw opens straight, also in a lopsided face.
+  if (found.midplane) fit.jaw.hinge = found.midplane->normal;
   warn_of_bad_fit(fit);
   return fit;
 }

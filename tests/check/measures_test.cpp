@@ -264,6 +264,19 @@ TEST(Damage, CountsTurnedTrianglesAndStretchedEdges) {
   EXPECT_EQ(damage(skin, turned, 1e-4).turned, expected);
 }
 
+TEST(Damage, WhatStaysUnderAFoldIsNotTurned) {
+  // A sheet folds down over what it is one with, as a lid over an eye that is its own skin: the strip between
+  // the two turns over, and the rows above and below it face against that without having turned.
+  Head head;
+  head.parts.push_back(
+      {"skin", grid(4, 20, [](double u, double v) { return Vec3(0.02 * u, 0.02 * v, 0.0); })});
+  const Skin skin(head, Vec3(0.01, 0.01, 0), 1.0);
+  std::vector<Vec3> folded = skin.rest().vertices;
+  for (Vec3& p : folded)
+    if (p.y() > 0.0105) p += Vec3(0.0, -0.0025, 0.001);
+  EXPECT_EQ(damage(skin, folded, 1e-4).turned, 0);
+}
+
 TEST(Eyes, TurnAboutAnotherPointThanTheirCentre) {
   const Head head = eye_with_lids(0.5, -0.3);
   const std::vector<Vec3>& rest = head.parts[1].mesh.vertices;
@@ -300,6 +313,26 @@ TEST(Mirror, AHalfThatMovesTwoMillimetresMoreIsFound) {
   for (Vec3& p : posed)
     if (p.x() > 0) p.y() += 0.002;
   EXPECT_NEAR(mirror.asymmetry(posed, place), 0.002, 2e-4);
+}
+
+TEST(Mirror, WhereLipsMeetEachIsComparedWithItself) {
+  Head head = flat_mouth();
+  // The left half of the lips meets .4 mm higher than the right.
+  for (Vec3& p : head.parts[0].mesh.vertices)
+    if (p.x() > 0.002 && p.x() < 0.024 && std::abs(p.y()) < 0.004) p.y() += 0.0004;
+  std::map<std::string, Vec3> landmarks = head.landmarks;
+  for (int k = 0; k < 20; ++k) {
+    const double x = 0.003 + 0.001 * k;
+    landmarks["edge_" + std::to_string(k) + "_left"] = Vec3(x, 0.0004 + 1.5e-4, 0);
+    landmarks["edge_" + std::to_string(k) + "_right"] = Vec3(-x, 1.5e-4, 0);
+  }
+  const Skin skin(head, Vec3::Zero(), 0.2);
+  const Seam seam = mouth_seam(skin, head.landmarks, 1.0);
+  std::vector<Vec3> posed = skin.rest().vertices;
+  for (size_t v = 0; v < posed.size(); ++v)
+    if (seam.sides[v] == Seam::lower && std::abs(posed[v].x()) < 0.0249) posed[v].y() -= 0.01;
+  Vec3 place;
+  EXPECT_LT(MirrorPoints(skin, landmarks, 1.0, seam.sides).asymmetry(posed, place), 5e-4);
 }
 
 TEST(Motion, DirectionsAreTheSubjects) {

@@ -53,6 +53,75 @@ TEST(Flaps, CrossingSheetsAreBothKept) {
   EXPECT_EQ(std::count(kept.begin(), kept.end(), false), 0);
 }
 
+/// A face with a lip of its own: a plate of 20 by 20 squares whose middle is pressed in as a mouth, and along
+/// the lower side of that a closed body whose front and back hang on the same `length` edges.
+struct FaceWithLip {
+  static constexpr int n = 20, from = 8, length = 4;
+  TriangleMesh mesh = grid(n);
+  size_t first_of_lip = 0;
+
+  FaceWithLip() {
+    for (Vec3& p : mesh.vertices)
+      if (p.x() > from - 1 && p.x() <= from + length && p.y() > from && p.y() < from + length) p.z() = -2.0;
+    first_of_lip = mesh.triangles.size();
+    std::vector<int> front{edge(0)}, back{edge(0)};
+    for (int i = 1; i < length; ++i)
+      for (std::vector<int>* row : {&front, &back}) {
+        row->push_back(mesh.vertex_count());
+        mesh.vertices.emplace_back(from + i, from + 0.7, row == &front ? 0.5 : -0.5);
+      }
+    front.push_back(edge(length));
+    back.push_back(edge(length));
+    for (int i = 0; i < length; ++i) {
+      const auto a = static_cast<size_t>(i), b = a + 1;
+      add(edge(i), edge(i + 1), front[b]);
+      add(edge(i), front[b], front[a]);
+      add(edge(i + 1), edge(i), back[b]);
+      add(edge(i), back[a], back[b]);
+      add(front[a], front[b], back[b]);
+      add(front[a], back[b], back[a]);
+    }
+  }
+  /// Vertices along the mouth's lower side.
+  static int edge(int i) { return from * (n + 1) + from + i; }
+  void add(int a, int b, int c) {
+    if (a != b && b != c && c != a) mesh.triangles.push_back({a, b, c});
+  }
+};
+
+TEST(Flaps, ALipOfItsOwnBecomesPartOfTheFace) {
+  const FaceWithLip face;
+  ASSERT_EQ(connectivity(face.mesh).irregular_edges, FaceWithLip::length);
+  const std::vector<bool> kept = without_flaps(face.mesh);
+  ASSERT_GT(std::count(kept.begin(), kept.end(), false), 0);  // as a fin would
+  const TriangleMesh joined = with_hanging_patches_joined(face.mesh);
+  const Connectivity links = connectivity(joined);
+  EXPECT_EQ(links.irregular_edges, 0);
+  EXPECT_EQ(joined.triangles.size(), face.mesh.triangles.size());
+  EXPECT_EQ(joined.vertex_count(), face.mesh.vertex_count() + FaceWithLip::length - 1);
+  // From the chin the surface goes on over the lip's front, from the mouth over its back.
+  for (size_t t = 0; t < face.first_of_lip; ++t)
+    for (size_t e = 0; e < 3; ++e) {
+      const int next = links.neighbours[t][e];
+      if (next < static_cast<int>(face.first_of_lip)) continue;
+      const bool is_chin = bounds({joined.vertices[static_cast<size_t>(joined.triangles[t][0])],
+                                   joined.vertices[static_cast<size_t>(joined.triangles[t][1])],
+                                   joined.vertices[static_cast<size_t>(joined.triangles[t][2])]})
+                               .lower.y() < FaceWithLip::from;
+      EXPECT_EQ(is_chin, triangle_normal(joined, next).z() > 0.0) << t;
+    }
+}
+
+TEST(Flaps, AFinHangsOnNothing) {
+  TriangleMesh mesh = grid(8);
+  const Triangle under = mesh.triangles[40];
+  mesh.vertices.emplace_back(4.5, 2.5, 1);
+  mesh.triangles.push_back({under[0], under[1], mesh.vertex_count() - 1});
+  const TriangleMesh same = with_hanging_patches_joined(mesh);
+  EXPECT_EQ(same.vertex_count(), mesh.vertex_count());
+  EXPECT_EQ(same.triangles, mesh.triangles);
+}
+
 TEST(Flaps, TurnedTrianglesAreFoundFromTheirNeighbours) {
   TriangleMesh mesh = grid(8);
   std::vector<bool> turned(mesh.triangles.size(), false);

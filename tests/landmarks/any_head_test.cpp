@@ -212,8 +212,8 @@ TEST(SameHead, IsSetUprightFromAnyTilt) {
       const rigging::FoundLandmarks found =
           rigging::find_landmarks(moved(head, rotation, 1.0, Vec3::Zero()).scene, {}, anatomy_of_tests());
       EXPECT_LE(lean(found, rotation), 0.3) << head.name;
-      ASSERT_TRUE(found.mirror);
-      EXPECT_GT(found.mirror->normal.x(), std::cos(0.3 * EIGEN_PI / 180));
+      ASSERT_TRUE(found.midplane);
+      EXPECT_GT(found.midplane->normal.x(), std::cos(0.3 * EIGEN_PI / 180));
       // What is prepared went along.
       for (const auto& [name, landmark] : found.landmarks) {
         if (landmark.confidence < 0.8 || name.starts_with("pupilla")) continue;  // on the globes
@@ -222,7 +222,7 @@ TEST(SameHead, IsSetUprightFromAnyTilt) {
       const Vec3 corner =
           transform_point(found.head.input_to_metres, rotation * head.scene.meshes[0].positions[0]);
       EXPECT_LE((found.head.meshes[0].positions[0] - corner).norm(), 1e-6);
-      EXPECT_LE((found.head.eye_left->centre - found.mirror->image(found.head.eye_right->centre)).norm(),
+      EXPECT_LE((found.head.eye_left->centre - found.midplane->image(found.head.eye_right->centre)).norm(),
                 1e-3);
     }
 }
@@ -231,13 +231,13 @@ TEST(SameHead, BothSidesLandmarksAreEachOthersImages) {
   const rigging::FoundLandmarks found =
       rigging::find_landmarks(moved(made("anime", as_anime), turn(4, Vec3(0, 1, 1)), 1.0, Vec3::Zero()).scene,
                               {}, anatomy_of_tests());
-  ASSERT_TRUE(found.mirror);
+  ASSERT_TRUE(found.midplane);
   for (const auto& [name, landmark] : found.landmarks) {
     if (name.ends_with("_right")) continue;
     const bool is_left = name.ends_with("_left");
     const landmarks::SkinLandmark& other =
         is_left ? found.landmarks.at(name.substr(0, name.size() - 4) + "right") : landmark;
-    EXPECT_LE((landmark.position - found.mirror->image(other.position)).norm(), 1.2e-3) << name;
+    EXPECT_LE((landmark.position - found.midplane->image(other.position)).norm(), 1.2e-3) << name;
     EXPECT_EQ(landmark.confidence, other.confidence) << name;
   }
 }

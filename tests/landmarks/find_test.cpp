@@ -7,6 +7,7 @@
 #include "builder/landmarks/find.h"
 #include "builder/landmarks/lid_opening.h"
 #include "builder/landmarks/lip_opening.h"
+#include "builder/landmarks/nose_profile.h"
 #include "builder/landmarks/spheres.h"
 #include "builder/rigging/find_landmarks.h"
 #include "geometry/error.h"
@@ -168,6 +169,38 @@ TEST(LipOpening, EndsAtTheCornersForAnySearchWidth) {
   }
   EXPECT_FALSE(seen(1.0, Vec3(0.0, -0.03, 0.0)).has_value()) << "the chin";
   EXPECT_FALSE(seen(1.0, Vec3(0.0, 0.09, 0.0)).has_value()) << "the forehead";
+}
+
+/// A sheet, 10 cm by 14, that comes forward by `nose` metres 2 cm above its middle and by `lips` 2 cm below.
+spatial::SurfaceQuery sheet(double nose, double lips) {
+  constexpr int n = 60;
+  const auto bump = [](double y, double at, double width) {
+    return std::exp(-0.5 * std::pow((y - at) / width, 2));
+  };
+  TriangleMesh mesh;
+  for (int j = 0; j <= n; ++j)
+    for (int i = 0; i <= n; ++i) {
+      const double x = 0.1 * i / n - 0.05, y = 0.14 * j / n - 0.07;
+      mesh.vertices.emplace_back(x, y, nose * bump(y, 0.02, 0.005) + lips * bump(y, -0.02, 0.009));
+    }
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) {
+      const int a = j * (n + 1) + i, b = a + n + 1;
+      mesh.triangles.push_back({a, a + 1, b + 1});
+      mesh.triangles.push_back({a, b + 1, b});
+    }
+  return spatial::SurfaceQuery(std::move(mesh));
+}
+
+TEST(NoseProfile, IsTheFirstRiseThoughTheLipsStandFartherForward) {
+  const Midline midline = {Vec3(0, 0.05, 0), Vec3(0, -0.06, 0), Vec3::UnitZ(), 1.0};
+  const auto nose = nose_profile(sheet(0.008, 0.014), midline);
+  ASSERT_TRUE(nose);
+  EXPECT_NEAR(nose->tip.y(), 0.02, 0.002);
+  ASSERT_TRUE(nose->base);
+  EXPECT_NEAR(nose->base->y(), 0.006, 0.003);
+  EXPECT_FALSE(nose_profile(sheet(0.0, 0.0), midline));
+  EXPECT_FALSE(nose_profile(sheet(0.002, 0.0), midline)) << "less than a nose";
 }
 
 TEST(FindLandmarks, OnTheEmbeddedHeadInAnyPoseAndUnit) {
