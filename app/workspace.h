@@ -20,6 +20,7 @@
 #include "app/model/picking.h"
 #include "app/model/session.h"
 #include "app/model/settings.h"
+#include "app/model/sketch.h"
 #include "builder/spatial/surface_query.h"
 
 namespace fascia::app {
@@ -131,6 +132,13 @@ class Workspace {
   std::optional<Vec3> landmark_now(const std::string& name) const;
   /// The same with the skin it lies on: `position` and `normal` as the face stands, `rest` at rest.
   std::optional<SkinHit> landmark_hold(const std::string& name) const;
+  /// Makes a stroke on the skin (metres at rest) the region of a muscle's end, and its mirror image that of
+  /// the other side in symmetric editing. Returns why it cannot be one, and a notice says so; empty: done.
+  std::string sketch_region(const std::string& muscle, MuscleEnd end, const std::vector<Vec3>& stroke);
+  /// Leaves the region to the builder again.
+  void clear_sketch(const std::string& muscle, MuscleEnd end);
+  /// The region drawn for a muscle's end as it lies on the skin now; empty when there is none.
+  std::vector<SkinHit> sketch_now(const std::string& muscle, MuscleEnd end) const;
   bool has_unbuilt_edits() const { return rig && state().edits != built_edits_; }
 
   // --- Jobs
@@ -257,6 +265,10 @@ class Workspace {
   void read_check(const ToolJob& job);
   void submit(double seconds);
   PictureOrder picture_order() const;
+  /// The skin under a point at rest, kept by name.
+  std::optional<SkinHit> hold(const std::string& name, const Vec3& rest) const;
+  /// The same curve on the other side of the face, on its skin.
+  std::vector<Vec3> mirror_image(std::vector<Vec3> curve) const;
   Warning warning_of(const std::string& text) const;
 
   Places places_;
@@ -285,7 +297,7 @@ class Workspace {
   std::string opened_;     ///< what the build under way was opened as; empty: a rebuild
   bool restores_ = false;  ///< the build under way is of the document that was left behind
   nlohmann::ordered_json built_edits_ = nlohmann::ordered_json::object(), building_edits_, failed_edits_;
-  mutable std::map<std::string, SkinHit> holds_;  ///< the skin under each landmark, found once
+  mutable std::map<std::string, SkinHit> holds_;  ///< the skin under landmarks and sketches, found once
   std::optional<Poke> poke_;
   std::optional<double> shake_;
   double since_edit_ = 0.0, since_save_ = 0.0;

@@ -24,8 +24,9 @@ void take_out(Json& edits, const char* list, const std::string& name) {
   if (found->empty()) edits.erase(list);
 }
 
-/// Sets `key` of a muscle's entry, or takes it out when `value` is null.
-void set_muscle(DocumentState& state, const std::string& muscle, const char* key, const Json& value) {
+}  // namespace
+
+void set_muscle_entry(DocumentState& state, const std::string& muscle, const char* key, const Json& value) {
   Json& muscles = state.edits["muscles"];
   if (!muscles.is_object()) muscles = Json::object();
   Json& item = muscles[muscle];
@@ -36,8 +37,6 @@ void set_muscle(DocumentState& state, const std::string& muscle, const char* key
     item[key] = value;
   if (item.empty()) take_out(state.edits, "muscles", muscle);
 }
-
-}  // namespace
 
 std::optional<Vec3> landmark_edit(const DocumentState& state, const std::string& name) {
   const Json* item = entry(state.edits, "landmarks", name);
@@ -73,7 +72,7 @@ double muscle_number(const DocumentState& state, const std::string& muscle, cons
 
 void set_muscle_number(DocumentState& state, const std::string& muscle, const char* key, double value,
                        double otherwise) {
-  set_muscle(state, muscle, key, value == otherwise ? Json() : Json(value));
+  set_muscle_entry(state, muscle, key, value == otherwise ? Json() : Json(value));
 }
 
 bool muscle_is_present(const DocumentState& state, const std::string& muscle) {
@@ -82,7 +81,7 @@ bool muscle_is_present(const DocumentState& state, const std::string& muscle) {
 }
 
 void set_muscle_present(DocumentState& state, const std::string& muscle, bool is_present) {
-  set_muscle(state, muscle, "present", is_present ? Json() : Json(false));
+  set_muscle_entry(state, muscle, "present", is_present ? Json() : Json(false));
 }
 
 std::string muscle_variant(const DocumentState& state, const std::string& muscle) {
@@ -93,7 +92,7 @@ std::string muscle_variant(const DocumentState& state, const std::string& muscle
 }
 
 void set_muscle_variant(DocumentState& state, const std::string& muscle, const std::string& variant) {
-  set_muscle(state, muscle, "variant", variant.empty() ? Json() : Json(variant));
+  set_muscle_entry(state, muscle, "variant", variant.empty() ? Json() : Json(variant));
 }
 
 void set_pose(DocumentState& state, const std::string& name, double value, double rest) {

@@ -42,6 +42,9 @@ void clear_landmark(DocumentState& state, const std::string& name);
 /// Names of the landmarks put by hand.
 std::vector<std::string> edited_landmarks(const DocumentState& state);
 
+/// Sets `key` of a muscle's entry, or takes it out when `value` is null, and the entry with its last one.
+void set_muscle_entry(DocumentState& state, const std::string& muscle, const char* key,
+                      const nlohmann::ordered_json& value);
 /// A number of a muscle's entry (`strength`, `width`, `peak_shortening`); `otherwise` when it has none.
 double muscle_number(const DocumentState& state, const std::string& muscle, const char* key,
                      double otherwise);

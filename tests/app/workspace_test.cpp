@@ -392,5 +392,53 @@ TEST_F(WorkspaceTest, ComparesTwoHeadsInOnePose) {
   EXPECT_FALSE(work_->notices.empty());
 }
 
+/// A circle on the skin about the vertex that is nearest to a point, metres at rest.
+std::vector<Vec3> circle_on_skin(const Workspace& work, const Vec3& about, double radius) {
+  const SkinHit middle = nearest_skin(*work.rig->asset, *work.frame, about);
+  std::vector<Vec3> stroke;
+  for (int i = 0; i <= 40; ++i) {
+    const double angle = 2.0 * EIGEN_PI * i / 40.0;
+    stroke.push_back(middle.position + radius * Vec3(std::cos(angle), std::sin(angle), 0.0));
+  }
+  return stroke;
+}
+
+TEST_F(WorkspaceTest, ARegionDrawnOnTheSkinIsOneStepOfTheEdits) {
+  open();
+  run(2);
+  work_->settings.is_symmetric = true;
+  const std::vector<Vec3> stroke = circle_on_skin(*work_, Vec3(0.03, 0.0, 0.2), 0.006);
+  EXPECT_EQ(work_->sketch_region("zygomaticus_major_left", MuscleEnd::insertion, stroke), "");
+  EXPECT_EQ(count_sketches(work_->state()), 2U);
+  EXPECT_TRUE(work_->has_unbuilt_edits());
+  const std::vector<SkinHit> drawn = work_->sketch_now("zygomaticus_major_left", MuscleEnd::insertion);
+  EXPECT_GE(drawn.size(), 8U);
+  EXPECT_EQ(work_->sketch_now("zygomaticus_major_right", MuscleEnd::insertion).size(), drawn.size());
+  // On the other side of the face.
+  EXPECT_LT(drawn.front().rest[0] *
+                work_->sketch_now("zygomaticus_major_right", MuscleEnd::insertion).front().rest[0],
+            0.0);
+  ASSERT_TRUE(work_->save_edits(folder_ / "edits.json"));
+  EXPECT_EQ(read_edits_file(folder_ / "edits.json"), work_->state().edits);
+
+  work_->undo();
+  EXPECT_EQ(count_sketches(work_->state()), 0U);
+  work_->redo();
+  EXPECT_EQ(count_sketches(work_->state()), 2U);
+  work_->settings.is_symmetric = false;
+  work_->clear_sketch("zygomaticus_major_left", MuscleEnd::insertion);
+  EXPECT_EQ(count_sketches(work_->state()), 1U);
+}
+
+TEST_F(WorkspaceTest, WhatIsNoRegionChangesNothingAndIsTold) {
+  open();
+  run(2);
+  const std::string fault = work_->sketch_region("zygomaticus_major_left", MuscleEnd::origin, {});
+  EXPECT_NE(fault.find("beside the skin"), std::string::npos);
+  EXPECT_EQ(count_sketches(work_->state()), 0U);
+  ASSERT_FALSE(work_->notices.empty());
+  EXPECT_NE(work_->notices.back().text.find("origin of Zygomaticus major, left"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace fascia::app
