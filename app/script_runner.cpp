@@ -200,6 +200,12 @@ bool ScriptRunner::begin_file(const ScriptStep& step, Workspace& work, Screen& s
     work.wait_for_files();
     if (!work.take) fail(step, "'" + words[0] + "' is not a recording");
     work.playback.is_playing = false;
+  } else if (step.verb == "layer") {
+    const size_t before = work.state().take.layers.size();
+    work.load_layer(input_file(words[0]));
+    work.wait_for_files();
+    if (work.state().take.layers.size() == before)
+      fail(step, "'" + words[0] + "' cannot be added as a layer");
   } else if (step.verb == "export") {
     begin_export(step, work, screen);
   } else if (step.verb == "screenshot" || step.verb == "picture") {
@@ -223,6 +229,8 @@ void ScriptRunner::expect(const ScriptStep& step, const Workspace& work) const {
     value = std::to_string(edited_landmarks(work.state()).size());
   else if (what == "sketches")
     value = std::to_string(count_sketches(work.state()));
+  else if (what == "layers")
+    value = std::to_string(work.state().take.layers.size());
   else if (what == "told")
     value = !work.notices.empty() && work.notices.back().text.find(step.words[1]) != std::string::npos
                 ? step.words[1]
@@ -239,7 +247,7 @@ void ScriptRunner::expect(const ScriptStep& step, const Workspace& work) const {
   else if (what == "panel")
     value = work.settings.panel;
   else
-    fail(step, "expect rig, landmarks, sketches, told, undo, redo, warnings, pose or panel");
+    fail(step, "expect rig, landmarks, sketches, layers, told, undo, redo, warnings, pose or panel");
   if (value != step.words[1]) fail(step, what + " is '" + value + "', not '" + step.words[1] + "'");
 }
 

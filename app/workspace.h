@@ -3,8 +3,10 @@
 #include <deque>
 #include <future>
 #include <list>
+#include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -58,6 +60,7 @@ struct Playback {
   double time = 0.0;                                    ///< seconds in the take
   std::vector<std::map<std::string, double>> recorded;  ///< the pose, `recorded_rate` times a second
   double recorded_seconds = 0.0;
+  bool adds_layer = false;  ///< what is recorded is added to the recording that plays
 };
 
 /// Skin held by the mouse.
@@ -102,6 +105,18 @@ class Workspace {
   void forget_left_behind() { session_.forget_left_behind(); }
   /// Reads a recording, or edits, in the background.
   void load_take(const std::filesystem::path& file);
+  /// The same, and adds it to the recording there is; without one it is the first.
+  void load_layer(const std::filesystem::path& file);
+  /// The recording of a layer of the document; null while it is read.
+  std::shared_ptr<const Take> layer_take(size_t layer) const;
+  /// Change a layer, or the first recording, which is layer -1. A weight is one step until seal().
+  void weigh_layer(int layer, double weight);
+  void mute_layer(int layer, bool is_muted);
+  /// Takes a layer away; of the first recording, all of it.
+  void remove_layer(int layer);
+  /// How long the longest recording is, and where the trimmed piece ends, seconds.
+  double timeline_length() const;
+  double timeline_end() const;
   void load_edits(const std::filesystem::path& file);
   /// Waits until files are read or written that are under way.
   void wait_for_files();
@@ -156,10 +171,9 @@ class Workspace {
   struct PresentCommand {
     std::string text;
     std::map<std::filesystem::path, std::string> files;  ///< that it names and that are not there yet
-    std::string lacks;                                   ///< what of the window it cannot say; empty: nothing
   };
   PresentCommand present_command() const;
-  /// Writes the files it names and returns it; a notice says what it needs or lacks. Empty when they cannot
+  /// Writes the files it names and returns it; a notice says what it needs. Empty when they cannot
   /// be written.
   std::string copy_command();
   /// What the face does now, by name: the pose, or with a recording or a captured face the channels' values.
@@ -228,13 +242,14 @@ class Workspace {
   std::shared_ptr<const FaceFrame> reference_frame;  ///< what the face is compared with; null: nothing
 
  private:
-  enum class FileKind { take, edits, either };
+  enum class FileKind { take, layer, edits, either };
   /// A recording or edits, as read from a file.
   struct ReadFile {
     std::filesystem::path file;
     std::shared_ptr<const Take> take;
     nlohmann::ordered_json edits;
     bool is_again = false;  ///< the document has it already
+    bool is_layer = false;  ///< to be added to the recording there is
   };
   void take_build();
   void take_jobs();
@@ -279,6 +294,8 @@ class Workspace {
   std::vector<std::unique_ptr<BuildTask>> given_up_;
   std::list<std::unique_ptr<ToolJob>> jobs_;
   std::deque<std::future<ReadFile>> coming_files_;
+  std::map<std::string, std::shared_ptr<const Take>> takes_;  ///< that have been read, by file
+  std::set<std::string> asked_takes_;                         ///< that are being read again
   Pending<std::filesystem::path> saving_;
   Pending<std::unique_ptr<Simulation>> coming_reference_;
   Pending<std::vector<std::vector<float>>> coming_positions_;

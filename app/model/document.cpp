@@ -103,6 +103,9 @@ void set_pose(DocumentState& state, const std::string& name, double value, doubl
 }
 
 std::string to_text(const DocumentState& state) {
+  Json layers = Json::array();
+  for (const TakeLayer& layer : state.take.layers)
+    layers.push_back({{"file", layer.file}, {"weight", layer.weight}, {"is_muted", layer.is_muted}});
   const Json json = {{"head", state.head},
                      {"edits", state.edits},
                      {"pose", state.pose},
@@ -110,7 +113,10 @@ std::string to_text(const DocumentState& state) {
                       {{"file", state.take.file},
                        {"begin", state.take.begin},
                        {"end", state.take.end},
-                       {"loops", state.take.loops}}}};
+                       {"loops", state.take.loops},
+                       {"weight", state.take.weight},
+                       {"is_muted", state.take.is_muted},
+                       {"layers", layers}}}};
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -124,8 +130,16 @@ DocumentState state_from_text(const std::string& text, const std::string& where)
     if (!state.edits.is_object()) throw Error("'" + where + "': \"edits\" is not an object");
     state.pose = json.at("pose").get<std::map<std::string, double>>();
     const Json& take = json.at("take");
-    state.take = {take.at("file").get<std::string>(), take.at("begin").get<double>(),
-                  take.at("end").get<double>(), take.at("loops").get<bool>()};
+    state.take = {take.at("file").get<std::string>(),
+                  take.at("begin").get<double>(),
+                  take.at("end").get<double>(),
+                  take.at("loops").get<bool>(),
+                  take.value("weight", 1.0),
+                  take.value("is_muted", false),
+                  {}};
+    for (const Json& layer : take.value("layers", Json::array()))
+      state.take.layers.push_back({layer.at("file").get<std::string>(), layer.at("weight").get<double>(),
+                                   layer.at("is_muted").get<bool>()});
     return state;
   } catch (const Json::exception& error) {
     throw Error("'" + where + "' is not a saved session: " + error.what());

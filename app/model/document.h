@@ -5,18 +5,31 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "app/model/history.h"
 #include "geometry/mesh.h"
 
 namespace fascia::app {
 
-/// The recording that is played, and which piece of it.
+/// A recording that is added to the first.
+struct TakeLayer {
+  std::string file;
+  double weight = 1.0;
+  bool is_muted = false;
+
+  bool operator==(const TakeLayer&) const = default;
+};
+
+/// The recording that is played with those added to it, and which piece of them.
 struct TakeChoice {
   std::string file;    ///< empty: none
   double begin = 0.0;  ///< seconds, trim
   double end = -1.0;   ///< seconds; below 0: to the end
   bool loops = true;
+  double weight = 1.0;  ///< of the first recording
+  bool is_muted = false;
+  std::vector<TakeLayer> layers = {};  ///< from the same beginning
 
   bool operator==(const TakeChoice&) const = default;
 };

@@ -54,6 +54,7 @@ const std::vector<ScriptVerb>& script_verbs() {
       {"key", 1, 1, "key ctrl+z: press a key"},
       {"type", 1, 1, "type TEXT"},
       {"take", 1, 1, "take FILE: load a recording"},
+      {"layer", 1, 1, "layer FILE: add a recording to the one there is"},
       {"play", 1, 1, "play SECONDS"},
       {"seek", 1, 1, "seek SECONDS"},
       {"undo", 0, 0, "undo"},
@@ -67,7 +68,7 @@ const std::vector<ScriptVerb>& script_verbs() {
       {"picture", 1, 1, "picture FILE.png: of the face alone"},
       {"expect", 2, 2,
        "expect WHAT VALUE: end with an error unless "
-       "rig|landmarks|sketches|told|undo|redo|warnings|pose|panel "
+       "rig|landmarks|sketches|layers|told|undo|redo|warnings|pose|panel "
        "is VALUE; of told, what was told last, a part"},
       {"quit", 0, 0, "quit"},
   };

@@ -87,6 +87,9 @@ void draw_sketches(Workspace& work, Screen& screen, const Area& area);
 bool begin_stroke(const Workspace& work, Screen& screen, const std::optional<SkinHit>& hit);
 void extend_stroke(const Workspace& work, Screen& screen, const std::optional<SkinHit>& hit);
 void end_stroke(Workspace& work, Screen& screen);
+/// Rows of the layers, below the track; the height of the timeline with them.
+void show_layers(Workspace& work, float width);
+float timeline_height(const Workspace& work);
 void show_timeline(Workspace& work, Screen& screen, const Area& area);
 void show_status(Workspace& work, Screen& screen, const Area& area);
 void show_start(Workspace& work, Screen& screen, const Area& area);
@@ -119,6 +122,7 @@ float list_height(float foot);
 const std::vector<std::string>& mesh_endings();
 void ask_to_open(Workspace& work, Screen& screen);
 void ask_for_take(Workspace& work, Screen& screen);
+void ask_for_layer(Workspace& work, Screen& screen);
 void ask_to_save_rig(Workspace& work, Screen& screen);
 /// Acts on the keys of the keyboard map.
 void act_on_keys(Workspace& work, Screen& screen);

@@ -146,8 +146,12 @@ TEST(CommandLine, IsWhatAShellTakes) {
             "fascia build '/tmp/it'\\''s a head.obj' -o rig.glb");
   EXPECT_EQ(shell_text(pose_command(state.pose, "rig.glb", "out.obj")),
             "fascia pose rig.glb --set jaw_open=0.5 -o out.obj");
-  EXPECT_EQ(shell_text(play_command({"a.csv", 0.5, 2.0, true}, "rig.glb", 30, "o.glb")),
-            "fascia play rig.glb --curves a.csv --fps 30 --from 0.5 --to 2 -o o.glb");
+  EXPECT_EQ(shell_text(play_command({"a.csv", 0.123456, 2.0, true}, {}, "rig.glb", 30, "o.glb")),
+            "fascia play rig.glb --curves a.csv --fps 30 --from 0.123456 --to 2 -o o.glb");
+  TakeChoice layered = {"a.csv", 0.0, -1.0, true, 0.5, false, {{"b.csv", 0.25, false}, {"c.csv", 1.0, true}}};
+  EXPECT_EQ(shell_text(play_command(layered, state.pose, "rig.glb", 30, "o.glb")),
+            "fascia play rig.glb --curves a.csv --weight 0.5 --layer b.csv=0.25 --layer c.csv=0 --set "
+            "jaw_open=0.5 --fps 30 -o o.glb");
 }
 
 TEST(Orbit, ARayThroughAPointsPixelMeetsThePoint) {
