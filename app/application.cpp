@@ -163,7 +163,7 @@ class Application {
       show_notices(work_, area);
       if (!screen_->is_scripted) screen_->picture.warm_up();
     } else {
-      const float timeline = scaled(work_.take ? 88.0F : 48.0F);
+      const float timeline = timeline_height(work_);
       const float panel = std::min(scaled(static_cast<float>(work_.settings.panel_width)), 0.45F * size.x);
       const float left = rail + panel, middle = std::max(height - status, 1.0F);
       show_rail(work_, *screen_, {0, top, rail, middle});

@@ -85,6 +85,35 @@ void ScriptRunner::drag(float x, float y, float right, float down, bool holds) {
   motions_.push_back({input, 2});
 }
 
+void ScriptRunner::draw(const std::vector<ImVec2>& places) {
+  SyntheticInput input;
+  const int steps = 8;
+  for (size_t i = 0; i < places.size(); ++i) {
+    const ImVec2 from = places[i == 0 ? 0 : i - 1], to = places[i];
+    for (int s = 1; s <= (i == 0 ? 1 : steps); ++s) {
+      const float share = static_cast<float>(s) / static_cast<float>(i == 0 ? 1 : steps);
+      input.mouse_x = from.x + share * (to.x - from.x);
+      input.mouse_y = from.y + share * (to.y - from.y);
+      motions_.push_back({input, i == 0 ? 3 : 1});
+    }
+    input.buttons[0] = true;
+    if (i == 0) motions_.push_back({input, 2});
+  }
+  input.buttons[0] = false;
+  motions_.push_back({input, 2});
+}
+
+ImVec2 ScriptRunner::pixel_of(const ScriptStep& step, const Workspace& work, const Screen& screen) const {
+  const std::string& name = step.words[0];
+  const auto place = work.landmark_now(name);
+  if (!place) fail(step, "there is no landmark '" + name + "'");
+  const Area area = face_area(work, screen.viewport);
+  const auto pixel =
+      work.orbit.pixel(*place, static_cast<double>(area.width), static_cast<double>(area.height));
+  if (!pixel) fail(step, "the landmark '" + name + "' is not in the picture");
+  return {area.x + static_cast<float>((*pixel)[0]), area.y + static_cast<float>((*pixel)[1])};
+}
+
 bool ScriptRunner::begin_hand(const ScriptStep& step, Workspace& work, Screen& screen) {
   const auto& words = step.words;
   if (step.verb == "click") {
@@ -93,15 +122,15 @@ bool ScriptRunner::begin_hand(const ScriptStep& step, Workspace& work, Screen& s
     const ImVec4 box = found->second;
     press_at(0.5F * (box.x + box.z), 0.5F * (box.y + box.w));
   } else if (step.verb == "drag" || step.verb == "poke") {
-    const auto place = work.landmark_now(words[0]);
-    if (!place) fail(step, "there is no landmark '" + words[0] + "'");
-    const Area area = face_area(work, screen.viewport);
-    const auto pixel =
-        work.orbit.pixel(*place, static_cast<double>(area.width), static_cast<double>(area.height));
-    if (!pixel) fail(step, "the landmark '" + words[0] + "' is not in the picture");
+    const ImVec2 from = pixel_of(step, work, screen);
     if (step.verb == "poke") screen.tool = Tool::pull;
-    drag(area.x + static_cast<float>((*pixel)[0]), area.y + static_cast<float>((*pixel)[1]),
-         std::stof(words[1]), std::stof(words[2]), step.verb == "poke");
+    drag(from.x, from.y, std::stof(words[1]), std::stof(words[2]), step.verb == "poke");
+  } else if (step.verb == "stroke") {
+    const ImVec2 from = pixel_of(step, work, screen);
+    std::vector<ImVec2> places;
+    for (size_t i = 1; i + 1 < words.size(); i += 2)
+      places.emplace_back(from.x + std::stof(words[i]), from.y + std::stof(words[i + 1]));
+    draw(places);
   } else if (step.verb == "release") {
     SyntheticInput input = input_;
     input.buttons[0] = false;
@@ -171,6 +200,12 @@ bool ScriptRunner::begin_file(const ScriptStep& step, Workspace& work, Screen& s
     work.wait_for_files();
     if (!work.take) fail(step, "'" + words[0] + "' is not a recording");
     work.playback.is_playing = false;
+  } else if (step.verb == "layer") {
+    const size_t before = work.state().take.layers.size();
+    work.load_layer(input_file(words[0]));
+    work.wait_for_files();
+    if (work.state().take.layers.size() == before)
+      fail(step, "'" + words[0] + "' cannot be added as a layer");
   } else if (step.verb == "export") {
     begin_export(step, work, screen);
   } else if (step.verb == "screenshot" || step.verb == "picture") {
@@ -192,6 +227,15 @@ void ScriptRunner::expect(const ScriptStep& step, const Workspace& work) const {
     value = work.rig ? "yes" : "no";
   else if (what == "landmarks")
     value = std::to_string(edited_landmarks(work.state()).size());
+  else if (what == "sketches")
+    value = std::to_string(count_sketches(work.state()));
+  else if (what == "layers")
+    value = std::to_string(work.state().take.layers.size());
+  else if (what == "told")
+    value = !work.notices.empty() && work.notices.back().text.find(step.words[1]) != std::string::npos
+                ? step.words[1]
+            : work.notices.empty() ? ""
+                                   : work.notices.back().text;
   else if (what == "undo")
     value = work.history().undo_label();
   else if (what == "redo")
@@ -203,7 +247,7 @@ void ScriptRunner::expect(const ScriptStep& step, const Workspace& work) const {
   else if (what == "panel")
     value = work.settings.panel;
   else
-    fail(step, "expect rig, landmarks, undo, redo, warnings, pose or panel");
+    fail(step, "expect rig, landmarks, sketches, layers, told, undo, redo, warnings, pose or panel");
   if (value != step.words[1]) fail(step, what + " is '" + value + "', not '" + step.words[1] + "'");
 }
 

@@ -40,6 +40,10 @@ class ScriptRunner {
   void begin_export(const ScriptStep& step, Workspace& work, const Screen& screen);
   void expect(const ScriptStep& step, const Workspace& work) const;
   void press_at(float x, float y);
+  /// Through places of the window with the mouse held.
+  void draw(const std::vector<ImVec2>& places);
+  /// Where the landmark that the step names is in the window.
+  ImVec2 pixel_of(const ScriptStep& step, const Workspace& work, const Screen& screen) const;
   void drag(float x, float y, float right, float down, bool holds);
   [[noreturn]] void fail(const ScriptStep& step, const std::string& what) const;
   std::filesystem::path input_file(const std::string& name) const;

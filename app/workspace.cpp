@@ -184,7 +184,11 @@ void Workspace::submit(double seconds) {
   inputs.pose = state().pose;
   if (live) inputs.live = live->values();
   if (take) {
-    inputs.take = take;
+    const TakeChoice& choice = state().take;
+    if (!choice.is_muted) inputs.takes.push_back({take, choice.weight});
+    for (size_t i = 0; i < choice.layers.size(); ++i)
+      if (const auto layer = layer_take(i); layer && !choice.layers[i].is_muted)
+        inputs.takes.push_back({layer, choice.layers[i].weight});
     inputs.take_time = playback.time;
   }
   const float g = 9.81F;
@@ -269,11 +273,11 @@ void Workspace::update(double seconds) {
     rebuild();
   if (take && playback.is_playing) {
     const TakeChoice& choice = state().take;
-    const double end = choice.end < 0.0 ? take->duration() : std::min(choice.end, take->duration());
+    const double end = timeline_end();
     playback.time += seconds;
     if (playback.time > end) {
       const double length = end - choice.begin;
-      if (choice.loops && length > 1e-3) {
+      if (choice.loops && length > 1e-3 && !playback.is_recording) {
         playback.time = choice.begin + std::fmod(playback.time - choice.begin, length);
       } else {
         playback.time = end;
@@ -285,6 +289,8 @@ void Workspace::update(double seconds) {
     playback.recorded_seconds += seconds;
     while (static_cast<double>(playback.recorded.size()) <= playback.recorded_seconds * recorded_rate)
       playback.recorded.push_back(state().pose);
+    // Over a recording it ends with that.
+    if (playback.adds_layer && !playback.is_playing) stop_recording();
   }
   if (shake_ && (*shake_ += seconds) > 1.2) shake_.reset();
   if (!simulation) return;

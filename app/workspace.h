@@ -3,8 +3,10 @@
 #include <deque>
 #include <future>
 #include <list>
+#include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -20,6 +22,7 @@
 #include "app/model/picking.h"
 #include "app/model/session.h"
 #include "app/model/settings.h"
+#include "app/model/sketch.h"
 #include "builder/spatial/surface_query.h"
 
 namespace fascia::app {
@@ -57,6 +60,7 @@ struct Playback {
   double time = 0.0;                                    ///< seconds in the take
   std::vector<std::map<std::string, double>> recorded;  ///< the pose, `recorded_rate` times a second
   double recorded_seconds = 0.0;
+  bool adds_layer = false;  ///< what is recorded is added to the recording that plays
 };
 
 /// Skin held by the mouse.
@@ -101,6 +105,18 @@ class Workspace {
   void forget_left_behind() { session_.forget_left_behind(); }
   /// Reads a recording, or edits, in the background.
   void load_take(const std::filesystem::path& file);
+  /// The same, and adds it to the recording there is; without one it is the first.
+  void load_layer(const std::filesystem::path& file);
+  /// The recording of a layer of the document; null while it is read.
+  std::shared_ptr<const Take> layer_take(size_t layer) const;
+  /// Change a layer, or the first recording, which is layer -1. A weight is one step until seal().
+  void weigh_layer(int layer, double weight);
+  void mute_layer(int layer, bool is_muted);
+  /// Takes a layer away; of the first recording, all of it.
+  void remove_layer(int layer);
+  /// How long the longest recording is, and where the trimmed piece ends, seconds.
+  double timeline_length() const;
+  double timeline_end() const;
   void load_edits(const std::filesystem::path& file);
   /// Waits until files are read or written that are under way.
   void wait_for_files();
@@ -131,6 +147,13 @@ class Workspace {
   std::optional<Vec3> landmark_now(const std::string& name) const;
   /// The same with the skin it lies on: `position` and `normal` as the face stands, `rest` at rest.
   std::optional<SkinHit> landmark_hold(const std::string& name) const;
+  /// Makes a stroke on the skin (metres at rest) the region of a muscle's end, and its mirror image that of
+  /// the other side in symmetric editing. Returns why it cannot be one, and a notice says so; empty: done.
+  std::string sketch_region(const std::string& muscle, MuscleEnd end, const std::vector<Vec3>& stroke);
+  /// Leaves the region to the builder again.
+  void clear_sketch(const std::string& muscle, MuscleEnd end);
+  /// The region drawn for a muscle's end as it lies on the skin now; empty when there is none.
+  std::vector<SkinHit> sketch_now(const std::string& muscle, MuscleEnd end) const;
   bool has_unbuilt_edits() const { return rig && state().edits != built_edits_; }
 
   // --- Jobs
@@ -148,10 +171,9 @@ class Workspace {
   struct PresentCommand {
     std::string text;
     std::map<std::filesystem::path, std::string> files;  ///< that it names and that are not there yet
-    std::string lacks;                                   ///< what of the window it cannot say; empty: nothing
   };
   PresentCommand present_command() const;
-  /// Writes the files it names and returns it; a notice says what it needs or lacks. Empty when they cannot
+  /// Writes the files it names and returns it; a notice says what it needs. Empty when they cannot
   /// be written.
   std::string copy_command();
   /// What the face does now, by name: the pose, or with a recording or a captured face the channels' values.
@@ -220,13 +242,14 @@ class Workspace {
   std::shared_ptr<const FaceFrame> reference_frame;  ///< what the face is compared with; null: nothing
 
  private:
-  enum class FileKind { take, edits, either };
+  enum class FileKind { take, layer, edits, either };
   /// A recording or edits, as read from a file.
   struct ReadFile {
     std::filesystem::path file;
     std::shared_ptr<const Take> take;
     nlohmann::ordered_json edits;
     bool is_again = false;  ///< the document has it already
+    bool is_layer = false;  ///< to be added to the recording there is
   };
   void take_build();
   void take_jobs();
@@ -257,6 +280,10 @@ class Workspace {
   void read_check(const ToolJob& job);
   void submit(double seconds);
   PictureOrder picture_order() const;
+  /// The skin under a point at rest, kept by name.
+  std::optional<SkinHit> hold(const std::string& name, const Vec3& rest) const;
+  /// The same curve on the other side of the face, on its skin.
+  std::vector<Vec3> mirror_image(std::vector<Vec3> curve) const;
   Warning warning_of(const std::string& text) const;
 
   Places places_;
@@ -267,6 +294,8 @@ class Workspace {
   std::vector<std::unique_ptr<BuildTask>> given_up_;
   std::list<std::unique_ptr<ToolJob>> jobs_;
   std::deque<std::future<ReadFile>> coming_files_;
+  std::map<std::string, std::shared_ptr<const Take>> takes_;  ///< that have been read, by file
+  std::set<std::string> asked_takes_;                         ///< that are being read again
   Pending<std::filesystem::path> saving_;
   Pending<std::unique_ptr<Simulation>> coming_reference_;
   Pending<std::vector<std::vector<float>>> coming_positions_;
@@ -285,7 +314,7 @@ class Workspace {
   std::string opened_;     ///< what the build under way was opened as; empty: a rebuild
   bool restores_ = false;  ///< the build under way is of the document that was left behind
   nlohmann::ordered_json built_edits_ = nlohmann::ordered_json::object(), building_edits_, failed_edits_;
-  mutable std::map<std::string, SkinHit> holds_;  ///< the skin under each landmark, found once
+  mutable std::map<std::string, SkinHit> holds_;  ///< the skin under landmarks and sketches, found once
   std::optional<Poke> poke_;
   std::optional<double> shake_;
   double since_edit_ = 0.0, since_save_ = 0.0;

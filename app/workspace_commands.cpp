@@ -66,8 +66,7 @@ Workspace::PresentCommand Workspace::present_command() const {
     present.text += (present.text.empty() ? "" : " && ") + shell_text(command);
   };
   if (take) {
-    then(play_command(state().take, file, recorded_rate, stem + "_take.glb"));
-    if (!state().pose.empty()) present.lacks = "the pose of the sliders, which is no part of the recording";
+    then(play_command(state().take, state().pose, file, recorded_rate, stem + "_take.glb"));
   } else if (!state().pose.empty()) {
     then(pose_command(state().pose, file, stem + "_posed.glb"));
   } else if (present.text.empty()) {
@@ -87,9 +86,7 @@ std::string Workspace::copy_command() {
     notify(error.what(), Notice::Kind::error);
     return "";
   }
-  if (!present.lacks.empty())
-    notify("The command leaves out " + present.lacks, Notice::Kind::warning);
-  else if (!present.files.empty())
+  if (!present.files.empty())
     notify("Copied; the edits are in " + present.files.begin()->first.string());
   else
     notify("Copied");
@@ -103,7 +100,8 @@ void Workspace::export_pose(const std::filesystem::path& output) {
 
 void Workspace::export_take(const std::filesystem::path& output, double fps) {
   if (!rig || !take) return notify("Load a recording first", Notice::Kind::warning);
-  run(play_command(state().take, rig->file, fps, output), "Export " + output.filename().string());
+  run(play_command(state().take, state().pose, rig->file, fps, output),
+      "Export " + output.filename().string());
 }
 
 /// What the viewport shows, as `fascia render` takes it.

@@ -61,7 +61,8 @@ void Workspace::clear_pose() {
 
 std::optional<Vec3> Workspace::landmark(const std::string& name) const {
   if (!rig) return std::nullopt;
-  if (const auto edited = landmark_edit(state(), name)) return transform_point(rig->head_to_metres, *edited);
+  if (const auto edited = landmark_edit(state(), name))
+    return transform_point(edits_to_metres(state(), rig->head_to_metres), *edited);
   for (const rig::Landmark& known : rig->rig->skull.landmarks)
     if (known.name == name) return known.skin.cast<double>();
   return std::nullopt;
@@ -69,23 +70,27 @@ std::optional<Vec3> Workspace::landmark(const std::string& name) const {
 
 std::optional<SkinHit> Workspace::landmark_hold(const std::string& name) const {
   const auto rest = landmark(name);
-  if (!rest || !frame) return std::nullopt;
+  return rest ? hold(name, *rest) : std::nullopt;
+}
+
+std::optional<SkinHit> Workspace::hold(const std::string& name, const Vec3& rest) const {
+  if (!rig || !frame) return std::nullopt;
   const auto [entry, is_new] = holds_.try_emplace(name);
   SkinHit& held = entry->second;
-  if (is_new || held.rest != *rest) {
-    held = nearest_skin(*rig->asset, *frame, *rest);
-    held.rest = *rest;
+  if (is_new || held.rest != rest) {
+    held = nearest_skin(*rig->asset, *frame, rest);
+    held.rest = rest;
   }
   SkinHit now = held;
   const double too_far = 0.03;  // metres: a landmark off the skin moves with nothing
   if (held.part >= frame->positions.size() || held.distance > too_far) {
-    now.position = *rest;
+    now.position = rest;
     return now;
   }
   const auto at = [&](const std::vector<float>& flat) {
     return Vec3(Eigen::Map<const Eigen::Vector3f>(flat.data() + 3 * size_t{held.vertex}).cast<double>());
   };
-  now.position = *rest + (at(frame->positions[held.part]) - at(rig->asset->parts[held.part].rest));
+  now.position = rest + (at(frame->positions[held.part]) - at(rig->asset->parts[held.part].rest));
   now.normal = at(frame->normals[held.part]);
   return now;
 }
@@ -97,7 +102,7 @@ std::optional<Vec3> Workspace::landmark_now(const std::string& name) const {
 
 void Workspace::move_landmark(const std::string& name, const Vec3& point, bool is_gesture) {
   if (!rig) return;
-  const Mat4 to_head = rig->head_to_metres.inverse();
+  const Mat4 to_head = edits_to_metres(state(), rig->head_to_metres).inverse();
   const auto before = landmark(name);
   DocumentState next = state();
   set_landmark(next, name, transform_point(to_head, point));

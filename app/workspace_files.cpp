@@ -121,6 +121,10 @@ void Workspace::load_take(const std::filesystem::path& file) {
   read_file(file, FileKind::take, false);
 }
 
+void Workspace::load_layer(const std::filesystem::path& file) {
+  read_file(file, take || !coming_files_.empty() ? FileKind::layer : FileKind::take, false);
+}
+
 void Workspace::load_edits(const std::filesystem::path& file) {
   read_file(file, FileKind::edits, false);
 }
@@ -134,7 +138,7 @@ void Workspace::read_file(const std::filesystem::path& file, FileKind kind, bool
 }
 
 Workspace::ReadFile Workspace::read_now(const std::filesystem::path& file, FileKind kind) {
-  ReadFile read{file, nullptr, {}, false};
+  ReadFile read{file, nullptr, {}, false, kind == FileKind::layer};
   if (kind == FileKind::edits || (kind == FileKind::either && is_edits_file(file)))
     read.edits = read_edits_file(file);
   else
@@ -159,38 +163,6 @@ void Workspace::take_files(bool waits) {
 void Workspace::wait_for_files() {
   take_files(true);
   take_saved(true);
-}
-
-void Workspace::adopt(const ReadFile& read) {
-  DocumentState next = state();
-  if (!read.take) {
-    next.edits = read.edits;
-    return commit(std::move(next), "Load edits");
-  }
-  const std::string path = std::filesystem::absolute(read.file).string();
-  if (read.is_again && next.take.file != path) return;
-  take = read.take;
-  playback.is_playing = !read.is_again;
-  if (next.take.file != path) next.take = {path, 0.0, -1.0, true};
-  playback.time = next.take.begin;
-  commit(std::move(next), "Load recording");
-  if (read.is_again) return;
-  size_t known = take->names().size();
-  if (rig) {
-    const std::vector<bool> matched = take->matched(rig->asset->handle());
-    known = static_cast<size_t>(std::count(matched.begin(), matched.end(), true));
-  }
-  notify("Loaded " + read.file.filename().string() + ": " + std::to_string(known) + " of " +
-             std::to_string(take->names().size()) + " curves move this face",
-         known ? Notice::Kind::info : Notice::Kind::warning);
-}
-
-void Workspace::follow_document() {
-  const std::string& wanted = state().take.file;
-  if (take && std::filesystem::absolute(take->file()).string() == wanted) return;
-  take.reset();
-  playback.is_playing = false;
-  if (!wanted.empty()) read_file(wanted, FileKind::take, true);
 }
 
 // --- Saving

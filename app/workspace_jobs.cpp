@@ -100,6 +100,12 @@ void Workspace::start_recording() {
   playback.recorded.clear();
   playback.recorded_seconds = 0.0;
   playback.is_recording = true;
+  playback.adds_layer = take != nullptr;
+  if (!take) return;
+  // A layer begins with the recording; before the piece that is played it holds.
+  playback.time = state().take.begin;
+  playback.recorded_seconds = playback.time;
+  playback.is_playing = true;
 }
 
 void Workspace::stop_recording() {
@@ -125,7 +131,10 @@ void Workspace::stop_recording() {
     formats::write_text(written, json.dump());
     const std::filesystem::path file = keep_recording(written, places_.state / "recordings");
     clear_pose();
-    load_take(file);
+    if (playback.adds_layer)
+      load_layer(file);
+    else
+      load_take(file);
   } catch (const std::exception& error) {
     notify(error.what(), Notice::Kind::error);
   }

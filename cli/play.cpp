@@ -47,6 +47,22 @@ void add_play(const Command& tool, Common& common) {
   const Command command = tool.command("play", "Simulate a rig along curves and write the animation");
   add_rig_argument(command, request->rig);
   command.option("--curves", &request->curves, "Curves: a table (.csv), .json or .glb").required();
+  command.option("--weight", &request->weight, "Factor of what the curves hold").range(0.0, 10.0);
+  command
+      .option("--layer", &request->layers,
+              "More curves, added to the first from the same beginning, times a weight from 0 to 10; may be "
+              "repeated")
+      .value("FILE[=WEIGHT]")
+      .default_text("none");
+  command
+      .option(
+          "--set", &request->set,
+          "A value that holds all the time, the curves are added to it; names as in 'fascia pose'; may be "
+          "repeated, and overrides --activations")
+      .value("NAME=VALUE")
+      .default_text("the face at rest");
+  command.option("--activations", &request->values, "Values of many that hold all the time (.json)")
+      .default_text("none");
   command.option("--fps", &request->frames_per_second, "Frames a second to simulate and write")
       .range(1.0, 1000.0);
   command

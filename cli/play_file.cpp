@@ -104,22 +104,73 @@ void say_how_far_off(const Common& common, const PlayRequest& request, const Pla
   common.warn(line);
 }
 
+struct TakeLayer {
+  std::filesystem::path file;
+  double weight = 1.0;
+};
+
+/// FILE or FILE=WEIGHT. A file may have "=" in its name: what follows the last one is a weight if it is a
+/// number.
+TakeLayer layer_from(const std::string& word) {
+  const size_t at = word.rfind('=');
+  if (at != std::string::npos && at > 0 && at + 1 < word.size()) {
+    char* end = nullptr;
+    const double weight = std::strtod(word.c_str() + at + 1, &end);
+    if (*end == 0) {
+      if (!(weight >= 0.0 && weight <= 10.0)) throw Error("--layer '" + word + "': a weight is 0 to 10");
+      return {word.substr(0, at), weight};
+    }
+  }
+  return {word, 1.0};
+}
+
+std::vector<TakeLayer> take_layers(const PlayRequest& request) {
+  std::vector<TakeLayer> layers;
+  for (const std::string& word : request.layers)
+    layers.push_back(layer_from(word));
+  return layers;
+}
+
+/// What holds under the curves, and what is added to them.
+void complete(const Common& common, const PlayRequest& request, const std::vector<TakeLayer>& layers,
+              Face& face, Curves& curves, PlayFigures& figures) {
+  std::vector<std::pair<std::string, double>> held = activations(request.set, request.values);
+  set_all(common, face, held);
+  curves.hold(std::move(held));
+  curves.scale(request.weight);
+  for (const TakeLayer& layer : layers) {
+    Curves added(layer.file);
+    added.scale(layer.weight);
+    const MatchedNames names = match(common, added, face, layer.file);
+    for (const auto& [from, to] :
+         {std::pair(&names.matched, &figures.matched), std::pair(&names.unmatched, &figures.unmatched)})
+      for (const std::string& name : *from)
+        if (std::find(to->begin(), to->end(), name) == to->end()) to->push_back(name);
+    curves.add(std::move(added));
+  }
+}
+
 }  // namespace
 
 PlayFigures play_file(const Common& common, const PlayRequest& request) {
-  check_output(request.output, {request.rig, request.curves});
+  const std::vector<TakeLayer> layers = take_layers(request);
+  std::vector<std::filesystem::path> inputs = {request.rig, request.curves, request.values};
+  for (const TakeLayer& layer : layers)
+    inputs.push_back(layer.file);
+  check_output(request.output, inputs);
   CacheKind kind{};
   const bool wants_cache = is_cache(request.output, kind);
   if (!wants_cache && extension_of(request.output) != ".glb")
     throw Error("'" + request.output.string() + "': an animation is written as .glb, .pc2 or .mdd");
   Curves curves(request.curves, request.curve_frames_per_second, request.time_unit);
-  curves.trim(request.from, request.to);
   PlayFigures figures;
   Face face(request.rig,
             {wants_cache ? FASCIA_SPACE_INPUT : FASCIA_SPACE_MESH, request.solver, request.level});
   const MatchedNames names = match(common, curves, face, request.curves);
   figures.matched = names.matched;
   figures.unmatched = names.unmatched;
+  complete(common, request, layers, face, curves, figures);
+  curves.trim(request.from, request.to);
   if (!request.keeps_head && !wants_cache && curves.head_moves())
     common.warn("the curves turn the head, which is left out; --head keeps it as motion of the file's nodes");
   if (request.keeps_head && (wants_cache || !curves.turns_head()))

@@ -10,6 +10,10 @@ namespace fascia::cli {
 
 struct PlayRequest {
   std::filesystem::path rig, curves, output;
+  std::vector<std::string> set;     ///< NAME=VALUE: values that hold under the curves
+  std::filesystem::path values;     ///< the same from an activations file; empty: none
+  double weight = 1.0;              ///< of the curves
+  std::vector<std::string> layers;  ///< FILE or FILE=WEIGHT: curves added to them
   double frames_per_second = 60.0;
   double curve_frames_per_second = 0.0;  ///< of the curves' rows; 0: as their file says
   double time_unit = 0.0;                ///< seconds in one unit of the curves' times; 0: as their file says

@@ -147,7 +147,10 @@ void FaceSession::apply(const FaceInputs& inputs) {
   for (const auto* values : {&inputs.live, &inputs.pose})
     for (const auto& [name, value] : *values)
       fascia_face_set(face, name.c_str(), static_cast<float>(value));
-  if (inputs.take) check(fascia_curves_apply(inputs.take->handle(), inputs.take_time, 1.0F, face), "take");
+  for (const PlayedTake& played : inputs.takes)
+    check(
+        fascia_curves_apply(played.take->handle(), inputs.take_time, static_cast<float>(played.weight), face),
+        "take");
   check(fascia_face_clear_touches(face), "touch");
   const size_t most_touches = 64;
   for (size_t t = 0; t < std::min(inputs.touches.size(), most_touches); ++t) {

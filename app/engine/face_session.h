@@ -81,12 +81,20 @@ struct Touch {
   bool operator==(const Touch&) const = default;
 };
 
+/// A recording with how much of it is added.
+struct PlayedTake {
+  std::shared_ptr<const Take> take;
+  double weight = 1.0;
+
+  bool operator==(const PlayedTake&) const = default;
+};
+
 /// What a face is asked to do in one step.
 struct FaceInputs {
   std::map<std::string, double> pose;  ///< by name, as `--set` takes them
   std::map<std::string, double> live;  ///< captured now, by name; what the rig does not know is left out
-  std::shared_ptr<const Take> take;    ///< added to the pose; none: null
-  double take_time = 0.0;              ///< seconds in the take
+  std::vector<PlayedTake> takes;       ///< added to the pose and to one another
+  double take_time = 0.0;              ///< seconds in the takes
   std::vector<Touch> touches;          ///< at most 64
   Eigen::Vector3f acceleration = Eigen::Vector3f::Zero();  ///< that loose tissue feels, m/s^2
   Eigen::Matrix4f head = Eigen::Matrix4f::Identity();      ///< where the head stands in the world

@@ -8,7 +8,7 @@ namespace {
 
 std::string number(double value) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
+  std::snprintf(text, sizeof text, "%.9g", value);
   return text;
 }
 
@@ -42,9 +42,17 @@ CommandLine pose_command(const Pose& pose, const std::filesystem::path& rig,
   return command;
 }
 
-CommandLine play_command(const TakeChoice& take, const std::filesystem::path& rig, double fps,
-                         const std::filesystem::path& output) {
-  CommandLine command = {"play", rig.string(), "--curves", take.file, "--fps", number(fps)};
+CommandLine play_command(const TakeChoice& take, const Pose& pose, const std::filesystem::path& rig,
+                         double fps, const std::filesystem::path& output) {
+  // A muted one still says how long the timeline is: it is played with no weight.
+  CommandLine command = {"play", rig.string(), "--curves", take.file};
+  const double weight = take.is_muted ? 0.0 : take.weight;
+  if (weight != 1.0) command.insert(command.end(), {"--weight", number(weight)});
+  for (const TakeLayer& layer : take.layers)
+    command.insert(command.end(),
+                   {"--layer", layer.file + "=" + number(layer.is_muted ? 0.0 : layer.weight)});
+  add_pose(command, pose);
+  command.insert(command.end(), {"--fps", number(fps)});
   if (take.begin > 0.0) command.insert(command.end(), {"--from", number(take.begin)});
   if (take.end >= 0.0) command.insert(command.end(), {"--to", number(take.end)});
   command.insert(command.end(), {"-o", output.string()});

@@ -17,8 +17,9 @@ using Pose = std::map<std::string, double>;  ///< by name, as `--set` takes them
 
 CommandLine pose_command(const Pose& pose, const std::filesystem::path& rig,
                          const std::filesystem::path& output);
-CommandLine play_command(const TakeChoice& take, const std::filesystem::path& rig, double fps,
-                         const std::filesystem::path& output);
+/// The takes over `pose`, which holds all the time.
+CommandLine play_command(const TakeChoice& take, const Pose& pose, const std::filesystem::path& rig,
+                         double fps, const std::filesystem::path& output);
 CommandLine bake_command(const std::filesystem::path& rig, const std::string& shapes,
                          const std::filesystem::path& output);
 

@@ -24,8 +24,9 @@ void take_out(Json& edits, const char* list, const std::string& name) {
   if (found->empty()) edits.erase(list);
 }
 
-/// Sets `key` of a muscle's entry, or takes it out when `value` is null.
-void set_muscle(DocumentState& state, const std::string& muscle, const char* key, const Json& value) {
+}  // namespace
+
+void set_muscle_entry(DocumentState& state, const std::string& muscle, const char* key, const Json& value) {
   Json& muscles = state.edits["muscles"];
   if (!muscles.is_object()) muscles = Json::object();
   Json& item = muscles[muscle];
@@ -36,8 +37,6 @@ void set_muscle(DocumentState& state, const std::string& muscle, const char* key
     item[key] = value;
   if (item.empty()) take_out(state.edits, "muscles", muscle);
 }
-
-}  // namespace
 
 std::optional<Vec3> landmark_edit(const DocumentState& state, const std::string& name) {
   const Json* item = entry(state.edits, "landmarks", name);
@@ -73,7 +72,7 @@ double muscle_number(const DocumentState& state, const std::string& muscle, cons
 
 void set_muscle_number(DocumentState& state, const std::string& muscle, const char* key, double value,
                        double otherwise) {
-  set_muscle(state, muscle, key, value == otherwise ? Json() : Json(value));
+  set_muscle_entry(state, muscle, key, value == otherwise ? Json() : Json(value));
 }
 
 bool muscle_is_present(const DocumentState& state, const std::string& muscle) {
@@ -82,7 +81,7 @@ bool muscle_is_present(const DocumentState& state, const std::string& muscle) {
 }
 
 void set_muscle_present(DocumentState& state, const std::string& muscle, bool is_present) {
-  set_muscle(state, muscle, "present", is_present ? Json() : Json(false));
+  set_muscle_entry(state, muscle, "present", is_present ? Json() : Json(false));
 }
 
 std::string muscle_variant(const DocumentState& state, const std::string& muscle) {
@@ -93,7 +92,7 @@ std::string muscle_variant(const DocumentState& state, const std::string& muscle
 }
 
 void set_muscle_variant(DocumentState& state, const std::string& muscle, const std::string& variant) {
-  set_muscle(state, muscle, "variant", variant.empty() ? Json() : Json(variant));
+  set_muscle_entry(state, muscle, "variant", variant.empty() ? Json() : Json(variant));
 }
 
 void set_pose(DocumentState& state, const std::string& name, double value, double rest) {
@@ -104,6 +103,9 @@ void set_pose(DocumentState& state, const std::string& name, double value, doubl
 }
 
 std::string to_text(const DocumentState& state) {
+  Json layers = Json::array();
+  for (const TakeLayer& layer : state.take.layers)
+    layers.push_back({{"file", layer.file}, {"weight", layer.weight}, {"is_muted", layer.is_muted}});
   const Json json = {{"head", state.head},
                      {"edits", state.edits},
                      {"pose", state.pose},
@@ -111,7 +113,10 @@ std::string to_text(const DocumentState& state) {
                       {{"file", state.take.file},
                        {"begin", state.take.begin},
                        {"end", state.take.end},
-                       {"loops", state.take.loops}}}};
+                       {"loops", state.take.loops},
+                       {"weight", state.take.weight},
+                       {"is_muted", state.take.is_muted},
+                       {"layers", layers}}}};
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -125,8 +130,16 @@ DocumentState state_from_text(const std::string& text, const std::string& where)
     if (!state.edits.is_object()) throw Error("'" + where + "': \"edits\" is not an object");
     state.pose = json.at("pose").get<std::map<std::string, double>>();
     const Json& take = json.at("take");
-    state.take = {take.at("file").get<std::string>(), take.at("begin").get<double>(),
-                  take.at("end").get<double>(), take.at("loops").get<bool>()};
+    state.take = {take.at("file").get<std::string>(),
+                  take.at("begin").get<double>(),
+                  take.at("end").get<double>(),
+                  take.at("loops").get<bool>(),
+                  take.value("weight", 1.0),
+                  take.value("is_muted", false),
+                  {}};
+    for (const Json& layer : take.value("layers", Json::array()))
+      state.take.layers.push_back({layer.at("file").get<std::string>(), layer.at("weight").get<double>(),
+                                   layer.at("is_muted").get<bool>()});
     return state;
   } catch (const Json::exception& error) {
     throw Error("'" + where + "' is not a saved session: " + error.what());

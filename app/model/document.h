@@ -5,18 +5,31 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "app/model/history.h"
 #include "geometry/mesh.h"
 
 namespace fascia::app {
 
-/// The recording that is played, and which piece of it.
+/// A recording that is added to the first.
+struct TakeLayer {
+  std::string file;
+  double weight = 1.0;
+  bool is_muted = false;
+
+  bool operator==(const TakeLayer&) const = default;
+};
+
+/// The recording that is played with those added to it, and which piece of them.
 struct TakeChoice {
   std::string file;    ///< empty: none
   double begin = 0.0;  ///< seconds, trim
   double end = -1.0;   ///< seconds; below 0: to the end
   bool loops = true;
+  double weight = 1.0;  ///< of the first recording
+  bool is_muted = false;
+  std::vector<TakeLayer> layers = {};  ///< from the same beginning
 
   bool operator==(const TakeChoice&) const = default;
 };
@@ -42,6 +55,9 @@ void clear_landmark(DocumentState& state, const std::string& name);
 /// Names of the landmarks put by hand.
 std::vector<std::string> edited_landmarks(const DocumentState& state);
 
+/// Sets `key` of a muscle's entry, or takes it out when `value` is null, and the entry with its last one.
+void set_muscle_entry(DocumentState& state, const std::string& muscle, const char* key,
+                      const nlohmann::ordered_json& value);
 /// A number of a muscle's entry (`strength`, `width`, `peak_shortening`); `otherwise` when it has none.
 double muscle_number(const DocumentState& state, const std::string& muscle, const char* key,
                      double otherwise);

@@ -47,10 +47,14 @@ const std::vector<ScriptVerb>& script_verbs() {
       {"click", 1, 1, "click ITEM: a button or tab by its name"},
       {"drag", 3, 3, "drag LANDMARK RIGHT DOWN: with the mouse, in pixels"},
       {"poke", 3, 3, "poke LANDMARK RIGHT DOWN: pull the skin at a landmark with the mouse, and hold"},
+      {"stroke", 3, 200,
+       "stroke LANDMARK RIGHT DOWN [RIGHT DOWN ...]: draw with the mouse through places about a landmark, in "
+       "pixels"},
       {"release", 0, 0, "release: let the mouse go"},
       {"key", 1, 1, "key ctrl+z: press a key"},
       {"type", 1, 1, "type TEXT"},
       {"take", 1, 1, "take FILE: load a recording"},
+      {"layer", 1, 1, "layer FILE: add a recording to the one there is"},
       {"play", 1, 1, "play SECONDS"},
       {"seek", 1, 1, "seek SECONDS"},
       {"undo", 0, 0, "undo"},
@@ -63,8 +67,9 @@ const std::vector<ScriptVerb>& script_verbs() {
       {"screenshot", 1, 1, "screenshot FILE.png: of the whole window"},
       {"picture", 1, 1, "picture FILE.png: of the face alone"},
       {"expect", 2, 2,
-       "expect WHAT VALUE: end with an error unless rig|landmarks|undo|redo|warnings|pose|panel "
-       "is VALUE"},
+       "expect WHAT VALUE: end with an error unless "
+       "rig|landmarks|sketches|layers|told|undo|redo|warnings|pose|panel "
+       "is VALUE; of told, what was told last, a part"},
       {"quit", 0, 0, "quit"},
   };
   return verbs;

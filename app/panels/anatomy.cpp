@@ -145,7 +145,7 @@ void show_variants(Workspace& work, const std::string& name, const anatomy::Musc
   ImGui::EndCombo();
 }
 
-void show_muscle(Workspace& work, const std::string& name) {
+void show_muscle(Workspace& work, Screen& screen, const std::string& name) {
   const float width = ImGui::GetContentRegionAvail().x - scaled(6);
   ui::heading(full_title(name).c_str());
   const anatomy::Muscle* known = described_muscle(name);
@@ -175,6 +175,7 @@ void show_muscle(Workspace& work, const std::string& name) {
   }
   show_factor(work, name, "strength", "Strength", 1.0, 0.0F, 3.0F, width);
   show_factor(work, name, "width", "Width", 1.0, 0.25F, 3.0F, width);
+  show_sketch_buttons(work, screen, name, known && known->band);
   if (known) show_variants(work, name, *known);
 }
 
@@ -195,7 +196,7 @@ void show_muscle_panel(Workspace& work, Screen& screen) {
   ui::check("Symmetric##muscles", work.settings.is_symmetric);
   show_rebuild(work, width);
   ui::search("Search muscles", screen.muscle_search, width);
-  const float foot = work.selected_muscle.empty() ? scaled(44) : scaled(322);
+  const float foot = work.selected_muscle.empty() ? scaled(44) : scaled(360);
   ImGui::BeginChild("##muscles", {0, list_height(foot)});
   std::string region;
   std::vector<const rig::Muscle*> sorted;
@@ -229,8 +230,8 @@ void show_muscle_panel(Workspace& work, Screen& screen) {
   }
   ImGui::EndChild();
   if (!work.selected_muscle.empty()) {
-    ImGui::BeginChild("##muscle", {0, scaled(270)});
-    show_muscle(work, work.selected_muscle);
+    ImGui::BeginChild("##muscle", {0, scaled(308)});
+    show_muscle(work, screen, work.selected_muscle);
     ImGui::EndChild();
   }
   show_edit_files(work, screen);

@@ -62,6 +62,11 @@ void ask_for_take(Workspace& work, Screen& screen) {
                              [&work](const std::filesystem::path& file) { work.load_take(file); });
 }
 
+void ask_for_layer(Workspace& work, Screen& screen) {
+  screen.browser.ask_to_open("Add a recording", {".csv", ".json", ".glb", ".txt", ".tsv"},
+                             [&work](const std::filesystem::path& file) { work.load_layer(file); });
+}
+
 void ask_to_save_rig(Workspace& work, Screen& screen) {
   const std::string stem = std::filesystem::path(work.state().head).stem().string();
   screen.browser.ask_to_save("Save the rig", stem + "_rig.glb", {".glb"},

@@ -29,7 +29,7 @@ void act_on_views(Workspace& work, Screen& screen) {
 void act_on_timeline(Workspace& work) {
   if (!work.take) return;
   Playback& playback = work.playback;
-  const double frame = 1.0 / 60.0, length = work.take->duration();
+  const double frame = 1.0 / 60.0, length = work.timeline_length();
   const TakeChoice& choice = work.state().take;
   if (ImGui::IsKeyPressed(GLFW_KEY_SPACE, false)) playback.is_playing = !playback.is_playing;
   if (ImGui::IsKeyPressed(GLFW_KEY_HOME, false)) playback.time = choice.begin;

@@ -3,7 +3,9 @@
 #include <imgui.h>
 
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "app/scene/face_picture.h"
 #include "app/scene/scene_list.h"
@@ -32,6 +34,14 @@ struct ShownFace {
   void renew(const LoadedRig* loaded);
 };
 
+/// The curve that is being drawn on the skin for a muscle's end.
+struct SketchTool {
+  std::string muscle;
+  std::optional<MuscleEnd> end;  ///< none: nothing is to be drawn
+  bool is_drawing = false;       ///< the mouse is down
+  std::vector<SkinHit> stroke;
+};
+
 /// What the window itself holds: nothing that undo would bring back.
 struct Screen {
   FileBrowser browser;
@@ -40,6 +50,7 @@ struct Screen {
   ShownFace face, reference;
 
   Tool tool = Tool::turn;
+  SketchTool sketch;
   std::string pose_search, landmark_search, muscle_search;
   int vocabulary = 0;  ///< of the pose panel
   bool shows_favourites = false, shows_only_low = false, shows_help = false;
@@ -69,6 +80,16 @@ void show_side_panel(Workspace& work, Screen& screen, const Area& area);
 void show_viewport(Workspace& work, Screen& screen, const Area& area);
 /// Draws the face into the screen's picture when it has changed, or can be drawn with more care than it is.
 void renew_picture(Workspace& work, Screen& screen, const Area& area);
+/// Curves of the picked muscle's regions over the picture, and the one that is being drawn. `area` is the
+/// face's.
+void draw_sketches(Workspace& work, Screen& screen, const Area& area);
+/// Where the mouse went down, went, and was let go; begin_stroke() is false where nothing is to be drawn.
+bool begin_stroke(const Workspace& work, Screen& screen, const std::optional<SkinHit>& hit);
+void extend_stroke(const Workspace& work, Screen& screen, const std::optional<SkinHit>& hit);
+void end_stroke(Workspace& work, Screen& screen);
+/// Rows of the layers, below the track; the height of the timeline with them.
+void show_layers(Workspace& work, float width);
+float timeline_height(const Workspace& work);
 void show_timeline(Workspace& work, Screen& screen, const Area& area);
 void show_status(Workspace& work, Screen& screen, const Area& area);
 void show_start(Workspace& work, Screen& screen, const Area& area);
@@ -79,6 +100,8 @@ void show_help(Screen& screen);
 void show_pose_panel(Workspace& work, Screen& screen);
 void show_landmark_panel(Workspace& work, Screen& screen);
 void show_muscle_panel(Workspace& work, Screen& screen);
+/// To draw the regions of a muscle; one that rings an opening has none.
+void show_sketch_buttons(Workspace& work, Screen& screen, const std::string& muscle, bool is_ring);
 void show_warning_panel(Workspace& work, Screen& screen);
 void show_compare_panel(Workspace& work, Screen& screen);
 void show_live_panel(Workspace& work, Screen& screen);
@@ -99,6 +122,7 @@ float list_height(float foot);
 const std::vector<std::string>& mesh_endings();
 void ask_to_open(Workspace& work, Screen& screen);
 void ask_for_take(Workspace& work, Screen& screen);
+void ask_for_layer(Workspace& work, Screen& screen);
 void ask_to_save_rig(Workspace& work, Screen& screen);
 /// Acts on the keys of the keyboard map.
 void act_on_keys(Workspace& work, Screen& screen);

@@ -16,11 +16,6 @@ std::string clock_text(double seconds) {
   return text;
 }
 
-double end_of(const Workspace& work) {
-  const TakeChoice& choice = work.state().take;
-  return choice.end < 0.0 ? work.take->duration() : std::min(choice.end, work.take->duration());
-}
-
 /// A second's ticks that are at least forty pixels apart.
 double tick_step(double pixels_a_second) {
   for (const double step : {0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 60.0, 120.0, 300.0, 600.0})
@@ -30,13 +25,13 @@ double tick_step(double pixels_a_second) {
 
 void show_track(Workspace& work, float width, float height) {
   const Palette& p = palette();
-  const double duration = std::max(work.take->duration(), 1e-3);
+  const double duration = std::max(work.timeline_length(), 1e-3);
   const ImVec2 at = ImGui::GetCursorScreenPos();
   ImDrawList* list = ImGui::GetWindowDrawList();
   const auto x_of = [&](double seconds) {
     return at.x + width * static_cast<float>(std::clamp(seconds / duration, 0.0, 1.0));
   };
-  const double begin = work.state().take.begin, end = end_of(work);
+  const double begin = work.state().take.begin, end = work.timeline_end();
   list->AddRectFilled(at, {at.x + width, at.y + height}, colour_of(p.raised), scaled(6));
   list->AddRectFilled({x_of(begin), at.y}, {x_of(end), at.y + height}, colour_of(p.accent, 0.16F), scaled(6));
   ImGui::PushFont(fonts().small);
@@ -106,6 +101,13 @@ void show_motion(Workspace& work, Screen& screen, bool is_column) {
     ask_for_take(work, screen);
     if (is_column) ImGui::CloseCurrentPopup();
   }
+  if (!work.take) return;
+  if (!is_column) ImGui::SameLine();
+  if (ui::button("Add layer")) {
+    ask_for_layer(work, screen);
+    if (is_column) ImGui::CloseCurrentPopup();
+  }
+  ui::tooltip("Another recording, added to this one");
 }
 
 }  // namespace
@@ -117,7 +119,8 @@ void show_timeline(Workspace& work, Screen& screen, const Area& area) {
   const bool has_take = work.take != nullptr;
   if (icon_button("Play", playback.is_playing ? "pause" : "play",
                   playback.is_playing ? "Pause (Space)" : "Play (Space)", false, has_take)) {
-    if (!playback.is_playing && playback.time >= end_of(work) - 1e-3) playback.time = work.state().take.begin;
+    if (!playback.is_playing && playback.time >= work.timeline_end() - 1e-3)
+      playback.time = work.state().take.begin;
     playback.is_playing = !playback.is_playing;
   }
   ImGui::SameLine(0, scaled(2));
@@ -127,8 +130,10 @@ void show_timeline(Workspace& work, Screen& screen, const Area& area) {
     work.commit(std::move(next), "Loop");
   }
   ImGui::SameLine(0, scaled(2));
-  if (icon_button("Record", "record", "Record what the sliders do as a new recording", playback.is_recording,
-                  work.rig.has_value())) {
+  if (icon_button("Record", "record",
+                  has_take ? "Record what the sliders do as a layer over this recording"
+                           : "Record what the sliders do as a new recording",
+                  playback.is_recording, work.rig.has_value())) {
     if (playback.is_recording)
       work.stop_recording();
     else
@@ -139,7 +144,7 @@ void show_timeline(Workspace& work, Screen& screen, const Area& area) {
   if (playback.is_recording) {
     ImGui::TextColored(p.bad, "Recording %.1f s", playback.recorded_seconds);
   } else if (has_take) {
-    ImGui::Text("%s / %s", clock_text(playback.time).c_str(), clock_text(work.take->duration()).c_str());
+    ImGui::Text("%s / %s", clock_text(playback.time).c_str(), clock_text(work.timeline_length()).c_str());
     ImGui::SameLine(0, scaled(14));
     ImGui::TextColored(p.faint, "%s",
                        ui::shortened(work.take->file().filename().string(), scaled(220)).c_str());
@@ -149,8 +154,9 @@ void show_timeline(Workspace& work, Screen& screen, const Area& area) {
                                      area.width - scaled(area.width > scaled(640) ? 540.0F : 210.0F))
                            .c_str());
   }
-  if (area.width > scaled(640)) {
-    ImGui::SameLine(area.width - scaled(346));
+  const float motion = scaled(has_take ? 434.0F : 346.0F);
+  if (area.width > motion + scaled(294)) {
+    ImGui::SameLine(area.width - motion);
     show_motion(work, screen, false);
   } else {
     ImGui::SameLine(area.width - scaled(72));
@@ -160,7 +166,11 @@ void show_timeline(Workspace& work, Screen& screen, const Area& area) {
       ImGui::EndPopup();
     }
   }
-  if (has_take) show_track(work, area.width - scaled(28), scaled(30));
+  if (has_take) {
+    show_track(work, area.width - scaled(28), scaled(30));
+    ImGui::SetCursorPosY(scaled(88));
+    show_layers(work, area.width - scaled(28));
+  }
   end_area();
 }
 

@@ -97,6 +97,7 @@ void begin_press(Workspace& work, Screen& screen, const Area& area) {
     work.selected_landmark = screen.hovered_landmark;
     return;
   }
+  if (begin_stroke(work, screen, skin_under(work, area))) return;
   if ((screen.tool == Tool::pull) != io.KeyShift) {
     if (const auto hit = skin_under(work, area)) {
       work.poke(*hit);
@@ -112,6 +113,7 @@ void move_press(Workspace& work, Screen& screen, const Area& area) {
   if (std::hypot(io.MousePos.x - screen.pressed_at.x, io.MousePos.y - screen.pressed_at.y) > least)
     screen.has_moved = true;
   if (!screen.has_moved) return;
+  if (screen.sketch.is_drawing) return extend_stroke(work, screen, skin_under(work, area));
   if (!screen.dragged_landmark.empty()) {
     if (const auto hit = skin_under(work, area)) work.move_landmark(screen.dragged_landmark, hit->rest, true);
   } else if (work.held()) {
@@ -137,7 +139,8 @@ void click(Workspace& work, Screen& screen, const Area& area) {
 }
 
 void end_press(Workspace& work, Screen& screen, const Area& area) {
-  if (!screen.has_moved && screen.dragged_landmark.empty()) click(work, screen, area);
+  if (screen.sketch.is_drawing) return end_stroke(work, screen);
+  if (!screen.has_moved && screen.dragged_landmark.empty() && !screen.sketch.end) click(work, screen, area);
   if (!screen.dragged_landmark.empty()) work.seal();
   screen.dragged_landmark.clear();
   screen.is_turning = false;
@@ -149,9 +152,10 @@ void use_mouse(Workspace& work, Screen& screen, const Area& area, bool is_hovere
   if (is_hovered && io.MouseWheel != 0.0F)
     work.orbit.zoom(std::pow(0.88, static_cast<double>(io.MouseWheel)));
   if (is_hovered && ImGui::IsMouseClicked(0)) begin_press(work, screen, area);
-  if (is_hovered && ImGui::IsMouseDoubleClicked(0) && screen.hovered_landmark.empty())
+  if (is_hovered && ImGui::IsMouseDoubleClicked(0) && screen.hovered_landmark.empty() && !screen.sketch.end)
     if (const auto hit = skin_under(work, area)) work.orbit.look_at(hit->position, Vec3::Zero(), 0.4);
-  const bool is_pressed = screen.is_turning || !screen.dragged_landmark.empty() || work.held();
+  const bool is_pressed =
+      screen.is_turning || !screen.dragged_landmark.empty() || screen.sketch.is_drawing || work.held();
   if (is_pressed && io.MouseDown[0]) move_press(work, screen, area);
   if (is_pressed && !io.MouseDown[0]) end_press(work, screen, area);
   if (is_hovered && (ImGui::IsMouseClicked(1) || ImGui::IsMouseClicked(2))) screen.is_shifting = true;
@@ -312,6 +316,9 @@ void show_viewport(Workspace& work, Screen& screen, const Area& area) {
     } else {
       screen.hovered_landmark.clear();
     }
+    list->PushClipRect({face.x, face.y}, {face.x + face.width, face.y + face.height}, true);
+    draw_sketches(work, screen, face);
+    list->PopClipRect();
     show_legend(work, area);
     show_muscle_name(work, area);
     show_layer_chips(work, area);

@@ -125,6 +125,10 @@ struct Result {
 /// invalid: a sketch with fewer than three points, off the head, of no extent, or whose curve crosses itself.
 Result build(const Inputs& inputs, const Options& options = {});
 
+/// Throws `Error` beginning with `what` when `sketch`, in metres, is no region on any head: too few points,
+/// no extent, or a curve that crosses itself.
+void check_sketch(const Sketch& sketch, const std::string& what);
+
 /// Sets lengths, area, volume and thickness of `muscle` from its fibres.
 void measure(Muscle& muscle);
 

@@ -63,19 +63,15 @@ std::vector<Vec3> outline(const std::vector<Vec3>& points, const std::vector<Vec
   return region.size() >= 3 ? region : points;
 }
 
-}  // namespace
-
-std::vector<Vec3> sketched_region(const Sketch& sketch, const Place& place, const Inputs& inputs,
-                                  const spatial::SurfaceQuery& smas, const std::string& what) {
+/// The sketch's points without those that lie on one another, and the same in their plane.
+struct SoundPoints {
   std::vector<Vec3> points;
-  for (size_t i = 0; i < sketch.points.size(); ++i) {
-    const Vec3& p = sketch.points[i];
-    if (!p.allFinite())
-      throw Error(what + ": point " + std::to_string(i + 1) + " is not three finite numbers");
-    const double off = distance_to_head(p, inputs, smas);
-    if (off > kOffHead)
-      throw Error(what + ": point " + std::to_string(i + 1) + " lies " + millimetres(off) +
-                  " off the head; place it on the skin, in the axes and units of the head file");
+  std::vector<Vec2> flat;
+};
+
+SoundPoints sound_points(const Sketch& sketch, const std::string& what) {
+  std::vector<Vec3> points;
+  for (const Vec3& p : sketch.points) {
     const bool known =
         std::any_of(points.begin(), points.end(), [&](const Vec3& q) { return (p - q).norm() < 1e-4; });
     if (!known) points.push_back(p);
@@ -87,11 +83,34 @@ std::vector<Vec3> sketched_region(const Sketch& sketch, const Place& place, cons
   if (extent.norm() < 1e-3)
     throw Error(what + ": the region is only " + millimetres(extent.norm()) +
                 " wide; draw one of some millimetres");
-  const std::vector<Vec2> flat = flattened(points);
-  if (sketch.is_curve)
-    check_simple(flat, what);
-  else
-    points = outline(points, flat);
+  std::vector<Vec2> flat = flattened(points);
+  if (sketch.is_curve) check_simple(flat, what);
+  return {std::move(points), std::move(flat)};
+}
+
+}  // namespace
+
+void check_sketch(const Sketch& sketch, const std::string& what) {
+  for (size_t i = 0; i < sketch.points.size(); ++i)
+    if (!sketch.points[i].allFinite())
+      throw Error(what + ": point " + std::to_string(i + 1) + " is not three finite numbers");
+  sound_points(sketch, what);
+}
+
+std::vector<Vec3> sketched_region(const Sketch& sketch, const Place& place, const Inputs& inputs,
+                                  const spatial::SurfaceQuery& smas, const std::string& what) {
+  for (size_t i = 0; i < sketch.points.size(); ++i) {
+    const Vec3& p = sketch.points[i];
+    if (!p.allFinite())
+      throw Error(what + ": point " + std::to_string(i + 1) + " is not three finite numbers");
+    const double off = distance_to_head(p, inputs, smas);
+    if (off > kOffHead)
+      throw Error(what + ": point " + std::to_string(i + 1) + " lies " + millimetres(off) +
+                  " off the head; place it on the skin, in the axes and units of the head file");
+  }
+  SoundPoints sound = sound_points(sketch, what);
+  std::vector<Vec3> points = std::move(sound.points);
+  if (!sketch.is_curve) points = outline(points, sound.flat);
   if (place.bone)
     for (Vec3& p : points)
       p = place.bone->closest(p).position;

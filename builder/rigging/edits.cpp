@@ -43,16 +43,6 @@ const anatomy::Variant* variant_of(const Edits& edits, const anatomy::Muscle& mu
   throw Error(in_file(edits) + muscle.name + ": there is no variant '" + name + "'; there are " + known);
 }
 
-/// The length of one unit of the edits' points in units of the head file.
-double unit_ratio(const Edits& edits, const Mat4& input_to_metres) {
-  if (edits.units.empty()) return 1.0;
-  const double metres = edits.units == "m"    ? 1.0
-                        : edits.units == "cm" ? 0.01
-                        : edits.units == "mm" ? 0.001
-                                              : std::stod(edits.units);
-  return metres / input_to_metres.topLeftCorner<3, 1>().norm();
-}
-
 std::vector<Vec3> in_metres(std::vector<Vec3> points, double ratio, const Mat4& input_to_metres) {
   for (Vec3& p : points)
     p = transform_point(input_to_metres, ratio * p);
@@ -89,6 +79,12 @@ void apply(const Edits& edits, const MuscleEdit& from, const anatomy::Muscle& mu
 
 }  // namespace
 
+double unit_ratio(const std::string& units, const Mat4& input_to_metres) {
+  if (units.empty()) return 1.0;
+  const double metres = units == "m" ? 1.0 : units == "cm" ? 0.01 : units == "mm" ? 0.001 : std::stod(units);
+  return metres / input_to_metres.topLeftCorner<3, 1>().norm();
+}
+
 void set_variant(Edits& edits, const std::string& assignment) {
   const size_t equals = assignment.find('=');
   if (equals == std::string::npos || equals == 0 || equals + 1 == assignment.size())
@@ -114,7 +110,7 @@ muscles::Options muscle_options(const Edits& edits, const anatomy::GenericAnatom
   muscles::Options options;
   options.spacing = edits.fibre_spacing;
   options.least_prevalence = edits.least_prevalence;
-  const double ratio = unit_ratio(edits, input_to_metres);
+  const double ratio = unit_ratio(edits.units, input_to_metres);
   // What is said of a whole comes first, what is said of one part last.
   std::vector<std::pair<std::vector<const anatomy::Muscle*>, const std::pair<const std::string, MuscleEdit>*>>
       order;

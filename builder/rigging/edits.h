@@ -47,6 +47,9 @@ struct Edits {
 /// that is not known, or a value of the wrong kind or out of range.
 Edits read_edits(const std::filesystem::path& path);
 
+/// The length of one unit of points in `units` (of Edits) in units of the head file.
+double unit_ratio(const std::string& units, const Mat4& input_to_metres);
+
 /// Sets the variant of a muscle, as `--variant MUSCLE=VARIANT` gives it.
 void set_variant(Edits& edits, const std::string& assignment);
 

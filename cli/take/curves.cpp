@@ -21,16 +21,22 @@ Curves::Curves(const std::filesystem::path& path, double frames_per_second, doub
   info_.struct_size = sizeof info_;
   check(fascia_curves_get_info(curves, &info_), "'" + path.string() + "'");
   names_.assign(info_.names, info_.names + info_.count);
-  to_ = info_.duration;
+  to_ = length_ = info_.duration;
+}
+
+void Curves::add(Curves layer) {
+  length_ = std::max(length_, layer.length_);
+  to_ = length_;
+  layers_.push_back(std::move(layer));
 }
 
 void Curves::trim(double from, double to) {
-  if (to < 0.0) to = info_.duration;
-  if (!(from >= 0.0 && from <= to && to <= info_.duration + 1e-6))
-    throw Error("the curves last " + std::to_string(info_.duration) +
+  if (to < 0.0) to = length_;
+  if (!(from >= 0.0 && from <= to && to <= length_ + 1e-6))
+    throw Error("the curves last " + std::to_string(length_) +
                 " s: --from and --to must name a piece of that, --from before --to");
   from_ = from;
-  to_ = std::min(to, info_.duration);
+  to_ = std::min(to, length_);
 }
 
 std::vector<std::string> Curves::unmatched(const Face& face) const {
@@ -44,7 +50,12 @@ std::vector<std::string> Curves::unmatched(const Face& face) const {
 }
 
 void Curves::apply(double seconds, const Face& face) const {
-  check(fascia_curves_apply(curves_.get(), std::min(from_ + seconds, to_), 1.0F, face.handle()), "curves");
+  for (const auto& [name, value] : held_)
+    check(fascia_face_set(face.handle(), name.c_str(), static_cast<float>(value)), name);
+  const double now = std::min(from_ + seconds, to_);
+  check(fascia_curves_apply(curves_.get(), now, static_cast<float>(weight_), face.handle()), "curves");
+  for (const Curves& layer : layers_)
+    layer.apply(now, face);
 }
 
 std::array<float, 4> Curves::head(double seconds) const {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/common.h"
@@ -16,6 +17,14 @@ class Curves {
  public:
   /// `frames_per_second` and `time_unit` as in fascia_curves_options; 0 as the file says.
   explicit Curves(const std::filesystem::path& path, double frames_per_second = 0.0, double time_unit = 0.0);
+
+  /// Multiplies what the curves hold, those of layers apart.
+  void scale(double weight) { weight_ = weight; }
+  /// Adds `layer`, from the same beginning, to what these curves hold; the longest of all tells the duration.
+  /// Only these curves turn the head.
+  void add(Curves layer);
+  /// Values by name that hold all the time, under the curves.
+  void hold(std::vector<std::pair<std::string, double>> values) { held_ = std::move(values); }
 
   /// Leaves only the piece from `from` to `to` seconds, counted from the first key; `to` below 0: to the end.
   /// Times count from `from` afterwards. Throws fascia::Error when there is no such piece.
@@ -42,7 +51,10 @@ class Curves {
   };
   std::unique_ptr<fascia_curves, Release> curves_;
   fascia_curves_info info_ = {};
-  double from_ = 0.0, to_ = 0.0;
+  double from_ = 0.0, to_ = 0.0, length_ = 0.0;  ///< seconds; of all layers
+  double weight_ = 1.0;
+  std::vector<Curves> layers_;
+  std::vector<std::pair<std::string, double>> held_;
   std::vector<std::string> names_;
 };
 

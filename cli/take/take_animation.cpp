@@ -67,11 +67,15 @@ std::vector<PrimitiveMotion> shape_of(const MeshMotion& motion, const Face& face
   return shape;
 }
 
-void add_pointers(GltfEdit& edit, const Recording& recording, Animation& animation) {
+void add_pointers(GltfEdit& edit, const Recording& recording, const Face& face, Animation& animation) {
   bool any = false;
+  fascia_channels channels = {};
+  channels.struct_size = sizeof channels;
+  check(fascia_asset_get_channels(face.asset(), &channels), "channels");
   for (Eigen::Index c = 0; c < recording.values.rows(); ++c) {
     const Eigen::MatrixXf row = recording.values.row(c);
-    if ((row.array() == row(0, 0)).all()) continue;
+    const float rest = channels.rest[c];
+    if ((row.array() == row(0, 0)).all() && std::abs(row(0, 0) - rest) < 1e-6F) continue;
     any = true;
     const float tolerance = 1e-4F * (row.maxCoeff() - row.minCoeff());
     const std::vector<size_t> keys = keys_of(row, {&tolerance, 1});
@@ -115,7 +119,7 @@ void add_take(GltfEdit& edit, const std::string& name, const Take& take, const F
     gltf::add_weight_channels(edit, targets, motion.keys.size(), weight, animation.times(motion.keys),
                               animation.json());
   }
-  add_pointers(edit, recording, animation);
+  add_pointers(edit, recording, face, animation);
   for (const NodeMotion& motion : nodes) {
     animation.add(motion.keys, motion.rotations, {{"node", motion.node}, {"path", "rotation"}}, 4);
     if (!motion.translations.empty())

@@ -10,6 +10,7 @@
 #include "app/model/names.h"
 #include "app/model/orbit.h"
 #include "app/model/settings.h"
+#include "app/model/sketch.h"
 #include "builder/rigging/edits.h"
 #include "geometry/error.h"
 
@@ -145,8 +146,12 @@ TEST(CommandLine, IsWhatAShellTakes) {
             "fascia build '/tmp/it'\\''s a head.obj' -o rig.glb");
   EXPECT_EQ(shell_text(pose_command(state.pose, "rig.glb", "out.obj")),
             "fascia pose rig.glb --set jaw_open=0.5 -o out.obj");
-  EXPECT_EQ(shell_text(play_command({"a.csv", 0.5, 2.0, true}, "rig.glb", 30, "o.glb")),
-            "fascia play rig.glb --curves a.csv --fps 30 --from 0.5 --to 2 -o o.glb");
+  EXPECT_EQ(shell_text(play_command({"a.csv", 0.123456, 2.0, true}, {}, "rig.glb", 30, "o.glb")),
+            "fascia play rig.glb --curves a.csv --fps 30 --from 0.123456 --to 2 -o o.glb");
+  TakeChoice layered = {"a.csv", 0.0, -1.0, true, 0.5, false, {{"b.csv", 0.25, false}, {"c.csv", 1.0, true}}};
+  EXPECT_EQ(shell_text(play_command(layered, state.pose, "rig.glb", 30, "o.glb")),
+            "fascia play rig.glb --curves a.csv --weight 0.5 --layer b.csv=0.25 --layer c.csv=0 --set "
+            "jaw_open=0.5 --fps 30 -o o.glb");
 }
 
 TEST(Orbit, ARayThroughAPointsPixelMeetsThePoint) {
@@ -225,6 +230,74 @@ TEST(Layers, AreNamedAsTheToolNamesThem) {
     EXPECT_EQ(names_of(layers_of(names)), names);
   EXPECT_LT(layers_of("skin,fat").skin_opacity, 0.5) << "what lies beneath shows through";
   EXPECT_EQ(layers_of("skin,landmarks").skin_opacity, 1.0);
+}
+
+std::vector<Vec3> ring_stroke(double radius, double from, double to, int count) {
+  std::vector<Vec3> stroke;
+  for (int i = 0; i < count; ++i) {
+    const double angle = from + (to - from) * i / (count - 1);
+    stroke.emplace_back(radius * std::cos(angle), radius * std::sin(angle), 0.1);
+  }
+  return stroke;
+}
+
+TEST(Sketches, AStrokeBecomesAClosedCurveOfEvenSteps) {
+  const double radius = 0.01;
+  const std::vector<Vec3> curve = closed_curve(ring_stroke(radius, 0.0, 2.0 * EIGEN_PI, 50));
+  // Two millimetres a step on a circumference of 62.8.
+  ASSERT_EQ(curve.size(), 32U);
+  for (size_t i = 0; i < curve.size(); ++i) {
+    EXPECT_NEAR((curve[(i + 1) % curve.size()] - curve[i]).norm(), 0.00196, 2e-5) << i;
+    EXPECT_NEAR(curve[i].head<2>().norm(), radius, 5e-5);
+  }
+  EXPECT_EQ(sketch_fault(curve), "");
+  // However long, an edits file stays readable.
+  EXPECT_EQ(closed_curve(ring_stroke(0.1, 0.0, 2.0 * EIGEN_PI, 400)).size(), 64U);
+  EXPECT_EQ(closed_curve({Vec3::Zero()}).size(), 1U);
+}
+
+TEST(Sketches, AHandThatEndsBeyondItsBeginningClosesTheCurve) {
+  // It spirals inwards and crosses its beginning.
+  std::vector<Vec3> stroke = ring_stroke(0.01, 0.0, 2.4 * EIGEN_PI, 80);
+  for (size_t i = 0; i < stroke.size(); ++i)
+    stroke[i].head<2>() *= 1.0 + 0.1 * std::sin(0.08 * static_cast<double>(i));
+  EXPECT_EQ(sketch_fault(closed_curve(stroke)), "");
+}
+
+TEST(Sketches, WhatIsNoRegionIsToldWithTheReason) {
+  std::vector<Vec3> eight;
+  for (int i = 0; i < 60; ++i) {
+    const double t = 2.0 * EIGEN_PI * (i + 0.5) / 60.0;
+    eight.emplace_back(0.02 * std::sin(t), 0.01 * std::sin(2.0 * t), 0.1);
+  }
+  EXPECT_NE(sketch_fault(closed_curve(eight)).find("crosses itself"), std::string::npos);
+  EXPECT_NE(sketch_fault({Vec3::Zero(), Vec3(0.01, 0, 0)}).find("three or more"), std::string::npos);
+  EXPECT_NE(sketch_fault(closed_curve(ring_stroke(0.0003, 0.0, 6.2, 20))).find("wide"), std::string::npos);
+}
+
+TEST(Sketches, StandInTheEditsInTheirAxesAndUnits) {
+  Mat4 to_metres = Mat4::Identity();
+  to_metres.topLeftCorner<3, 3>() *= 0.01;  // a head in centimetres
+  to_metres(1, 3) = 0.5;
+  const std::vector<Vec3> curve = {Vec3(0.02, 0.51, 0.03), Vec3(0.03, 0.51, 0.03), Vec3(0.02, 0.52, 0.03)};
+  for (const auto& [units, unit] :
+       {std::pair<nlohmann::ordered_json, double>(nullptr, 100.0), {"mm", 1000.0}, {0.1, 10.0}}) {
+    DocumentState state;
+    if (!units.is_null()) state.edits["units"] = units;
+    set_muscle_sketch(state, "risorius_left", MuscleEnd::insertion, curve, to_metres);
+    const auto& first = state.edits["muscles"]["risorius_left"]["insertion"]["curve"][0];
+    EXPECT_NEAR(first[0].get<double>(), 0.02 * unit, 1e-9) << units;
+    EXPECT_NEAR(first[1].get<double>(), 0.01 * unit, 1e-9) << units;
+    const std::vector<Vec3> back = muscle_sketch(state, "risorius_left", MuscleEnd::insertion, to_metres);
+    ASSERT_EQ(back.size(), 3U);
+    for (size_t i = 0; i < 3; ++i)
+      EXPECT_LT((back[i] - curve[i]).norm(), 1e-12);
+    EXPECT_TRUE(muscle_sketch(state, "risorius_left", MuscleEnd::origin, to_metres).empty());
+    EXPECT_EQ(count_sketches(state), 1U);
+    set_muscle_sketch(state, "risorius_left", MuscleEnd::insertion, {}, to_metres);
+    EXPECT_EQ(count_sketches(state), 0U);
+    EXPECT_FALSE(state.edits.contains("muscles"));
+  }
 }
 
 }  // namespace

@@ -112,7 +112,7 @@ TEST_F(Window, ATourThroughTheApplication) {
   EXPECT_GT(difference(neutral, picture("light.png")), 40.0);
 
   // As they were when somebody looked at them.
-  for (const char* name : {"start", "neutral", "posed", "landmark", "muscle", "pulled", "light"}) {
+  for (const char* name : {"start", "neutral", "posed", "landmark", "muscle", "sketch", "pulled", "light"}) {
     const fs::path kept = test::snapshots() / "app" / (std::string(name) + ".png");
     const view::Image now = picture(std::string(name) + ".png");
     if (std::getenv("FASCIA_RENEW_SNAPSHOTS")) {

@@ -392,5 +392,127 @@ TEST_F(WorkspaceTest, ComparesTwoHeadsInOnePose) {
   EXPECT_FALSE(work_->notices.empty());
 }
 
+/// A circle on the skin about the vertex that is nearest to a point, metres at rest.
+std::vector<Vec3> circle_on_skin(const Workspace& work, const Vec3& about, double radius) {
+  const SkinHit middle = nearest_skin(*work.rig->asset, *work.frame, about);
+  std::vector<Vec3> stroke;
+  for (int i = 0; i <= 40; ++i) {
+    const double angle = 2.0 * EIGEN_PI * i / 40.0;
+    stroke.push_back(middle.position + radius * Vec3(std::cos(angle), std::sin(angle), 0.0));
+  }
+  return stroke;
+}
+
+TEST_F(WorkspaceTest, ARegionDrawnOnTheSkinIsOneStepOfTheEdits) {
+  open();
+  run(2);
+  work_->settings.is_symmetric = true;
+  const std::vector<Vec3> stroke = circle_on_skin(*work_, Vec3(0.03, 0.0, 0.2), 0.006);
+  EXPECT_EQ(work_->sketch_region("zygomaticus_major_left", MuscleEnd::insertion, stroke), "");
+  EXPECT_EQ(count_sketches(work_->state()), 2U);
+  EXPECT_TRUE(work_->has_unbuilt_edits());
+  const std::vector<SkinHit> drawn = work_->sketch_now("zygomaticus_major_left", MuscleEnd::insertion);
+  EXPECT_GE(drawn.size(), 8U);
+  EXPECT_EQ(work_->sketch_now("zygomaticus_major_right", MuscleEnd::insertion).size(), drawn.size());
+  // On the other side of the face.
+  EXPECT_LT(drawn.front().rest[0] *
+                work_->sketch_now("zygomaticus_major_right", MuscleEnd::insertion).front().rest[0],
+            0.0);
+  ASSERT_TRUE(work_->save_edits(folder_ / "edits.json"));
+  EXPECT_EQ(read_edits_file(folder_ / "edits.json"), work_->state().edits);
+
+  work_->undo();
+  EXPECT_EQ(count_sketches(work_->state()), 0U);
+  work_->redo();
+  EXPECT_EQ(count_sketches(work_->state()), 2U);
+  work_->settings.is_symmetric = false;
+  work_->clear_sketch("zygomaticus_major_left", MuscleEnd::insertion);
+  EXPECT_EQ(count_sketches(work_->state()), 1U);
+}
+
+TEST_F(WorkspaceTest, WhatIsNoRegionChangesNothingAndIsTold) {
+  open();
+  run(2);
+  const std::string fault = work_->sketch_region("zygomaticus_major_left", MuscleEnd::origin, {});
+  EXPECT_NE(fault.find("beside the skin"), std::string::npos);
+  EXPECT_EQ(count_sketches(work_->state()), 0U);
+  ASSERT_FALSE(work_->notices.empty());
+  EXPECT_NE(work_->notices.back().text.find("origin of Zygomaticus major, left"), std::string::npos);
+}
+
+/// The value of a channel after the face has taken up what the timeline holds now.
+double channel_now(Workspace& work, const std::string& name) {
+  work.update(1.0 / 60.0);
+  return static_cast<double>(work.frame->values[static_cast<size_t>(work.rig->asset->channel(name))]);
+}
+
+TEST_F(WorkspaceTest, LayersAddUpByTheirWeightsUnlessTheyAreMuted) {
+  open();
+  std::ofstream(folder_ / "one.csv") << "time,jaw_open\n0,0.5\n1,0.5\n";
+  std::ofstream(folder_ / "two.csv") << "time,jaw_open\n0,0.25\n2,0.25\n";
+  work_->load_take(folder_ / "one.csv");
+  work_->wait_for_files();
+  work_->load_layer(folder_ / "two.csv");
+  work_->wait_for_files();
+  ASSERT_EQ(work_->state().take.layers.size(), 1U);
+  work_->playback.is_playing = false;
+  work_->playback.time = 0.5;
+  EXPECT_EQ(work_->timeline_length(), 2.0);
+  EXPECT_NEAR(channel_now(*work_, "jaw_open"), 0.75, 1e-6);
+  work_->weigh_layer(0, 0.5);
+  EXPECT_NEAR(channel_now(*work_, "jaw_open"), 0.625, 1e-6);
+  work_->mute_layer(-1, true);
+  EXPECT_NEAR(channel_now(*work_, "jaw_open"), 0.125, 1e-6);
+  work_->mute_layer(0, true);
+  EXPECT_NEAR(channel_now(*work_, "jaw_open"), 0.0, 1e-6);
+  for (int i = 0; i < 3; ++i)
+    work_->undo();
+  EXPECT_NEAR(channel_now(*work_, "jaw_open"), 0.75, 1e-6);
+  // A crash loses none of it.
+  EXPECT_EQ(state_from_text(to_text(work_->state()), "x"), work_->state());
+  work_->remove_layer(-1);
+  EXPECT_NEAR(channel_now(*work_, "jaw_open"), 0.25, 1e-6);
+  EXPECT_TRUE(work_->state().take.layers.empty());
+  work_->undo();
+  work_->wait_for_files();
+  EXPECT_NEAR(channel_now(*work_, "jaw_open"), 0.75, 1e-6);
+  work_->remove_layer(0);
+  work_->remove_layer(-1);
+  EXPECT_FALSE(work_->take);
+}
+
+TEST_F(WorkspaceTest, SlidersMovedOverATakeBecomeALayerThatLooksTheSame) {
+  open();
+  std::ofstream(folder_ / "one.csv") << "time,jaw_open\n0,0.25\n1,0.25\n";
+  work_->load_take(folder_ / "one.csv");
+  work_->wait_for_files();
+  DocumentState next = work_->state();
+  next.take.begin = 0.5;
+  work_->commit(next, "trim");
+  work_->start_recording();
+  std::vector<double> seen;
+  for (int i = 0; i < 200 && work_->playback.is_recording; ++i) {
+    work_->set_value("jaw_open", 0.5 * work_->playback.time, true);
+    seen.push_back(0.25 + 0.5 * work_->playback.time);
+    work_->update(1.0 / 60.0);
+  }
+  EXPECT_FALSE(work_->playback.is_recording) << "it ends with the recording";
+  EXPECT_LT(seen.size(), 40U) << "half a second";
+  work_->wait_for_files();
+  ASSERT_EQ(work_->state().take.layers.size(), 1U);
+  EXPECT_TRUE(work_->state().pose.empty());
+  work_->playback.is_playing = false;
+  for (const double time : {0.6, 0.75, 0.9}) {
+    work_->playback.time = time;
+    EXPECT_NEAR(channel_now(*work_, "jaw_open"), 0.25 + 0.5 * time, 0.02) << time;
+  }
+  // What is set while it plays is in the command.
+  work_->set_value("jaw_open", 0.125, false);
+  const std::string command = work_->present_command().text;
+  EXPECT_NE(command.find("--layer "), std::string::npos) << command;
+  EXPECT_NE(command.find("--set jaw_open=0.125"), std::string::npos) << command;
+  EXPECT_NE(command.find("--from 0.5"), std::string::npos) << command;
+}
+
 }  // namespace
 }  // namespace fascia::app

@@ -227,5 +227,44 @@ TEST_F(Play, AnInterruptedRunLeavesNoFile) {
   }
 }
 
+/// Layers, weights and values that hold are sums: the same as one table of the sums, to the last bit.
+TEST_F(Play, LayersWeightsAndHeldValuesAddUp) {
+  std::ofstream(at("second.csv")) << "time,jawOpen,mouthSmileLeft\n0,0.25,0\n1,0.25,0.5\n2,0.25,0.5\n";
+  const json sum =
+      play("time,jawOpen,mouthSmileLeft\n0,0.125,0.25\n0.5,0.375,0.375\n1,0.125,0.5\n2,0.125,0.5\n",
+           "--fps 8 --from 0.25", "sum.pc2");
+  const std::string layers = " --layer " + at("second.csv") + "=0.5";
+  const json added =
+      play("time,jawOpen\n0,0\n0.5,1\n1,0\n",
+           "--fps 8 --from 0.25 --weight 0.25 --set arkit:mouthSmileLeft=0.25" + layers, "added.pc2");
+  ASSERT_EQ(added["files"].size(), sum["files"].size());
+  EXPECT_EQ(added["frames"], 15) << "the longest layer tells";
+  for (size_t i = 0; i < sum["files"].size(); ++i)
+    EXPECT_TRUE(text_of(added["files"][i].get<std::string>()) == text_of(sum["files"][i].get<std::string>()))
+        << i;
+  EXPECT_NE(added["matched"].dump().find("mouthSmileLeft"), std::string::npos);
+
+  // What holds is in the animation of the channels too, which play it in a host.
+  play("time,jawOpen\n0,0\n0.5,1\n", "--fps 8 --set zygomaticus_minor_left=0.5", "held.glb");
+  play("time,jawOpen\n0,0\n0.5,1\n", "--fps 8", "free.glb");
+  const auto pointers = [](const std::string& name) {
+    size_t count = 0;
+    for (const json& channel : gltf(name)["animations"][0]["channels"])
+      if (channel["target"]["path"] == "pointer") ++count;
+    return count;
+  };
+  EXPECT_EQ(pointers("held.glb"), pointers("free.glb") + 1);
+
+  for (const char* wrong : {"--layer nothing.csv", "--set nothing=1", "--weight 11"}) {
+    const Outcome outcome = run("play " + at("rig.glb") + curves("time,jawOpen\n0,0\n1,1\n") + " " + wrong +
+                                " -o " + at("out.glb"));
+    EXPECT_EQ(outcome.code, std::string(wrong) == "--weight 11" ? 2 : 1) << outcome.err;
+  }
+  EXPECT_NE(run("play " + at("rig.glb") + curves("time,jawOpen\n0,0\n1,1\n") + " --layer " +
+                at("second.csv") + "=20 -o " + at("out.glb"))
+                .err.find("0 to 10"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace fascia::cli
