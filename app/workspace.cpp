@@ -238,7 +238,7 @@ void Workspace::follow_landmarks() {
         rig->rig, [asset = rig->asset] { return head_meshes(*asset); },
         waits() ? LiveSkull::Pace::at_once : LiveSkull::Pace::background);
   if (!live_skull_) return;
-  std::map<std::string, Vec3> moved;
+  Landmarks moved;
   if (has_unbuilt_edits())
     for (const std::string& name : edited_landmarks(state()))
       if (const auto place = landmark(name)) moved[name] = *place;

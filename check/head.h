@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/landmarks.h"
 #include "geometry/mesh.h"
 
 namespace fascia::check {
@@ -29,7 +30,7 @@ struct Eye {
 /// A head at rest: its meshes and what is known of it. Metres, +Y up, facing +Z, +X to the subject's left.
 struct Head {
   std::vector<Part> parts;
-  std::map<std::string, Vec3> landmarks;   ///< on the skin, by full name
+  Landmarks landmarks;                     ///< on the skin, by full name
   std::array<std::optional<Eye>, 2> eyes;  ///< left, right
 };
 

@@ -6,8 +6,7 @@
 
 namespace fascia::check {
 
-TrackedLandmarks::TrackedLandmarks(const Skin& skin, const std::map<std::string, Vec3>& landmarks)
-    : skin_(skin) {
+TrackedLandmarks::TrackedLandmarks(const Skin& skin, const Landmarks& landmarks) : skin_(skin) {
   if (skin.rest().triangles.empty()) return;
   const spatial::SurfaceQuery query(skin.rest());
   for (const auto& [name, p] : landmarks) {

@@ -5,13 +5,14 @@
 #include <vector>
 
 #include "check/skin.h"
+#include "geometry/landmarks.h"
 
 namespace fascia::check {
 
 /// The landmarks as places on the skin that go with it.
 class TrackedLandmarks {
  public:
-  TrackedLandmarks(const Skin& skin, const std::map<std::string, Vec3>& landmarks);
+  TrackedLandmarks(const Skin& skin, const Landmarks& landmarks);
 
   /// How far the landmark has moved, metres; zero when the head has none of that name.
   Vec3 moved(const std::string& name, const std::vector<Vec3>& skin) const;

@@ -10,7 +10,7 @@ namespace fascia::check {
 namespace {
 
 /// The landmarks of both sides and evenly chosen vertices about them.
-std::vector<Vec3> places_of(const TriangleMesh& skin, const std::map<std::string, Vec3>& landmarks) {
+std::vector<Vec3> places_of(const TriangleMesh& skin, const Landmarks& landmarks) {
   std::vector<Vec3> places;
   for (const auto& [name, p] : landmarks)
     if (name.ends_with("_left") || name.ends_with("_right")) places.push_back(p);
@@ -26,7 +26,7 @@ std::vector<Vec3> places_of(const TriangleMesh& skin, const std::map<std::string
 }
 
 /// The plane between the landmarks of both sides.
-spatial::MirrorPlane between(const std::map<std::string, Vec3>& landmarks) {
+spatial::MirrorPlane between(const Landmarks& landmarks) {
   std::vector<std::pair<Vec3, Vec3>> pairs;
   for (const auto& [name, p] : landmarks) {
     if (!name.ends_with("_left")) continue;
@@ -82,7 +82,7 @@ class SidedSkin {
 
 }  // namespace
 
-MirrorPoints::MirrorPoints(const Skin& skin, const std::map<std::string, Vec3>& landmarks, double size,
+MirrorPoints::MirrorPoints(const Skin& skin, const Landmarks& landmarks, double size,
                            const std::vector<uint8_t>& sides)
     : skin_(skin) {
   const SidedSkin sided(skin.rest(), sides);

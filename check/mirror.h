@@ -7,6 +7,7 @@
 
 #include "builder/spatial/mirror_plane.h"
 #include "check/skin.h"
+#include "geometry/landmarks.h"
 
 namespace fascia::check {
 
@@ -21,7 +22,7 @@ class MirrorPoints {
  public:
   /// `size` is the face's against an adult's; `sides` has the Seam::Side of each vertex of the skin, or is
   /// empty.
-  MirrorPoints(const Skin& skin, const std::map<std::string, Vec3>& landmarks, double size,
+  MirrorPoints(const Skin& skin, const Landmarks& landmarks, double size,
                const std::vector<uint8_t>& sides = {});
 
   /// The difference between how far a place has moved and how far its image has, mirrored, that one place in

@@ -2,7 +2,7 @@
 
 namespace fascia::check {
 
-AdultSizes distances(const std::map<std::string, Vec3>& landmarks) {
+AdultSizes distances(const Landmarks& landmarks) {
   AdultSizes out;
   const auto find = [&](const char* name) {
     const auto at = landmarks.find(name);
@@ -35,7 +35,7 @@ AdultSizes distances(const std::map<std::string, Vec3>& landmarks) {
   return out;
 }
 
-Sizes sizes(const std::map<std::string, Vec3>& landmarks, const AdultSizes& adult) {
+Sizes sizes(const Landmarks& landmarks, const AdultSizes& adult) {
   const AdultSizes here = distances(landmarks);
   Sizes out;
   if (here.face > 0.0 && adult.face > 0.0) out.face = here.face / adult.face;

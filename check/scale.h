@@ -5,6 +5,7 @@
 #include <string>
 
 #include "check/head.h"
+#include "geometry/landmarks.h"
 
 namespace fascia::check {
 
@@ -24,10 +25,10 @@ struct AdultSizes {
 };
 
 /// The same distances of the face with these landmarks; 0 where landmarks are missing.
-AdultSizes distances(const std::map<std::string, Vec3>& landmarks);
+AdultSizes distances(const Landmarks& landmarks);
 
 /// Sizes of the face against an adult's; 1 where landmarks are missing.
-Sizes sizes(const std::map<std::string, Vec3>& landmarks, const AdultSizes& adult);
+Sizes sizes(const Landmarks& landmarks, const AdultSizes& adult);
 
 /// The eye of one side as the measures use it: the rig's own, or, where that has none or one that cannot lie
 /// behind these lids, a globe where an adult's would be. Nothing without canthi.

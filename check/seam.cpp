@@ -138,7 +138,7 @@ bool find_edges(const spatial::SurfaceQuery& query, const TriangleMesh& mesh,
   return true;
 }
 
-Seam mouth_seam(const Skin& skin, const std::map<std::string, Vec3>& landmarks, double size) {
+Seam mouth_seam(const Skin& skin, const Landmarks& landmarks, double size) {
   Seam seam;
   for (const char* name : {"labiale_superius", "labiale_inferius", "cheilion_left", "cheilion_right"})
     if (!landmarks.count(name)) return seam;
@@ -181,8 +181,7 @@ Seam mouth_seam(const Skin& skin, const std::map<std::string, Vec3>& landmarks, 
 
 namespace {
 
-Seam lid_seam(const Skin& skin, const std::map<std::string, Vec3>& landmarks, const Eye& eye, bool left,
-              bool with_still) {
+Seam lid_seam(const Skin& skin, const Landmarks& landmarks, const Eye& eye, bool left, bool with_still) {
   Seam seam;
   const std::string side = left ? "_left" : "_right";
   for (const char* name : {"palpebrale_superius", "palpebrale_inferius", "exocanthion", "endocanthion"})
@@ -268,7 +267,7 @@ bool are_shut(const Skin& skin, const Seam& seam, double width) {
 
 }  // namespace
 
-Seam lid_seam(const Skin& skin, const std::map<std::string, Vec3>& landmarks, const Eye& eye, bool left) {
+Seam lid_seam(const Skin& skin, const Landmarks& landmarks, const Eye& eye, bool left) {
   const std::string side = left ? "_left" : "_right";
   const auto outer = landmarks.find("exocanthion" + side), inner = landmarks.find("endocanthion" + side);
   if (outer == landmarks.end() || inner == landmarks.end()) return {};

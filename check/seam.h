@@ -5,6 +5,7 @@
 
 #include "builder/spatial/surface_query.h"
 #include "check/skin.h"
+#include "geometry/landmarks.h"
 
 namespace fascia::check {
 
@@ -41,11 +42,11 @@ bool find_edges(const spatial::SurfaceQuery& query, const TriangleMesh& mesh,
 
 /// The seam of the lips: seen from the front, 39 stations between the cheilia. `size` is the face's size
 /// against an adult's.
-Seam mouth_seam(const Skin& skin, const std::map<std::string, Vec3>& landmarks, double size);
+Seam mouth_seam(const Skin& skin, const Landmarks& landmarks, double size);
 
 /// The seam of an eye's lids, seen from outside toward the eye's centre; nine stations between the canthi. An
 /// eye that is one surface with its lids and that nothing moves is no lid; lids that are shut are, though
 /// nothing moves them.
-Seam lid_seam(const Skin& skin, const std::map<std::string, Vec3>& landmarks, const Eye& eye, bool left);
+Seam lid_seam(const Skin& skin, const Landmarks& landmarks, const Eye& eye, bool left);
 
 }  // namespace fascia::check

@@ -55,13 +55,12 @@ TriangleMesh skull_of(const formats::Scene& scene) {
 }
 
 /// The given landmarks in the coordinates of the scene's meshes.
-std::map<std::string, Vec3> bone_landmarks(const FaceRequest& request, const formats::Scene& scene,
-                                           double metres) {
+Landmarks bone_landmarks(const FaceRequest& request, const formats::Scene& scene, double metres) {
   if (request.landmarks.empty()) return {};
   const formats::LandmarkFile file =
       formats::read_landmarks(request.landmarks, formats::LandmarkSurface::bone);
   const double scale = file.units.empty() ? 1.0 : unit_of(file.units) / metres;
-  std::map<std::string, Vec3> points;
+  Landmarks points;
   for (const auto& [name, point] : file.points)
     points[name] = scale * point - scene.offset;
   return points;

@@ -17,8 +17,6 @@ namespace fascia::cli {
 
 namespace {
 
-using Points = NamedPoints;
-
 /// Where our landmarks lie on the rig's skin.
 class SkinLandmarks {
  public:
@@ -69,19 +67,19 @@ class LandmarkTargetMaker {
         to_metres_(subject.file().rig.input_to_metres.cast<double>()) {}
 
   /// The file's points in metres, those only that the rig's skin has.
-  Points in_metres(const Points& file, const std::string& units) const {
+  Landmarks in_metres(const Landmarks& file, const std::string& units) const {
     double scale = 1.0;  // from the file's units to the head file's
     const double head_unit = to_metres_.topLeftCorner<3, 1>().norm();
     for (const auto& [name, value] : {std::pair{"m", 1.0}, {"cm", 0.01}, {"mm", 0.001}})
       if (units == name) scale = value / head_unit;
-    Points out;
+    Landmarks out;
     for (const auto& [name, p] : file)
       if (places_.find(name)) out[name] = transform_point(to_metres_, scale * p - offset_);
     return out;
   }
 
   /// `points` against the face at rest: `neutral` where it is given, else the rig's own landmarks.
-  fit::Target target(Points points, const Points& neutral) const {
+  fit::Target target(Landmarks points, const Landmarks& neutral) const {
     if (takes_out_head_) take_out_head(points, neutral);
     fit::Target out{Eigen::VectorXd::Zero(subject_->rest().size()),
                     std::vector<double>(subject_->vertex_count(), 0.0),
@@ -105,7 +103,7 @@ class LandmarkTargetMaker {
   }
 
  private:
-  void take_out_head(Points& points, const Points& neutral) const {
+  void take_out_head(Landmarks& points, const Landmarks& neutral) const {
     std::vector<Vec3> from, to;
     for (const auto& [name, p] : points) {
       const SkinLandmarks::Place& place = *places_.find(name);
@@ -138,7 +136,7 @@ FitTargets landmark_targets(const Common& common, const std::filesystem::path& p
   if (file->is_flat)
     throw Error("'" + path.string() +
                 "': its points have two numbers, as those of a picture: say by --camera what took it");
-  const auto rest = std::make_shared<Points>();
+  const auto rest = std::make_shared<Landmarks>();
   if (!neutral.empty()) {
     const LandmarkFrames at_rest = read_landmark_frames(neutral);
     *rest = maker->in_metres(at_rest.frames.front().points, at_rest.units);

@@ -51,7 +51,7 @@ struct SeenPoints {
   std::vector<Vec3> points;
   std::vector<double> weights;
 
-  SeenPoints(const SeenLandmarks& landmarks, const NamedPoints& named) {
+  SeenPoints(const SeenLandmarks& landmarks, const Landmarks& named) {
     for (const std::string& name : landmarks.names) {
       const auto at = named.find(name);
       points.push_back(at == named.end() ? Vec3(Vec3::Zero()) : at->second);

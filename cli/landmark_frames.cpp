@@ -76,15 +76,15 @@ class Reader {
     return p;
   }
 
-  NamedPoints by_name(const PlainJson& list, const std::string& where) {
-    NamedPoints points;
+  Landmarks by_name(const PlainJson& list, const std::string& where) {
+    Landmarks points;
     for (const auto& [name, value] : list.items())
       points[name] = point(value, "landmark '" + name + "' of " + where);
     return points;
   }
 
   /// The landmarks that a detector's points show; one whose points it has not all seen (null) is left out.
-  NamedPoints by_number(const PlainJson& list, const std::string& where) {
+  Landmarks by_number(const PlainJson& list, const std::string& where) {
     static const auto sets = fit::landmark_sets();
     const auto set = std::find_if(sets.begin(), sets.end(), [&](const fit::LandmarkSet& known) {
       return list.is_array() && known.points == list.size();
@@ -93,7 +93,7 @@ class Reader {
       fail(where +
            " are not the 68 points of iBUG or the 478 of MediaPipe; give others by our names under "
            "'landmarks'");
-    NamedPoints points;
+    Landmarks points;
     for (const fit::LandmarkSet::Entry& entry : set->entries) {
       if (std::any_of(entry.points.begin(), entry.points.end(),
                       [&](uint32_t p) { return list[p].is_null(); }))

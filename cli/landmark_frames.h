@@ -5,16 +5,14 @@
 #include <string>
 #include <vector>
 
+#include "geometry/landmarks.h"
 #include "geometry/mesh.h"
 
 namespace fascia::cli {
 
-/// Landmarks of the rig by name, as a file has them.
-using NamedPoints = std::map<std::string, Vec3>;
-
 struct LandmarkFrame {
   double time = 0.0;  ///< seconds
-  NamedPoints points;
+  Landmarks points;
 };
 
 /// Frames of a file of landmarks; one for a file of one face.

@@ -4,6 +4,7 @@
 #include <map>
 #include <string>
 
+#include "geometry/landmarks.h"
 #include "geometry/mesh.h"
 
 namespace fascia::formats {
@@ -11,7 +12,7 @@ namespace fascia::formats {
 /// Landmarks as a file gives them: points on the skin, or on the bone, in the head file's axes.
 struct LandmarkFile {
   std::string units;  ///< "m", "cm", "mm", metres per unit, or empty if the file does not say
-  std::map<std::string, Vec3> points;
+  Landmarks points;
 };
 
 enum class LandmarkSurface { skin, bone };

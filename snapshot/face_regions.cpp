@@ -5,6 +5,7 @@
 #include <map>
 
 #include "geometry/error.h"
+#include "geometry/landmarks.h"
 #include "geometry/mesh.h"
 
 namespace fascia::snapshot {
@@ -97,7 +98,7 @@ void add(std::vector<Region>& regions, const std::string& name, const std::vecto
 
 /// Every region's name and its landmarks' places, those that the rig has.
 std::vector<std::pair<std::string, Points>> places(const std::vector<rig::Landmark>& landmarks) {
-  std::map<std::string, Vec3> known;
+  Landmarks known;
   for (const rig::Landmark& landmark : landmarks)
     known[landmark.name] = landmark.skin.cast<double>();
   std::vector<std::pair<std::string, Points>> list;

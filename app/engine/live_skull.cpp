@@ -87,7 +87,7 @@ class LiveSkull::Fit {
   }
 
   /// Moves what is not where it is wanted. Throws as the fitter does.
-  SkullShift shift_for(const std::map<std::string, Vec3>& moved) {
+  SkullShift shift_for(const Landmarks& moved) {
     for (auto& [name, place] : now_) {
       const auto wanted = moved.find(name);
       const Vec3& to = wanted == moved.end() ? built_.at(name) : wanted->second;
@@ -110,7 +110,7 @@ class LiveSkull::Fit {
   }
 
   std::optional<skull::Fitter> fitter_;
-  std::map<std::string, Vec3> built_, now_;
+  Landmarks built_, now_;
   std::vector<std::vector<Vec3>> first_;
   std::vector<std::vector<size_t>> partners_;
 };
@@ -129,7 +129,7 @@ LiveSkull::~LiveSkull() {
   if (thread_.joinable()) thread_.join();
 }
 
-void LiveSkull::submit(const std::map<std::string, Vec3>& moved) {
+void LiveSkull::submit(const Landmarks& moved) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (moved == wanted_) return;
@@ -145,7 +145,7 @@ std::shared_ptr<const SkullShift> LiveSkull::shift() const {
   return shift_;
 }
 
-void LiveSkull::follow(const std::map<std::string, Vec3>& moved) {
+void LiveSkull::follow(const Landmarks& moved) {
   std::shared_ptr<const SkullShift> shift;
   try {
     if (!fit_) fit_ = std::make_unique<Fit>(*rig_, head_());
@@ -160,7 +160,7 @@ void LiveSkull::follow(const std::map<std::string, Vec3>& moved) {
 void LiveSkull::run() {
   follow({});
   for (;;) {
-    std::map<std::string, Vec3> moved;
+    Landmarks moved;
     {
       std::unique_lock<std::mutex> lock(mutex_);
       wake_.wait(lock, [this] { return has_news_ || ends_; });

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "app/engine/face_session.h"
+#include "geometry/landmarks.h"
 #include "rig/model/rig.h"
 
 namespace fascia::app {
@@ -40,7 +41,7 @@ class LiveSkull {
 
   /// Where landmarks stand that are not where the rig has them, metres at rest; the others stand as it has
   /// them.
-  void submit(const std::map<std::string, Vec3>& moved);
+  void submit(const Landmarks& moved);
 
   /// The newest shift; null while nothing is moved, and where no skull can be fitted.
   std::shared_ptr<const SkullShift> shift() const;
@@ -48,7 +49,7 @@ class LiveSkull {
  private:
   class Fit;
   void run();
-  void follow(const std::map<std::string, Vec3>& moved);
+  void follow(const Landmarks& moved);
 
   std::shared_ptr<const rig::Rig> rig_;
   std::function<HeadMeshes()> head_;
@@ -56,7 +57,7 @@ class LiveSkull {
   std::unique_ptr<Fit> fit_;  // of the thread, where there is one
   mutable std::mutex mutex_;
   std::condition_variable wake_;
-  std::map<std::string, Vec3> wanted_;
+  Landmarks wanted_;
   bool has_news_ = false, ends_ = false;
   std::shared_ptr<const SkullShift> shift_;
   std::thread thread_;

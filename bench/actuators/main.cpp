@@ -65,9 +65,9 @@ std::unique_ptr<BuiltRig> build(const std::string& person, const fs::path& keep)
 }
 
 /// Where the rig's skin landmarks go with the pose: the motion of the skin vertex nearest to each at rest.
-struct Landmarks {
+struct LandmarkIndices {
   std::map<std::string, std::pair<size_t, size_t>> vertex;  // mesh, vertex
-  Landmarks(const cli::Face& face, const rig::Rig& rig) {
+  LandmarkIndices(const cli::Face& face, const rig::Rig& rig) {
     for (const rig::Landmark& landmark : rig.skull.landmarks) {
       float best = 1e9F;
       for (size_t m = 0; m < face.meshes().size(); ++m) {
@@ -116,7 +116,7 @@ view::Camera camera_for(const rig::Rig& rig, const std::string& landmark, double
 int run(const std::string& person, const Request& request) {
   const std::unique_ptr<BuiltRig> built = build(person, request.keep);
   cli::Face face(built->path, {FASCIA_SPACE_METRES, "own", request.level});
-  const Landmarks landmarks(face, built->rig);
+  const LandmarkIndices landmarks(face, built->rig);
   std::printf("%s\n%-46s %5s  %-32s %21s %7s  %s\n", person.c_str(), "actuator", "value", "landmark",
               "lateral/up/fwd mm", "travel", "expected");
   std::vector<view::Tile> tiles;

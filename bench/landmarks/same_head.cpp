@@ -15,9 +15,9 @@ namespace {
 using rigging::FoundLandmarks;
 
 /// Places in file coordinates.
-std::map<std::string, Vec3> places_of(const FoundLandmarks& found) {
+Landmarks places_of(const FoundLandmarks& found) {
   const Mat4 to_file = found.head.input_to_metres.inverse();
-  std::map<std::string, Vec3> places;
+  Landmarks places;
   for (const auto& [name, landmark] : found.landmarks)
     places[name] = transform_point(to_file, landmark.position);
   return places;
@@ -27,10 +27,10 @@ struct Report {
   std::string file;
   double millimetres;  ///< of a file unit
 
-  void print(const char* change, const std::map<std::string, Vec3>& expected,
+  void print(const char* change, const Landmarks& expected,
              const std::function<FoundLandmarks()>& find) const {
     try {
-      const std::map<std::string, Vec3> places = places_of(find());
+      const Landmarks places = places_of(find());
       double sum = 0.0, most = 0.0, count = 0.0;
       std::string worst;
       for (const auto& [name, p] : expected) {
@@ -52,7 +52,7 @@ struct Report {
 };
 
 /// `count` of `places`, those that matter most first.
-formats::LandmarkFile some_of(const std::map<std::string, Vec3>& places, size_t count) {
+formats::LandmarkFile some_of(const Landmarks& places, size_t count) {
   formats::LandmarkFile given;
   given.units = prepare::head_units;
   for (const char* name : {"exocanthion_left",   "exocanthion_right",
@@ -76,13 +76,12 @@ formats::LandmarkFile some_of(const std::map<std::string, Vec3>& places, size_t 
 void measure_same_head(const std::string& path, const anatomy::GenericAnatomy& anatomy) {
   const formats::Scene scene = formats::read(path);
   const FoundLandmarks first = rigging::find_landmarks(scene, {}, anatomy);
-  const std::map<std::string, Vec3> places = places_of(first);
+  const Landmarks places = places_of(first);
   const double scale = first.head.input_to_metres.topLeftCorner<3, 1>().norm();
   testing::MadeHead made{path, scene, places, 1e3 * scale};
   made.scene.kind = formats::FileKind::obj;  // the shapes in a glTF's own bytes belong to its own vertices
   const Report report{std::filesystem::path(path).filename(), 1e3 * scale};
-  const auto plain = [&](const char* change, const formats::Scene& changed,
-                         const std::map<std::string, Vec3>& expected) {
+  const auto plain = [&](const char* change, const formats::Scene& changed, const Landmarks& expected) {
     report.print(change, expected, [&] { return rigging::find_landmarks(changed, {}, anatomy); });
   };
   for (int pose = 1; pose <= 3; ++pose) {

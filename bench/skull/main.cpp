@@ -57,7 +57,7 @@ struct Bench {
     return out;
   }
   Targets completed(const Targets& from) const {
-    std::map<std::string, Vec3> points;
+    Landmarks points;
     for (const auto& [name, landmark] : from)
       points[name] = landmark.skin;
     return testing::complete_targets(head.skin, points, anatomy);

@@ -11,8 +11,7 @@ namespace fascia::landmarks {
 
 namespace {
 
-[[noreturn]] void fail_for_lack(const std::map<std::string, Vec3>& given,
-                                const anatomy::GenericAnatomy& anatomy) {
+[[noreturn]] void fail_for_lack(const Landmarks& given, const anatomy::GenericAnatomy& anatomy) {
   std::string missing;
   for (const anatomy::Landmark& landmark : anatomy.landmarks)
     if (landmark.required && !given.count(landmark.name))
@@ -36,8 +35,7 @@ std::optional<spatial::ClosestPoint> facing_point(const spatial::SurfaceQuery& s
   return std::nullopt;
 }
 
-std::map<std::string, SkinLandmark> complete(const std::map<std::string, Vec3>& given,
-                                             const anatomy::GenericAnatomy& anatomy,
+std::map<std::string, SkinLandmark> complete(const Landmarks& given, const anatomy::GenericAnatomy& anatomy,
                                              const spatial::SurfaceQuery& skin,
                                              std::vector<std::string>* unknown) {
   std::map<std::string, SkinLandmark> all;

@@ -7,6 +7,7 @@
 #include "anatomy/anatomy.h"
 #include "builder/landmarks/skin_landmark.h"
 #include "builder/spatial/surface_query.h"
+#include "geometry/landmarks.h"
 #include "geometry/mesh.h"
 
 namespace fascia::landmarks {
@@ -18,8 +19,7 @@ namespace fascia::landmarks {
 /// distance from the given ones and with the distance of its projection. Given names unknown to the anatomy
 /// are ignored and listed in `unknown` if not null. Throws fascia::Error naming the landmarks when required
 /// ones are missing and cannot be mapped: fewer than four known ones are given, or they are coplanar.
-std::map<std::string, SkinLandmark> complete(const std::map<std::string, Vec3>& given,
-                                             const anatomy::GenericAnatomy& anatomy,
+std::map<std::string, SkinLandmark> complete(const Landmarks& given, const anatomy::GenericAnatomy& anatomy,
                                              const spatial::SurfaceQuery& skin,
                                              std::vector<std::string>* unknown = nullptr);
 

@@ -172,8 +172,8 @@ std::vector<std::pair<std::string, Vec3>> lid_landmarks(const GenericFace& face,
 /// The mouth's corners where this head's lips part, if that is elsewhere than where the fit has them, as in
 /// drawn faces with a mouth narrower or wider than people's. Near there the fit knows better: corners are
 /// flat, and where exactly the skin begins to go on is a matter of modelling.
-std::map<std::string, Vec3> lip_landmarks(const GenericFace& face, const anatomy::GenericAnatomy& anatomy,
-                                          const Registration& fit, const spatial::SurfaceQuery& skin) {
+Landmarks lip_landmarks(const GenericFace& face, const anatomy::GenericAnatomy& anatomy,
+                        const Registration& fit, const spatial::SurfaceQuery& skin) {
   constexpr double known = 0.11;     // of the mouth's width: nearer to the fit, the fit stands
   constexpr double lopsided = 0.08;  // of the mouth's width: how far its middle may lie beside the fit's
   const Vec3 left = *anatomy.landmark("cheilion_left")->skin,
@@ -247,27 +247,26 @@ Registration with_fitting_length(const GenericFace& face, const Samples& samples
 }
 
 /// Tip and base of the nose by the profile, where `fit` shows it.
-std::map<std::string, Vec3> nose_landmarks(const anatomy::GenericAnatomy& anatomy, const Registration& fit,
-                                           const spatial::SurfaceQuery& skin) {
+Landmarks nose_landmarks(const anatomy::GenericAnatomy& anatomy, const Registration& fit,
+                         const spatial::SurfaceQuery& skin) {
   const auto fitted = [&](const char* name) { return fit(*anatomy.landmark(name)->skin); };
   const auto nose = nose_profile(
       skin, {fitted("sellion"), fitted("menton"), fit.placement.rotation.col(2), fit.placement.scale});
   if (!nose) return {};
-  std::map<std::string, Vec3> places{{"pronasale", nose->tip}};
+  Landmarks places{{"pronasale", nose->tip}};
   if (nose->base) places["subnasale"] = *nose->base;
   return places;
 }
 
 /// How far `fit` has its nose from the tip seen in the profile, metres of the generic head; 0 where none was.
-double off_nose(const anatomy::GenericAnatomy& anatomy, const Registration& fit,
-                const std::map<std::string, Vec3>& nose) {
+double off_nose(const anatomy::GenericAnatomy& anatomy, const Registration& fit, const Landmarks& nose) {
   const auto tip = nose.find("pronasale");
   if (tip == nose.end()) return 0.0;
   return (fit(*anatomy.landmark("pronasale")->skin) - tip->second).norm() / fit.placement.scale;
 }
 
-std::vector<Anchor> anchors_of(const std::map<std::string, Vec3>& points,
-                               const anatomy::GenericAnatomy& anatomy, double weight) {
+std::vector<Anchor> anchors_of(const Landmarks& points, const anatomy::GenericAnatomy& anatomy,
+                               double weight) {
   std::vector<Anchor> anchors;
   for (const auto& [name, p] : points) {
     const Vec3& generic = *anatomy.landmark(name)->skin;
@@ -280,9 +279,9 @@ std::vector<Anchor> anchors_of(const std::map<std::string, Vec3>& points,
 
 }  // namespace
 
-std::map<std::string, Vec3> rough_landmarks(const GenericFace& face, const anatomy::GenericAnatomy& anatomy,
-                                            const FoundHead& found) {
-  std::map<std::string, Vec3> rough;
+Landmarks rough_landmarks(const GenericFace& face, const anatomy::GenericAnatomy& anatomy,
+                          const FoundHead& found) {
+  Landmarks rough;
   for (const anatomy::Landmark& landmark : anatomy.landmarks)
     if (landmark.skin && landmark.required && overhang_at(face, found.fit, *landmark.skin) < beyond_edge &&
         residual_at(face, found.fit, *landmark.skin) < far_off)
@@ -291,10 +290,10 @@ std::map<std::string, Vec3> rough_landmarks(const GenericFace& face, const anato
 }
 
 FoundFace find(const GenericFace& face, const anatomy::GenericAnatomy& anatomy,
-               const spatial::SurfaceQuery& skin, const Placement& start,
-               const std::map<std::string, Vec3>& given, const KnownEyes& eyes) {
+               const spatial::SurfaceQuery& skin, const Placement& start, const Landmarks& given,
+               const KnownEyes& eyes) {
   FoundFace found;
-  std::map<std::string, Vec3> known;
+  Landmarks known;
   for (const auto& [name, p] : given) {
     const anatomy::Landmark* landmark = anatomy.landmark(name);
     if (landmark && landmark->skin)
@@ -315,21 +314,20 @@ FoundFace find(const GenericFace& face, const anatomy::GenericAnatomy& anatomy,
   }
   found.fit = with_fitting_length(face, samples, anchors, first, std::move(found.fit));
   constexpr double seen_weight = 20.0;
-  std::map<std::string, Vec3> nose;
+  Landmarks nose;
   if (!known.count("pronasale") && !known.count("subnasale")) nose = nose_landmarks(anatomy, found.fit, skin);
   const bool has_eyes_by_hand = known.count("exocanthion_left") || known.count("exocanthion_right");
   const Openings lids =
       eye_openings(skin, fitted_eye(face, anatomy, found.fit, true, eyes.left),
                    fitted_eye(face, anatomy, found.fit, false, eyes.right), has_eyes_by_hand);
-  std::map<std::string, Vec3> seen;
+  Landmarks seen;
   for (const bool left : {true, false})
     for (const auto& [name, p] :
          lid_landmarks(face, anatomy, found.fit, left, left ? lids.left : lids.right, lids.are_far))
       if (!known.count(name)) seen[name] = p;
   const bool has_mouth_by_hand = known.count("cheilion_left") || known.count("cheilion_right");
   const Vec3 fitted_corner = found.fit(*anatomy.landmark("cheilion_left")->skin);
-  const std::map<std::string, Vec3> corners =
-      has_mouth_by_hand ? std::map<std::string, Vec3>() : lip_landmarks(face, anatomy, found.fit, skin);
+  const Landmarks corners = has_mouth_by_hand ? Landmarks() : lip_landmarks(face, anatomy, found.fit, skin);
   seen.insert(corners.begin(), corners.end());
   for (const Anchor& anchor : anchors_of(seen, anatomy, seen_weight))
     anchors.push_back(anchor);

@@ -11,13 +11,14 @@
 #include "builder/landmarks/placement.h"
 #include "builder/landmarks/registration.h"
 #include "builder/landmarks/skin_landmark.h"
+#include "geometry/landmarks.h"
 
 namespace fascia::landmarks {
 
 /// The required landmarks as mapped by the coarse fit, a few millimetres off the mesh, in its axes and units:
 /// accurate enough to determine units, axes and parts. Those beyond the edge of a partial head are omitted.
-std::map<std::string, Vec3> rough_landmarks(const GenericFace& face, const anatomy::GenericAnatomy& anatomy,
-                                            const FoundHead& found);
+Landmarks rough_landmarks(const GenericFace& face, const anatomy::GenericAnatomy& anatomy,
+                          const FoundHead& found);
 
 /// Eyeballs where known, in the frame of the skin.
 struct KnownEyes {
@@ -39,7 +40,7 @@ struct FoundFace {
 /// of the fit around it; one more than 8 mm beyond the edge of the mesh stays off the mesh, where the
 /// deformed generic head has it, with low confidence.
 FoundFace find(const GenericFace& face, const anatomy::GenericAnatomy& anatomy,
-               const spatial::SurfaceQuery& skin, const Placement& start,
-               const std::map<std::string, Vec3>& given = {}, const KnownEyes& eyes = {});
+               const spatial::SurfaceQuery& skin, const Placement& start, const Landmarks& given = {},
+               const KnownEyes& eyes = {});
 
 }  // namespace fascia::landmarks

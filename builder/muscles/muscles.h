@@ -9,6 +9,7 @@
 #include "anatomy/anatomy.h"
 #include "builder/spatial/surface_query.h"
 #include "builder/splines/warp.h"
+#include "geometry/landmarks.h"
 #include "geometry/mesh.h"
 
 namespace fascia::muscles {
@@ -63,7 +64,7 @@ struct Inputs {
   const splines::Warp* warp = nullptr;              ///< generic anatomy -> this head; null: they are the same
   /// Landmarks on this head's skin. Rings need cheilion of both sides, stomion and, for each eye,
   /// exocanthion, endocanthion, palpebrale_superius and palpebrale_inferius.
-  std::map<std::string, Vec3> landmarks;
+  Landmarks landmarks;
   std::span<const anatomy::Muscle> muscles;
   anatomy::mechanics::Muscles constants;  ///< of the anatomy
 };

@@ -23,8 +23,7 @@ struct Start {
   double angle = 0.0;  // of the outward direction, seen from the front
 };
 
-Vec3 needed(const std::map<std::string, Vec3>& landmarks, const std::string& name,
-            const std::string& orifice) {
+Vec3 needed(const Landmarks& landmarks, const std::string& name, const std::string& orifice) {
   const auto found = landmarks.find(name);
   if (found == landmarks.end())
     throw Error("muscles around " + orifice + ": landmark " + name + " is missing; place it on the skin");
@@ -62,7 +61,7 @@ void append_with_corner(std::vector<Start>& all, const std::vector<Start>& start
     all.push_back({starts.back().place, begin + (end - begin) * i / kFanRays});
 }
 
-std::vector<Start> rim_starts(const std::map<std::string, Vec3>& landmarks, const std::string& orifice) {
+std::vector<Start> rim_starts(const Landmarks& landmarks, const std::string& orifice) {
   Vec3 left, right, upper, lower;
   if (orifice == "mouth") {
     left = needed(landmarks, "cheilion_left", orifice);
@@ -221,8 +220,8 @@ double OrificeNet::ray_at(double angle, const Ring& ring) const {
   return best;
 }
 
-OrificeNet orifice_net(const Carrier& smas, const std::map<std::string, Vec3>& landmarks,
-                       const std::string& orifice, double reach) {
+OrificeNet orifice_net(const Carrier& smas, const Landmarks& landmarks, const std::string& orifice,
+                       double reach) {
   const std::vector<Start> starts = rim_starts(landmarks, orifice);
   OrificeNet net;
   const int steps = std::clamp(static_cast<int>(std::ceil(reach / 0.0015)), 2, 60);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "builder/muscles/depth.h"
+#include "geometry/landmarks.h"
 
 namespace fascia::muscles {
 
@@ -33,7 +34,7 @@ struct OrificeNet {
 
 /// The net of `orifice` (mouth, eye_left or eye_right) out to `reach` metres. Throws `Error` naming the
 /// landmarks it misses.
-OrificeNet orifice_net(const Carrier& smas, const std::map<std::string, Vec3>& landmarks,
-                       const std::string& orifice, double reach);
+OrificeNet orifice_net(const Carrier& smas, const Landmarks& landmarks, const std::string& orifice,
+                       double reach);
 
 }  // namespace fascia::muscles

@@ -84,7 +84,7 @@ std::vector<double> mirrored(const std::vector<double>& gain) {
 
 }  // namespace
 
-FaceAxes face_axes(const anatomy::GenericAnatomy& anatomy, const Points& landmarks) {
+FaceAxes face_axes(const anatomy::GenericAnatomy& anatomy, const Landmarks& landmarks) {
   std::vector<Vec3> generic, here;
   for (const anatomy::Landmark& landmark : anatomy.landmarks)
     if (const auto at = landmarks.find(landmark.name); landmark.skin && at != landmarks.end()) {

@@ -7,11 +7,10 @@
 
 #include "anatomy/anatomy.h"
 #include "builder/spatial/surface_query.h"
+#include "geometry/landmarks.h"
 #include "geometry/mesh.h"
 
 namespace fascia::openings {
-
-using Points = std::map<std::string, Vec3>;
 
 /// How the generic head is turned and scaled onto a face (least squares over the landmarks both have): the
 /// face's own axes, whatever its pose.
@@ -19,7 +18,7 @@ struct FaceAxes {
   Mat3 rotation = Mat3::Identity();  ///< columns: to the subject's left, up, front; unit vectors
   double scale = 1.0;                ///< this face over the generic one
 };
-FaceAxes face_axes(const anatomy::GenericAnatomy& anatomy, const Points& landmarks);
+FaceAxes face_axes(const anatomy::GenericAnatomy& anatomy, const Landmarks& landmarks);
 
 /// The line along which lips or lids meet, as a height over the straight line between its corners.
 struct MeetingLine {

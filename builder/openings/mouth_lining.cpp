@@ -91,7 +91,7 @@ Vec3 place_on(const std::vector<Vec3>& ring, double around) {
 
 /// From the generic head to this one, so that the edge of the generic lips' contact comes to lie on the rim.
 splines::Warp warp_onto(const GenericLining& generic, const anatomy::GenericAnatomy& anatomy,
-                        const Points& landmarks, const Rim& rim) {
+                        const Landmarks& landmarks, const Rim& rim) {
   const std::vector<Vec3>& contact = generic.rings[0];
   const size_t half = leftmost(contact);
   std::vector<Vec3> from = contact, to;
@@ -133,7 +133,7 @@ Vec3 behind_skin(const spatial::SurfaceQuery& skin, Vec3 p, const Vec3& front, d
 }  // namespace
 
 Lining mouth_lining(const landmarks::GenericFace& face, const anatomy::GenericAnatomy& anatomy,
-                    const Points& landmarks, const spatial::SurfaceQuery& skin, const MeetingLine& line,
+                    const Landmarks& landmarks, const spatial::SurfaceQuery& skin, const MeetingLine& line,
                     const Rim& rim, int first) {
   const GenericLining generic = generic_lining(face);
   const splines::Warp warp = warp_onto(generic, anatomy, landmarks, rim);

@@ -22,15 +22,11 @@ namespace {
 constexpr double lip_end = 0.90, lid_end = 0.94;
 constexpr double apart = 1e-5;  // metres
 
-const Vec3* point(const Points& landmarks, const std::string& name) {
-  const auto at = landmarks.find(name);
-  return at == landmarks.end() ? nullptr : &at->second;
-}
-
 /// The lips' line as the landmarks have it: through the stomion.
-MeetingLine lip_line(const prepare::PreparedHead& head, const Points& landmarks, const FaceAxes& face) {
-  const Vec3 &left = *point(landmarks, "cheilion_left"), &right = *point(landmarks, "cheilion_right");
-  const Vec3 middle = *point(landmarks, "stomion") - 0.5 * (left + right);
+MeetingLine lip_line(const prepare::PreparedHead& head, const Landmarks& landmarks, const FaceAxes& face) {
+  const Vec3 &left = *find_landmark(landmarks, "cheilion_left"),
+             &right = *find_landmark(landmarks, "cheilion_right");
+  const Vec3 middle = *find_landmark(landmarks, "stomion") - 0.5 * (left + right);
   const Vec3 lateral = (left - right).normalized();
   const Vec3 up = (face.rotation.col(1) - face.rotation.col(1).dot(lateral) * lateral).normalized();
   const double height = std::clamp(middle.dot(up) / (left - right).norm(), -0.25, 0.25);
@@ -39,11 +35,11 @@ MeetingLine lip_line(const prepare::PreparedHead& head, const Points& landmarks,
 }
 
 /// The lids' line: closed lids meet where the lower one lies, a shallow bow below the canthi.
-MeetingLine lid_line(const prepare::PreparedHead& head, const Points& landmarks, const FaceAxes& face,
+MeetingLine lid_line(const prepare::PreparedHead& head, const Landmarks& landmarks, const FaceAxes& face,
                      bool left) {
   const std::string side = left ? "_left" : "_right";
-  const Vec3 &inner = *point(landmarks, "endocanthion" + side),
-             &outer = *point(landmarks, "exocanthion" + side);
+  const Vec3 &inner = *find_landmark(landmarks, "endocanthion" + side),
+             &outer = *find_landmark(landmarks, "exocanthion" + side);
   const Vec3 &a = left ? inner : outer, &b = left ? outer : inner;
   constexpr double bow = -0.09;  // of the width
   LineSearch search;
@@ -52,7 +48,7 @@ MeetingLine lid_line(const prepare::PreparedHead& head, const Points& landmarks,
       *head.surface, a, b, face, [](double along) { return bow * (1.0 - along * along); }, search);
 }
 
-bool has_all(const Points& landmarks, const std::vector<std::string>& names) {
+bool has_all(const Landmarks& landmarks, const std::vector<std::string>& names) {
   return std::all_of(names.begin(), names.end(),
                      [&](const std::string& name) { return landmarks.count(name) > 0; });
 }
@@ -105,7 +101,7 @@ bool are_lips_closed(const prepare::PreparedHead& head, const MeetingLine& line,
 
 /// Whether both eyes of the head are closed. Lids are left alone when in doubt: who closes one eye only, or
 /// has eyes modelled open in one piece with their lids, keeps them.
-bool are_lids_closed(const prepare::PreparedHead& head, const Points& landmarks, const FaceAxes& face,
+bool are_lids_closed(const prepare::PreparedHead& head, const Landmarks& landmarks, const FaceAxes& face,
                      OpenedHead& opened) {
   const Connectivity links = connectivity(head.skin);
   int fused = 0;
@@ -129,8 +125,9 @@ bool are_lids_closed(const prepare::PreparedHead& head, const Points& landmarks,
   return !doubt;
 }
 
-void open_mouth(prepare::PreparedHead& head, const Points& landmarks, const anatomy::GenericAnatomy& anatomy,
-                const FaceAxes& face, bool is_inside_out, const OpeningOptions& options, OpenedHead& opened) {
+void open_mouth(prepare::PreparedHead& head, const Landmarks& landmarks,
+                const anatomy::GenericAnatomy& anatomy, const FaceAxes& face, bool is_inside_out,
+                const OpeningOptions& options, OpenedHead& opened) {
   if (!has_all(landmarks, {"cheilion_left", "cheilion_right", "stomion"})) return;
   const MeetingLine line = lip_line(head, landmarks, face);
   const auto lined = [&](const Cut& cut, const Rim& rim) {
@@ -156,7 +153,7 @@ void open_mouth(prepare::PreparedHead& head, const Points& landmarks, const anat
   opened.added.push_back("mouth");
 }
 
-void open_eye(prepare::PreparedHead& head, const Points& landmarks, const anatomy::GenericAnatomy& anatomy,
+void open_eye(prepare::PreparedHead& head, const Landmarks& landmarks, const anatomy::GenericAnatomy& anatomy,
               const FaceAxes& face, bool left, bool are_closed, bool is_inside_out,
               const OpeningOptions& options, OpenedHead& opened) {
   const std::string side = left ? "_left" : "_right", name = "eye" + side;
@@ -212,7 +209,7 @@ void add_mesh(OpenedHead& opened, prepare::PreparedHead& head, formats::SceneMes
   head.meshes.push_back(std::move(prepared));
 }
 
-OpenedHead open_head(const formats::Scene& scene, prepare::PreparedHead& head, const Points& landmarks,
+OpenedHead open_head(const formats::Scene& scene, prepare::PreparedHead& head, const Landmarks& landmarks,
                      const anatomy::GenericAnatomy& anatomy, bool is_inside_out,
                      const OpeningOptions& options) {
   OpenedHead opened;

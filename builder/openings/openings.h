@@ -8,6 +8,7 @@
 #include "builder/prepare/prepare.h"
 #include "formats/extend.h"
 #include "formats/scene.h"
+#include "geometry/landmarks.h"
 
 /// Cutting open heads whose lips or lids are one closed surface, as in most scans, and adding linings, teeth
 /// and eyeballs.
@@ -46,7 +47,7 @@ struct OpenedHead {
 /// `is_inside_out`: the file's triangles face inward and those of `head` were turned. The vertices that were
 /// there keep their order and places; new ones follow. Cuts follow from the face's own shape and axes, not
 /// from its pose or the order of its vertices.
-OpenedHead open_head(const formats::Scene& scene, prepare::PreparedHead& head, const Points& landmarks,
+OpenedHead open_head(const formats::Scene& scene, prepare::PreparedHead& head, const Landmarks& landmarks,
                      const anatomy::GenericAnatomy& anatomy, bool is_inside_out,
                      const OpeningOptions& options);
 

@@ -125,8 +125,7 @@ double left_over(const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
 
 /// Landmarks that fit no head as they are named, and one when left is called right: nothing built on them
 /// would be where it belongs. `reference` in metres.
-void refuse_exchanged_sides(const std::string& file, const std::map<std::string, Vec3>& given,
-                            const std::map<std::string, Vec3>& reference) {
+void refuse_exchanged_sides(const std::string& file, const Landmarks& given, const Landmarks& reference) {
   constexpr double too_far = 0.012, much_better = 0.5;  // metres; share
   std::vector<Vec3> here, named, exchanged;
   for (const auto& [name, p] : given) {
@@ -144,7 +143,7 @@ void refuse_exchanged_sides(const std::string& file, const std::map<std::string,
 }
 
 Frame from_landmarks(const formats::Scene& scene, const formats::LandmarkFile& given,
-                     const std::map<std::string, Vec3>& reference, const PrepareOptions& options) {
+                     const Landmarks& reference, const PrepareOptions& options) {
   Frame frame;
   frame.landmarks = in_file_units(scene, given).points;
   std::vector<Vec3> here, generic;
@@ -240,8 +239,8 @@ formats::LandmarkFile in_file_units(const formats::Scene& scene, const formats::
   return file;
 }
 
-Frame find_frame(const formats::Scene& scene, const formats::LandmarkFile& given,
-                 const std::map<std::string, Vec3>& reference, const PrepareOptions& options) {
+Frame find_frame(const formats::Scene& scene, const formats::LandmarkFile& given, const Landmarks& reference,
+                 const PrepareOptions& options) {
   if (options.up != "auto" && options.up != "y" && options.up != "z")
     throw Error("up axis '" + options.up + "' is unknown: give auto, y or z");
   return given.points.empty() ? from_convention(scene, options)

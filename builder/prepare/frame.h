@@ -1,6 +1,7 @@
 #pragma once
 
 #include "builder/prepare/prepare.h"
+#include "geometry/landmarks.h"
 
 namespace fascia::prepare {
 
@@ -8,12 +9,12 @@ namespace fascia::prepare {
 struct Frame {
   Mat4 input_to_metres = Mat4::Identity();
   std::string units;
-  std::map<std::string, Vec3> landmarks;  ///< file coordinates
+  Landmarks landmarks;  ///< file coordinates
   std::vector<std::string> warnings;
 };
 
 /// Finds units and axes, by the landmarks where there are any. Arguments and errors as for `prepare`.
-Frame find_frame(const formats::Scene& scene, const formats::LandmarkFile& given,
-                 const std::map<std::string, Vec3>& reference, const PrepareOptions& options);
+Frame find_frame(const formats::Scene& scene, const formats::LandmarkFile& given, const Landmarks& reference,
+                 const PrepareOptions& options);
 
 }  // namespace fascia::prepare

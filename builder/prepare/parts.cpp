@@ -49,14 +49,14 @@ std::string names_of(const formats::Scene& scene, const Component& component) {
   return names;
 }
 
-std::optional<Vec3> landmark(const std::map<std::string, Vec3>& landmarks, const char* name) {
+std::optional<Vec3> landmark(const Landmarks& landmarks, const char* name) {
   const auto at = landmarks.find(name);
   if (at == landmarks.end()) return std::nullopt;
   return at->second;
 }
 
 int skin_component(const formats::Scene& scene, const WeldedScene& welded,
-                   const std::vector<Component>& components, const std::map<std::string, Vec3>& landmarks,
+                   const std::vector<Component>& components, const Landmarks& landmarks,
                    const PrepareOptions& options) {
   std::vector<double> score(components.size());
   for (size_t c = 0; c < components.size(); ++c)
@@ -98,7 +98,7 @@ struct Placed {
   Part likely = Part::other;
 };
 
-std::optional<Placed> in_mouth(const Component& component, const std::map<std::string, Vec3>& landmarks) {
+std::optional<Placed> in_mouth(const Component& component, const Landmarks& landmarks) {
   const auto left = landmark(landmarks, "cheilion_left"), right = landmark(landmarks, "cheilion_right");
   if (!left || !right) return std::nullopt;
   const Vec3 mouth = 0.5 * (*left + *right);
@@ -115,7 +115,7 @@ std::optional<Placed> in_mouth(const Component& component, const std::map<std::s
   return Placed{Zone::mouth, from[1] > -0.003 ? Part::teeth_upper : Part::teeth_lower};
 }
 
-std::optional<Placed> at_lids(const Component& component, const std::map<std::string, Vec3>& landmarks) {
+std::optional<Placed> at_lids(const Component& component, const Landmarks& landmarks) {
   for (const char* side : {"left", "right"}) {
     const auto outer = landmark(landmarks, ("exocanthion_" + std::string(side)).c_str());
     const auto inner = landmark(landmarks, ("endocanthion_" + std::string(side)).c_str());
@@ -135,7 +135,7 @@ std::optional<Placed> at_lids(const Component& component, const std::map<std::st
 
 /// Hair goes over the crown and is about as wide as the head; glasses sit before the eyes and reach from ear
 /// to ear; clothes begin below the chin.
-std::optional<Placed> about_head(const Component& component, const std::map<std::string, Vec3>& landmarks) {
+std::optional<Placed> about_head(const Component& component, const Landmarks& landmarks) {
   const auto glabella = landmark(landmarks, "glabella"), menton = landmark(landmarks, "menton"),
              nasion = landmark(landmarks, "nasion");
   const auto ear_left = landmark(landmarks, "tragion_left"), ear_right = landmark(landmarks, "tragion_right");
@@ -158,7 +158,7 @@ std::optional<Placed> about_head(const Component& component, const std::map<std:
   return Placed{Zone::about_head, Part::other};
 }
 
-Placed place_of(const Component& component, const std::map<std::string, Vec3>& landmarks) {
+Placed place_of(const Component& component, const Landmarks& landmarks) {
   if (const auto placed = in_mouth(component, landmarks)) return *placed;
   if (const auto placed = at_lids(component, landmarks)) return *placed;
   return about_head(component, landmarks).value_or(Placed{});
@@ -183,8 +183,7 @@ Zone zone_of(Part part) {
 }
 
 /// Which jaw teeth or gums belong to: by their name, else by lying below the mouth's line.
-Part of_jaw(Part upper, const NamedPart& named, const Component& component,
-            const std::map<std::string, Vec3>& landmarks) {
+Part of_jaw(Part upper, const NamedPart& named, const Component& component, const Landmarks& landmarks) {
   const Part lower = upper == Part::teeth_upper ? Part::teeth_lower : Part::gums_lower;
   if (named.jaw != NamedPart::Jaw::unsaid) return named.jaw == NamedPart::Jaw::lower ? lower : upper;
   const auto mouth = landmark(landmarks, "stomion");
@@ -197,8 +196,7 @@ Part of_jaw(Part upper, const NamedPart& named, const Component& component,
 
 /// The part's position restricts what it can be; within that its name decides. If the position is
 /// inconclusive, the name alone decides.
-Part part_of(const Component& component, const NamedPart& named,
-             const std::map<std::string, Vec3>& landmarks) {
+Part part_of(const Component& component, const NamedPart& named, const Landmarks& landmarks) {
   constexpr double speck = 1.5e-5;  // square metres: a tooth's crown, or a lash card, has more
   if (!named.part && component.area < speck) return Part::other;
   const Placed placed = place_of(component, landmarks);
@@ -215,7 +213,7 @@ Part part_of(const Component& component, const NamedPart& named,
 }
 
 /// x of the plane between the two sides.
-double middle_of_face(const std::map<std::string, Vec3>& landmarks) {
+double middle_of_face(const Landmarks& landmarks) {
   double sum = 0.0, count = 0.0;
   for (const char* pair : {"exocanthion_", "endocanthion_", "cheilion_"})
     if (const auto left = landmark(landmarks, (pair + std::string("left")).c_str()),
@@ -235,7 +233,7 @@ struct RowHeights {
 /// Assigns every piece of teeth to a row: by its name if that tells, else by its height relative to the other
 /// pieces; a single row is assigned by the line of the mouth. A piece that contains both rows gets neither.
 RowHeights tell_rows_apart(const std::vector<Component>& components, const std::vector<NamedPart>& names,
-                           const std::map<std::string, Vec3>& landmarks, std::vector<Part>& parts) {
+                           const Landmarks& landmarks, std::vector<Part>& parts) {
   constexpr double over = 0.006, under = 0.012;  // metres about the mouth's line that one row does not fill
   const auto mouth = landmark(landmarks, "stomion");
   std::vector<size_t> pieces;
@@ -301,7 +299,7 @@ struct Lids {
   double width = 0.030;  ///< metres
 };
 
-std::optional<Lids> lids_of(const std::map<std::string, Vec3>& landmarks, bool is_left) {
+std::optional<Lids> lids_of(const Landmarks& landmarks, bool is_left) {
   const auto outer = landmark(landmarks, is_left ? "exocanthion_left" : "exocanthion_right");
   const auto inner = landmark(landmarks, is_left ? "endocanthion_left" : "endocanthion_right");
   if (!outer || !inner) return std::nullopt;
@@ -328,8 +326,8 @@ Bounds named_eye(const std::vector<Component>& components, const std::vector<Nam
 /// Both sides' fissures. Rough landmarks have the eyes of drawn faces, large and low, near the brows: where a
 /// pair of meshes that are called eyes lies off them, the fissures are before these.
 std::array<std::optional<Lids>, 2> fissures(const std::vector<Component>& components,
-                                            const std::vector<NamedPart>& names,
-                                            const std::map<std::string, Vec3>& landmarks, int skin) {
+                                            const std::vector<NamedPart>& names, const Landmarks& landmarks,
+                                            int skin) {
   constexpr double off = 0.25, level = 0.25;  // of the fissure's width
   std::array<std::optional<Lids>, 2> lids = {lids_of(landmarks, true), lids_of(landmarks, false)};
   if (!lids[0] || !lids[1]) return lids;
@@ -385,9 +383,9 @@ std::optional<Eyeball> find_flat_eye(const std::vector<Component>& components,
 /// Marks the eyeball of one side and shells over it. An eyeball is what is round behind the lids and covers
 /// the most directions.
 std::optional<Eyeball> find_eye(const WeldedScene& welded, const std::vector<Component>& components,
-                                const std::vector<NamedPart>& names,
-                                const std::map<std::string, Vec3>& landmarks, const std::optional<Lids>& lids,
-                                bool is_left, int skin, std::vector<std::optional<Part>>& known) {
+                                const std::vector<NamedPart>& names, const Landmarks& landmarks,
+                                const std::optional<Lids>& lids, bool is_left, int skin,
+                                std::vector<std::optional<Part>>& known) {
   std::vector<std::pair<size_t, RoundPart>> round;
   double most = 0.0;
   for (size_t c = 0; c < components.size(); ++c) {
@@ -421,8 +419,8 @@ std::optional<Eyeball> find_eye(const WeldedScene& welded, const std::vector<Com
 
 }  // namespace
 
-Parts recognise_parts(const formats::Scene& scene, const WeldedScene& welded,
-                      const std::map<std::string, Vec3>& landmarks, const PrepareOptions& options) {
+Parts recognise_parts(const formats::Scene& scene, const WeldedScene& welded, const Landmarks& landmarks,
+                      const PrepareOptions& options) {
   const std::vector<Component> components = gather(welded);
   Parts parts;
   parts.component_parts.assign(components.size(), Part::other);

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "builder/prepare/prepare.h"
+#include "geometry/landmarks.h"
 
 namespace fascia::prepare {
 
@@ -32,8 +33,8 @@ struct Parts {
   std::vector<Part> component_parts;
   std::optional<Eyeball> eye_left, eye_right;
 };
-Parts recognise_parts(const formats::Scene& scene, const WeldedScene& welded,
-                      const std::map<std::string, Vec3>& landmarks, const PrepareOptions& options);
+Parts recognise_parts(const formats::Scene& scene, const WeldedScene& welded, const Landmarks& landmarks,
+                      const PrepareOptions& options);
 
 /// Adds a warning when a surface beside the skin is as large as it and of its proportions, a second head of
 /// which nothing is built, or when it is the skin over again.

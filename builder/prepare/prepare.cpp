@@ -12,12 +12,10 @@ namespace fascia::prepare {
 namespace {
 
 /// Landmarks drawn by hand lie a little off the surface; far off, they belong to another mesh.
-std::map<std::string, Vec3> onto_skin(const formats::Scene& scene, const spatial::SurfaceQuery& surface,
-                                      const std::map<std::string, Vec3>& landmarks,
-                                      const std::set<std::string>& rough,
-                                      const std::map<std::string, Vec3>& reference,
-                                      std::vector<std::string>& warnings) {
-  std::map<std::string, Vec3> projected;
+Landmarks onto_skin(const formats::Scene& scene, const spatial::SurfaceQuery& surface,
+                    const Landmarks& landmarks, const std::set<std::string>& rough,
+                    const Landmarks& reference, std::vector<std::string>& warnings) {
+  Landmarks projected;
   std::vector<std::string> names;
   for (const auto& [name, p] : reference)
     names.push_back(name);
@@ -42,13 +40,13 @@ std::map<std::string, Vec3> onto_skin(const formats::Scene& scene, const spatial
 }  // namespace
 
 PreparedHead prepare(const formats::Scene& scene, const formats::LandmarkFile& given,
-                     const std::map<std::string, Vec3>& reference, const PrepareOptions& options) {
+                     const Landmarks& reference, const PrepareOptions& options) {
   Frame frame = find_frame(scene, given, reference, options);
   PreparedHead head;
   head.input_to_metres = frame.input_to_metres;
   head.units = frame.units;
   head.warnings = std::move(frame.warnings);
-  std::map<std::string, Vec3> landmarks;
+  Landmarks landmarks;
   for (const auto& [name, p] : frame.landmarks)
     landmarks[name] = transform_point(head.input_to_metres, p);
 

@@ -9,6 +9,7 @@
 #include "builder/spatial/surface_query.h"
 #include "formats/landmark_file.h"
 #include "formats/scene.h"
+#include "geometry/landmarks.h"
 #include "geometry/mesh.h"
 
 /// The first stage: from a mesh file to a head with known units, axes and parts.
@@ -59,7 +60,7 @@ struct PreparedHead {
   std::vector<PreparedMesh> meshes;              ///< one for each mesh of the scene, same order
   TriangleMesh skin;                             ///< welded, without slivers, metres, rig frame
   std::optional<spatial::SurfaceQuery> surface;  ///< of `skin`; there once prepared, shared by its copies
-  std::map<std::string, Vec3> landmarks;         ///< the given ones, on the skin, metres, rig frame
+  Landmarks landmarks;                           ///< the given ones, on the skin, metres, rig frame
   std::optional<Eyeball> eye_left, eye_right;
   Mat4 input_to_metres = Mat4::Identity();  ///< from file coordinates to the rig frame
   std::string units;                        ///< "m", "dm", "cm", "mm", "in" or metres a unit
@@ -101,7 +102,7 @@ std::vector<TriangleMesh> search_surfaces(const formats::Scene& scene, const std
 /// Throws fascia::Error naming file and landmark when a landmark lies off the surface, units or axes
 /// cannot be told, or the named skin is not there.
 PreparedHead prepare(const formats::Scene& scene, const formats::LandmarkFile& given,
-                     const std::map<std::string, Vec3>& reference, const PrepareOptions& options);
+                     const Landmarks& reference, const PrepareOptions& options);
 
 /// Changes the rig frame: every position p of `head` becomes rotation * p + translation (metres), directions
 /// are rotated, and so is the map that leads from the file.

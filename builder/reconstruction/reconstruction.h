@@ -13,14 +13,15 @@
 #include <vector>
 
 #include "builder/reconstruction/soft_tissue.h"
+#include "geometry/landmarks.h"
 
 namespace fascia::reconstruction {
 
 struct Options {
-  double metres = 0.0;               ///< a unit of the scan; 0: by the skull's size
-  std::string table;                 ///< name of a tissue depth table; empty: the default one
-  double tissue_scale = 1.0;         ///< scales every depth
-  std::map<std::string, Vec3> bone;  ///< landmarks on the scan's bone, its own axes and units
+  double metres = 0.0;        ///< a unit of the scan; 0: by the skull's size
+  std::string table;          ///< name of a tissue depth table; empty: the default one
+  double tissue_scale = 1.0;  ///< scales every depth
+  Landmarks bone;             ///< landmarks on the scan's bone, its own axes and units
 };
 
 /// A head over a skull. Coordinates are the scan's own.

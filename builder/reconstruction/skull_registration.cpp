@@ -191,7 +191,7 @@ GenericFace skull_points(const anatomy::GenericAnatomy& anatomy) {
 }
 
 SkullRegistration register_skull(const anatomy::GenericAnatomy& anatomy, const TriangleMesh& scan,
-                                 double metres, const std::map<std::string, Vec3>& known) {
+                                 double metres, const Landmarks& known) {
   SkullRegistration out;
   out.points = skull_points(anatomy);
   const Samples outer = outer_samples(scan);

@@ -6,6 +6,7 @@
 
 #include "anatomy/anatomy.h"
 #include "builder/landmarks/registration.h"
+#include "geometry/landmarks.h"
 
 namespace fascia::reconstruction {
 
@@ -28,6 +29,6 @@ struct SkullRegistration {
 /// all are held to. Throws fascia::Error when the scan has no usable triangles, or does not look like a
 /// skull.
 SkullRegistration register_skull(const anatomy::GenericAnatomy& anatomy, const TriangleMesh& scan,
-                                 double metres, const std::map<std::string, Vec3>& known);
+                                 double metres, const Landmarks& known);
 
 }  // namespace fascia::reconstruction

@@ -120,7 +120,7 @@ skull::BoneMap with_round_eyes(const anatomy::GenericAnatomy& anatomy, splines::
 }  // namespace
 
 skull::BoneMap skin_map(const anatomy::GenericAnatomy& anatomy, const SkullRegistration& skull, double metres,
-                        const std::map<std::string, Vec3>& known, const DepthChoice& choice,
+                        const Landmarks& known, const DepthChoice& choice,
                         std::vector<SkinOverBone>* landmarks) {
   if (!anatomy.head_object("skin")) throw Error("anatomy: the generic head has no skin");
   const skull::Generic generic = skull::from_anatomy(anatomy, choice.table);

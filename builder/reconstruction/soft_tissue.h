@@ -7,6 +7,7 @@
 #include "anatomy/anatomy.h"
 #include "builder/reconstruction/skull_registration.h"
 #include "builder/skull/skull.h"
+#include "geometry/landmarks.h"
 
 namespace fascia::reconstruction {
 
@@ -32,7 +33,7 @@ struct DepthChoice {
 /// head's own depth there, corrected as the table corrects its neighbours. About the eyes it is a similarity,
 /// so that eyeballs stay round and lids stay on them. `metres`: a unit of the scan's length.
 skull::BoneMap skin_map(const anatomy::GenericAnatomy& anatomy, const SkullRegistration& skull, double metres,
-                        const std::map<std::string, Vec3>& known, const DepthChoice& choice,
+                        const Landmarks& known, const DepthChoice& choice,
                         std::vector<SkinOverBone>* landmarks = nullptr);
 
 }  // namespace fascia::reconstruction

@@ -35,8 +35,8 @@ class Stages {
   BuildReport& report_;
 };
 
-std::map<std::string, Vec3> places(const std::map<std::string, landmarks::SkinLandmark>& all) {
-  std::map<std::string, Vec3> points;
+Landmarks places(const std::map<std::string, landmarks::SkinLandmark>& all) {
+  Landmarks points;
   for (const auto& [name, landmark] : all)
     points[name] = landmark.position;
   return points;
@@ -131,7 +131,7 @@ BuildResult build_rig(const formats::Scene& scene, const formats::LandmarkFile& 
   openings::OpenedHead opened =
       stages.run("openings", [&] { return open_head(scene, found, anatomy, options); });
   report_landmarks(all_landmarks, anatomy, report);
-  const std::map<std::string, Vec3> points = places(all_landmarks);
+  const Landmarks points = places(all_landmarks);
 
   const skull::FitResult skull =
       stages.run("skull", [&] { return fit_skull(anatomy, found, options.tissue_scale); });

@@ -9,6 +9,7 @@
 #include "anatomy/anatomy.h"
 #include "builder/muscles/muscles.h"
 #include "formats/landmark_file.h"
+#include "geometry/landmarks.h"
 
 /// The user's edits, stored in a file of their own that applies to every rebuild of the head.
 namespace fascia::rigging {
@@ -30,7 +31,7 @@ struct Edits {
   std::string file;  ///< for messages; empty when there is none
   /// Of all points: m, cm, mm, or metres a unit as a number; empty: as in the head file.
   std::string units;
-  std::map<std::string, Vec3> landmarks;  ///< points on the skin; they go before those of a landmark file
+  Landmarks landmarks;  ///< points on the skin; they go before those of a landmark file
   double fibre_spacing = muscles::Options().spacing;  ///< metres
   double least_prevalence = 0.0;  ///< leave out muscles that fewer people have, share 0..1
   std::map<std::string, MuscleEdit> muscles;

@@ -102,8 +102,8 @@ LocatedHead locate_head(const formats::Scene& scene, const formats::LandmarkFile
   return located;
 }
 
-Points reference_points(const anatomy::GenericAnatomy& anatomy) {
-  Points points;
+Landmarks reference_points(const anatomy::GenericAnatomy& anatomy) {
+  Landmarks points;
   for (const anatomy::Landmark& landmark : anatomy.landmarks)
     if (landmark.skin) points[landmark.name] = *landmark.skin;
   return points;
@@ -112,7 +112,7 @@ Points reference_points(const anatomy::GenericAnatomy& anatomy) {
 void place_landmarks(FoundLandmarks& result, const LocatedHead& located, const formats::LandmarkFile& given,
                      const anatomy::GenericAnatomy& anatomy, bool with_regions) {
   const prepare::PreparedHead& head = result.head;
-  Points by_hand;
+  Landmarks by_hand;
   for (const auto& [name, p] : head.landmarks)
     if (given.points.count(name)) by_hand[name] = p;
   std::vector<std::string> unknown;
@@ -258,7 +258,7 @@ FoundLandmarks find_landmarks(const formats::Scene& file, const formats::Landmar
       result.warnings.push_back(doubt(scene, given, !located.found->eyes.empty()));
   }
   const double located_at = now();
-  const Points reference = reference_points(anatomy);
+  const Landmarks reference = reference_points(anatomy);
   prepare::PrepareOptions preparing = options;
   for (const auto& [name, p] : located.landmarks.points)
     if (!given.points.count(name)) preparing.rough_landmarks.insert(name);

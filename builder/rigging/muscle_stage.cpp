@@ -105,8 +105,8 @@ TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b) {
 
 std::vector<rig::Muscle> build_muscles(const anatomy::GenericAnatomy& anatomy,
                                        const prepare::PreparedHead& head, const skull::FitResult& skull,
-                                       const smas::Result& smas, const Points& landmarks, const Edits& edits,
-                                       BuildReport& report) {
+                                       const smas::Result& smas, const Landmarks& landmarks,
+                                       const Edits& edits, BuildReport& report) {
   const spatial::SurfaceQuery &skin = *head.surface, cranium(skull.cranium), mandible(skull.mandible);
   const TriangleMesh all_teeth = joined(skull.teeth_upper, skull.teeth_lower);
   const std::optional<spatial::SurfaceQuery> teeth =

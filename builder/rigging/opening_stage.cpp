@@ -40,7 +40,7 @@ std::string joined(const std::vector<std::string>& words) {
 
 openings::OpenedHead open_head(const formats::Scene& scene, FoundLandmarks& found,
                                const anatomy::GenericAnatomy& anatomy, const BuildOptions& options) {
-  openings::Points points;
+  Landmarks points;
   for (const auto& [name, landmark] : found.landmarks)
     points[name] = landmark.position;
   return openings::open_head(scene, found.head, points, anatomy, found.is_inside_out, options.openings);

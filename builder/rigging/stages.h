@@ -11,6 +11,7 @@
 #include "builder/skull/skull.h"
 #include "builder/smas/smas.h"
 #include "builder/tissue/inputs.h"
+#include "geometry/landmarks.h"
 #include "rig/model/rig.h"
 
 /// Adapters between the stages: each converts the results of previous stages to the inputs of the next one,
@@ -18,8 +19,6 @@
 namespace fascia::rigging {
 
 using SkinLandmarks = std::map<std::string, landmarks::SkinLandmark>;
-using Points = std::map<std::string, Vec3>;
-
 /// Cuts open closed lips and lids of the head in `found` according to `options`, and updates it.
 openings::OpenedHead open_head(const formats::Scene& scene, FoundLandmarks& found,
                                const anatomy::GenericAnatomy& anatomy, const BuildOptions& options);
@@ -37,8 +36,8 @@ skull::FitResult fit_skull(const anatomy::GenericAnatomy& anatomy, const FoundLa
 /// Lays all muscles of `anatomy` as `edits` ask and adds their figures and warnings to `report`.
 std::vector<rig::Muscle> build_muscles(const anatomy::GenericAnatomy& anatomy,
                                        const prepare::PreparedHead& head, const skull::FitResult& skull,
-                                       const smas::Result& smas, const Points& landmarks, const Edits& edits,
-                                       BuildReport& report);
+                                       const smas::Result& smas, const Landmarks& landmarks,
+                                       const Edits& edits, BuildReport& report);
 
 rig::Skull rig_skull(const skull::FitResult& skull, const prepare::PreparedHead& head,
                      const SkinLandmarks& landmarks);
@@ -53,7 +52,7 @@ rig::Actuation rig_actuation(const anatomy::GenericAnatomy& anatomy, const std::
 /// What the lattice is made from: the stages before, the parts of the scene, and the anatomy's constants.
 tissue::TissueInputs tissue_inputs(const formats::Scene& scene, const prepare::PreparedHead& head,
                                    const skull::FitResult& skull, const smas::Result& smas,
-                                   const Points& landmarks, const anatomy::Mechanics& mechanics,
+                                   const Landmarks& landmarks, const anatomy::Mechanics& mechanics,
                                    const rig::Rig& rig);
 
 /// Makes the lattice levels up to `options.detail` from `tissue_inputs` and binds every primitive of the

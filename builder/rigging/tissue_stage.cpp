@@ -125,7 +125,7 @@ std::vector<float> played(const rig::Actuation& actuation, const std::string& se
 
 tissue::TissueInputs tissue_inputs(const formats::Scene& scene, const prepare::PreparedHead& head,
                                    const skull::FitResult& skull, const smas::Result& smas,
-                                   const Points& landmarks, const anatomy::Mechanics& mechanics,
+                                   const Landmarks& landmarks, const anatomy::Mechanics& mechanics,
                                    const rig::Rig& rig) {
   tissue::TissueInputs inputs;
   inputs.mechanics = mechanics;

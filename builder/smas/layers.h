@@ -5,12 +5,10 @@
 #include <vector>
 
 #include "anatomy/anatomy.h"
+#include "geometry/landmarks.h"
 #include "geometry/mesh.h"
 
 namespace fascia::smas {
-
-/// Named points on the skin, metres; the names of anatomy/data/landmarks.json.
-using Landmarks = std::map<std::string, Vec3>;
 
 /// How deep the SMAS lies near one landmark.
 using LayerSample = anatomy::SmasDepth;

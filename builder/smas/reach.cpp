@@ -21,12 +21,6 @@ const Vec3& landmark(const Landmarks& landmarks, const std::string& name) {
   return found->second;
 }
 
-// The landmark, or nothing when it is not among them.
-const Vec3* maybe(const Landmarks& landmarks, const std::string& name) {
-  const auto found = landmarks.find(name);
-  return found == landmarks.end() || !found->second.allFinite() ? nullptr : &found->second;
-}
-
 // Rules that tell the openings' lining from the skin around them, and stand-ins for landmarks that are not
 // given. Lengths in metres of an adult; they describe how heads are modelled, not how faces are made.
 constexpr double kLeastOpening = 0.0025;  // half height of closed lids and lips
@@ -134,14 +128,14 @@ void ReachField::add_mouth(const Landmarks& landmarks) {
 // One opening for both nostrils: the columella between them is narrower than two triangles.
 void ReachField::add_nostrils(const Landmarks& landmarks) {
   const Vec3 &under = landmark(landmarks, "subnasale"), &tip = landmark(landmarks, "pronasale");
-  const Vec3* columella = maybe(landmarks, "columella");
+  const Vec3* columella = find_landmark(landmarks, "columella");
   const Vec3 front = columella ? *columella : Vec3(0.6 * under + 0.4 * tip);
   Vec3 centres[2];
   double length = 0.0;
   for (int k = 0; k < 2; ++k) {
     const std::string side = k == 0 ? "_left" : "_right";
     const Vec3& ala = landmark(landmarks, "alare" + side);
-    const Vec3* subalare = maybe(landmarks, "subalare" + side);
+    const Vec3* subalare = find_landmark(landmarks, "subalare" + side);
     const Vec3 rear = subalare ? *subalare : Vec3(0.75 * ala + 0.25 * under);
     centres[k] = 0.35 * rear + 0.5 * front + 0.15 * ala;
     length += 0.5 * (front - rear).norm();
@@ -192,11 +186,11 @@ void ReachField::add_limits(const Landmarks& landmarks) {
     foremost = std::max(foremost, landmark(landmarks, name).dot(front));
   for (const char* name :
        {"preaurale_left", "preaurale_right", "otobasion_superius_left", "otobasion_superius_right"})
-    if (const Vec3* ear = maybe(landmarks, name)) foremost = std::max(foremost, ear->dot(front));
+    if (const Vec3* ear = find_landmark(landmarks, name)) foremost = std::max(foremost, ear->dot(front));
   limits_.push_back({front * (foremost + shape_.ear_gap * scale_), front});
   // Behind the hairline.
-  if (const Vec3* hairline = maybe(landmarks, "trichion")) {
-    const Vec3* top = maybe(landmarks, "vertex");
+  if (const Vec3* hairline = find_landmark(landmarks, "trichion")) {
+    const Vec3* top = find_landmark(landmarks, "vertex");
     const Vec3 crown = top ? *top : Vec3(*hairline + scale_ * (0.040 * up - 0.095 * front));
     const Vec3 along = perpendicular(crown - *hairline, side);
     limits_.push_back({*hairline + shape_.galea * (crown - *hairline), -along});
@@ -205,7 +199,7 @@ void ReachField::add_limits(const Landmarks& landmarks) {
     limits_.push_back({brow + (kBrowToHairline + kHairlineToVertex * shape_.galea) * scale_ * up, -up});
   }
   // Along the neck: down from the angle of chin and neck.
-  const Vec3* angle = maybe(landmarks, "cervicale");
+  const Vec3* angle = find_landmark(landmarks, "cervicale");
   const Vec3 throat = angle ? *angle : Vec3(chin - scale_ * (0.011 * up + 0.04 * front));
   limits_.push_back({throat - shape_.neck * scale_ * up, up});
 }

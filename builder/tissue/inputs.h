@@ -6,6 +6,7 @@
 
 #include "anatomy/mechanics.h"
 #include "geometry/for_each.h"
+#include "geometry/landmarks.h"
 #include "geometry/mesh.h"
 #include "rig/model/rig.h"
 
@@ -25,7 +26,7 @@ struct PartMesh {
 struct TissueInputs {
   anatomy::Mechanics mechanics;             ///< constants of the tissue
   TriangleMesh skin;                        ///< welded; lips and lids open as the mesh has them
-  std::map<std::string, Vec3> landmarks;    ///< on the skin, by full name
+  Landmarks landmarks;                      ///< on the skin, by full name
   TriangleMesh cranium, mandible;           ///< fitted, teeth apart or not
   TriangleMesh smas;                        ///< may be empty: then it lies at a share of the depth to bone
   std::vector<float> smas_bone_attachment;  ///< #smas vertices, 0 gliding .. 1 firm; may be empty

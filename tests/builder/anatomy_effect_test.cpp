@@ -136,7 +136,7 @@ class Stages {
   GenericAnatomy anatomy_ = anatomy::load_generic();
   formats::Scene scene_;
   rigging::FoundLandmarks found_;
-  rigging::Points points_;
+  Landmarks points_;
   skull::FitResult skull_;
   smas::Result smas_;
   rig::Rig rig_;

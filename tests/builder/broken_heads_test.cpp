@@ -111,7 +111,7 @@ class Rig {
   }
   std::unique_ptr<cli::Face> face_;
   rigging::BuildReport report_;
-  std::map<std::string, Vec3> places_, found_;
+  Landmarks places_, found_;
 };
 
 bool contains_one(const std::string& text, const std::vector<std::string>& words) {

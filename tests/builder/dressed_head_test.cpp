@@ -148,7 +148,7 @@ TEST_F(DressedHead, LashesBrowsAndHairGoWithTheSkinAtTheirRoots) {
 }
 
 TEST_F(DressedHead, NeckCrownAndBackStayWhereTheyAre) {
-  std::map<std::string, Vec3> landmark;
+  Landmarks landmark;
   for (const rig::Landmark& l : face_->rig().skull.landmarks)
     landmark[l.name] = l.skin.cast<double>();
   const double third = landmark["glabella"].y() - landmark["subnasale"].y();

@@ -300,7 +300,7 @@ TEST(Eyes, TurnAboutAnotherPointThanTheirCentre) {
 
 TEST(Mirror, AHalfThatMovesTwoMillimetresMoreIsFound) {
   const Head head = flat_mouth();
-  std::map<std::string, Vec3> landmarks = head.landmarks;
+  Landmarks landmarks = head.landmarks;
   landmarks["buccale_left"] = Vec3(0.04, -0.01, 0);
   landmarks["buccale_right"] = Vec3(-0.04, -0.012, 0);  // not quite where its partner is
   const Skin skin(head, Vec3::Zero(), 0.2);
@@ -320,7 +320,7 @@ TEST(Mirror, WhereLipsMeetEachIsComparedWithItself) {
   // The left half of the lips meets .4 mm higher than the right.
   for (Vec3& p : head.parts[0].mesh.vertices)
     if (p.x() > 0.002 && p.x() < 0.024 && std::abs(p.y()) < 0.004) p.y() += 0.0004;
-  std::map<std::string, Vec3> landmarks = head.landmarks;
+  Landmarks landmarks = head.landmarks;
   for (int k = 0; k < 20; ++k) {
     const double x = 0.003 + 0.001 * k;
     landmarks["edge_" + std::to_string(k) + "_left"] = Vec3(x, 0.0004 + 1.5e-4, 0);
@@ -359,14 +359,14 @@ TEST(Still, HairAboveTheHairlineAndTheNeckAreWatched) {
 }
 
 TEST(Sizes, GrowWithTheFace) {
-  std::map<std::string, Vec3> face = {{"exocanthion_left", Vec3(0.045, 0.035, 0)},
-                                      {"exocanthion_right", Vec3(-0.045, 0.035, 0)},
-                                      {"endocanthion_left", Vec3(0.015, 0.035, 0)},
-                                      {"endocanthion_right", Vec3(-0.015, 0.035, 0)},
-                                      {"cheilion_left", Vec3(0.025, -0.035, 0)},
-                                      {"cheilion_right", Vec3(-0.025, -0.035, 0)},
-                                      {"sellion", Vec3(0, 0.04, 0.01)},
-                                      {"gnathion", Vec3(0, -0.08, 0)}};
+  Landmarks face = {{"exocanthion_left", Vec3(0.045, 0.035, 0)},
+                    {"exocanthion_right", Vec3(-0.045, 0.035, 0)},
+                    {"endocanthion_left", Vec3(0.015, 0.035, 0)},
+                    {"endocanthion_right", Vec3(-0.015, 0.035, 0)},
+                    {"cheilion_left", Vec3(0.025, -0.035, 0)},
+                    {"cheilion_right", Vec3(-0.025, -0.035, 0)},
+                    {"sellion", Vec3(0, 0.04, 0.01)},
+                    {"gnathion", Vec3(0, -0.08, 0)}};
   const AdultSizes adult = distances(face);
   EXPECT_NEAR(adult.mouth, 0.05, 1e-12);
   EXPECT_NEAR(adult.eye, 0.03, 1e-12);

@@ -145,7 +145,7 @@ MadeHead mirrored(MadeHead head) {
     for (Triangle& t : mesh.triangles)
       std::swap(t[1], t[2]);
   }
-  std::map<std::string, Vec3> truth;
+  Landmarks truth;
   for (const auto& [name, p] : head.truth) {
     std::string other = name;
     if (const size_t at = name.rfind("_left"); at != std::string::npos)

@@ -7,6 +7,7 @@
 
 #include "anatomy/anatomy.h"
 #include "formats/scene.h"
+#include "geometry/landmarks.h"
 #include "geometry/mesh.h"
 
 /// Heads of our own making, with landmarks that are known: the embedded head with other proportions, dressed,
@@ -16,8 +17,8 @@ namespace fascia::testing {
 struct MadeHead {
   std::string name;
   formats::Scene scene;
-  std::map<std::string, Vec3> truth;  ///< landmarks of the face, file coordinates
-  double millimetres = 1e3;           ///< of one file unit
+  Landmarks truth;           ///< landmarks of the face, file coordinates
+  double millimetres = 1e3;  ///< of one file unit
 };
 
 using Bend = std::function<Vec3(const Vec3&)>;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "formats/scene.h"
+#include "geometry/landmarks.h"
 #include "geometry/mesh.h"
 
 /// Heads whose landmarks are known, and what people's meshes do to them. Lengths are in the head file's
@@ -14,8 +15,8 @@ namespace fascia::testing {
 struct MeasuredHead {
   std::string name;
   formats::Scene scene;
-  std::map<std::string, Vec3> truth;  ///< landmarks defined by shape, file coordinates
-  double millimetres = 1e3;           ///< of one file unit
+  Landmarks truth;           ///< landmarks defined by shape, file coordinates
+  double millimetres = 1e3;  ///< of one file unit
 };
 
 /// Where the measured data lie; empty path when they are not on this machine.

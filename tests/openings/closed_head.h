@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "anatomy/anatomy.h"
+#include "geometry/landmarks.h"
 #include "geometry/mesh.h"
 
 namespace fascia::testing {
@@ -13,7 +14,7 @@ namespace fascia::testing {
 struct ClosedHead {
   TriangleMesh skin;            ///< metres, rig frame
   std::vector<int> of_generic;  ///< vertex of the generic skin -> vertex here, -1: left out
-  std::map<std::string, Vec3> landmarks;
+  Landmarks landmarks;
 };
 
 /// `lids`: the lids are drawn down over the eyes and stitched too; else the eyes stay as they are.

@@ -23,7 +23,7 @@ struct Built {
   size_t vertices = 0;  ///< of the skin in the input
 };
 
-Built build(const TriangleMesh& skin, const std::map<std::string, Vec3>& landmarks, const std::string& name) {
+Built build(const TriangleMesh& skin, const Landmarks& landmarks, const std::string& name) {
   Built built;
   const std::string text = obj_text(skin);
   const formats::Scene scene = formats::read(name + ".obj", {text.begin(), text.end()});

@@ -31,14 +31,14 @@ struct Case {
   openings::OpenedHead opened;
 };
 
-Case open(const TriangleMesh& skin, const std::map<std::string, Vec3>& landmarks,
+Case open(const TriangleMesh& skin, const Landmarks& landmarks,
           const openings::OpeningOptions& options = {}) {
   Case result;
   const std::string text = obj_text(skin);
   result.scene = formats::read("head.obj", {text.begin(), text.end()});
   formats::LandmarkFile file;
   file.units = "mm";
-  std::map<std::string, Vec3> reference;
+  Landmarks reference;
   for (const auto& [name, p] : landmarks)
     file.points[name] = 1e3 * p;
   for (const anatomy::Landmark& landmark : generic().landmarks)

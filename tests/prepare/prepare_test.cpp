@@ -37,11 +37,11 @@ formats::SceneMesh seamed_sphere(const std::string& name, const Vec3& centre, do
 }
 
 /// Landmarks on the sphere that stands for a head.
-std::map<std::string, Vec3> reference() {
-  std::map<std::string, Vec3> points = {{"nasion", Vec3(0, 0.04, 0.10)},
-                                        {"gnathion", Vec3(0, -0.07, 0.10)},
-                                        {"exocanthion_left", Vec3(0.045, 0.035, 0.08)},
-                                        {"exocanthion_right", Vec3(-0.045, 0.035, 0.08)}};
+Landmarks reference() {
+  Landmarks points = {{"nasion", Vec3(0, 0.04, 0.10)},
+                      {"gnathion", Vec3(0, -0.07, 0.10)},
+                      {"exocanthion_left", Vec3(0.045, 0.035, 0.08)},
+                      {"exocanthion_right", Vec3(-0.045, 0.035, 0.08)}};
   for (auto& [name, p] : points)
     p = 0.11 * p.normalized();
   return points;
@@ -181,7 +181,7 @@ TEST(Prepare, ReportsASecondHead) {
 }
 
 TEST(Prepare, RefusesLandmarksWhoseSidesAreExchanged) {
-  std::map<std::string, Vec3> face = reference();
+  Landmarks face = reference();
   face["cheilion_left"] = 0.11 * Vec3(0.03, -0.04, 0.10).normalized();
   face["cheilion_right"] = 0.11 * Vec3(-0.03, -0.04, 0.10).normalized();
   face["tragion_left"] = 0.11 * Vec3(1, 0.2, 0).normalized();
@@ -279,7 +279,7 @@ TEST(PartNames, AreReadByTheirWords) {
 }
 
 /// Landmarks of an ordinary face, rig frame.
-std::map<std::string, Vec3> face_landmarks() {
+Landmarks face_landmarks() {
   return {{"exocanthion_left", Vec3(0.045, 0.035, 0.08)},
           {"exocanthion_right", Vec3(-0.045, 0.035, 0.08)},
           {"endocanthion_left", Vec3(0.017, 0.034, 0.09)},

@@ -77,7 +77,7 @@ bool has_ct_head(const std::filesystem::path& measured) {
 }
 
 std::map<std::string, skull::TargetLandmark> complete_targets(const TriangleMesh& skin,
-                                                              const std::map<std::string, Vec3>& given,
+                                                              const Landmarks& given,
                                                               const anatomy::GenericAnatomy& anatomy) {
   std::map<std::string, skull::TargetLandmark> out;
   for (const auto& [name, landmark] : landmarks::complete(given, anatomy, spatial::SurfaceQuery(skin)))
@@ -87,7 +87,7 @@ std::map<std::string, skull::TargetLandmark> complete_targets(const TriangleMesh
 
 CtHead read_ct_head(const std::filesystem::path& measured, const std::filesystem::path& landmark_file,
                     const anatomy::GenericAnatomy& anatomy) {
-  std::map<std::string, Vec3> reference;
+  Landmarks reference;
   for (const anatomy::Landmark& landmark : anatomy.landmarks)
     if (landmark.skin) reference[landmark.name] = *landmark.skin;
   const formats::Scene scene = formats::read(measured / "data/ct/headsq_skin.ply");

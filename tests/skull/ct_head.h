@@ -8,6 +8,7 @@
 #include "anatomy/anatomy.h"
 #include "builder/landmarks/complete.h"
 #include "builder/skull/skull.h"
+#include "geometry/landmarks.h"
 
 /// The truth of a real person: skin and bone of one head, from a CT scan.
 namespace fascia::testing {
@@ -16,7 +17,7 @@ namespace fascia::testing {
 struct CtHead {
   TriangleMesh skin, bone;
   Mat4 scan_to_rig = Mat4::Identity();                   ///< from the scan's own millimetres
-  std::map<std::string, Vec3> given;                     ///< placed by hand
+  Landmarks given;                                       ///< placed by hand
   std::map<std::string, skull::TargetLandmark> targets;  ///< these and the ones carried over
 };
 
@@ -30,7 +31,7 @@ CtHead read_ct_head(const std::filesystem::path& measured, const std::filesystem
 
 /// The targets that follow when only `given` is placed.
 std::map<std::string, skull::TargetLandmark> complete_targets(const TriangleMesh& skin,
-                                                              const std::map<std::string, Vec3>& given,
+                                                              const Landmarks& given,
                                                               const anatomy::GenericAnatomy& anatomy);
 
 /// A point of the skin over the facial skeleton, and how deep the true bone lies under it.

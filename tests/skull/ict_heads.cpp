@@ -34,7 +34,7 @@ IctHead read_ict_head(const std::filesystem::path& measured, const std::string& 
   const TriangleMesh mesh = head_mesh(scene);
   for (auto& [landmark, p] : given.points)
     p = position(mesh, mean.closest(p).surface);
-  std::map<std::string, Vec3> reference;
+  Landmarks reference;
   for (const anatomy::Landmark& landmark : anatomy.landmarks)
     if (landmark.skin) reference[landmark.name] = *landmark.skin;
   IctHead out;

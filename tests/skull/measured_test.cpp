@@ -18,8 +18,7 @@ namespace {
 const std::filesystem::path measured = test::measured_data(), fixtures = test::data();
 using Targets = std::map<std::string, TargetLandmark>;
 
-Targets placed(const std::map<std::string, Vec3>& points,
-               const anatomy::GenericAnatomy* required_in = nullptr) {
+Targets placed(const Landmarks& points, const anatomy::GenericAnatomy* required_in = nullptr) {
   Targets out;
   for (const auto& [name, p] : points)
     if (!required_in || (required_in->landmark(name) && required_in->landmark(name)->required))

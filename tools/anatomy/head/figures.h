@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "geometry/landmarks.h"
 #include "geometry/mesh.h"
 
 namespace fascia::head_maker {
@@ -31,7 +32,7 @@ struct Sample {
 struct Figures {
   std::map<std::string, std::vector<Profile>> fans;  ///< eye, mouth, nostril, ear
   std::vector<Sample> sections;
-  std::map<std::string, Vec3> landmarks;
+  Landmarks landmarks;
   Vec3 eye_centre;
   double eye_radius = 0.0, cornea_front = 0.0;
   std::vector<Eigen::Vector4d> mouth_slices;  ///< z, half width, bottom, top
