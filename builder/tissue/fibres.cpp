@@ -4,7 +4,6 @@
 
 #include "builder/spatial/surface_query.h"
 #include "builder/tissue/actuators.h"
-#include "geometry/connectivity.h"
 
 namespace fascia::tissue {
 namespace {
@@ -46,42 +45,6 @@ bool is_from_orbit(const TissueInputs& inputs, const rig::Muscle& muscle, size_t
 
 bool is_bony(rig::FibreEnd end) {
   return end == rig::FibreEnd::cranium || end == rig::FibreEnd::mandible;
-}
-
-/// Places along the edge of a skin that ends on the forehead, below where the frontalis arises.
-std::vector<Vec3> cut_forehead(const TissueInputs& inputs, const Columns& c) {
-  const double brows = landmark(inputs, "glabella").y();
-  std::vector<Vec3> edge;
-  for (const auto& loop : boundary_loops(c.mesh, connectivity(c.mesh)))
-    for (const int v : loop) {
-      const auto k = static_cast<size_t>(v);
-      if (c.outer[k] && !c.rim[k] && c.mesh.vertices[k].y() > brows) edge.push_back(c.mesh.vertices[k]);
-    }
-  return edge;
-}
-
-bool begins_at(const std::vector<Vec3>& edge, const rig::Muscle& muscle, size_t first) {
-  constexpr double near = 0.012;  // metres: the skin over the fibre, and the lattice's spacing
-  return muscle.origin == rig::FibreEnd::smas && std::any_of(edge.begin(), edge.end(), [&](const Vec3& p) {
-           return (p - muscle.points[first].cast<double>()).norm() < near;
-         });
-}
-
-/// One fibre of a muscle whose origin was cut off with the forehead: it goes on straight up to `height`, and
-/// the galea that is not there holds it.
-rig::Muscle carried_on(const rig::Muscle& muscle, size_t first, size_t last, double height) {
-  constexpr float least_rise = 0.5F;  // of its way: a fibre that runs aside does not come from above
-  rig::Muscle fibre;
-  fibre.kind = muscle.kind;
-  fibre.origin = rig::FibreEnd::cranium;
-  fibre.insertion = muscle.insertion;
-  const rig::Vec3f &begin = muscle.points[first], up = (begin - muscle.points[last - 1]).normalized();
-  const float missing = static_cast<float>(height) - begin.y();
-  if (up.y() > least_rise && missing > 0.0F) fibre.points.push_back(begin + missing / up.y() * up);
-  fibre.points.insert(fibre.points.end(), muscle.points.begin() + static_cast<std::ptrdiff_t>(first),
-                      muscle.points.begin() + static_cast<std::ptrdiff_t>(last));
-  fibre.fibre_offsets = {0, static_cast<uint32_t>(fibre.points.size())};
-  return fibre;
 }
 
 /// A layer of the lattice, to find what a fibre's points go with.
@@ -187,24 +150,16 @@ void add_fibres(const TissueInputs& inputs, const Columns& c, rig::TissueLevel& 
   const Surfaces surfaces(c, inputs.mechanics);
   if (!surfaces.outer.query) return;
   const auto smas = static_cast<uint32_t>(c.count());
-  const std::vector<Vec3> cut = cut_forehead(inputs, c);
   for (size_t m = 0; m < inputs.muscles.size(); ++m) {
-    const rig::Muscle& whole = inputs.muscles[m];
-    const int channel = channel_index(inputs.channels, whole.name);
-    if (channel < 0 || whole.fibre_offsets.size() < 2) continue;
-    if (is_bony(whole.origin) && is_bony(whole.insertion))
+    const rig::Muscle& muscle = inputs.muscles[m];
+    const int channel = channel_index(inputs.channels, muscle.name);
+    if (channel < 0 || muscle.fibre_offsets.size() < 2) continue;
+    if (is_bony(muscle.origin) && is_bony(muscle.insertion))
       continue;  // moves the jaw, not the fascia it lies under
-    const size_t fibres = whole.fibre_offsets.size() - 1;
+    const size_t fibres = muscle.fibre_offsets.size() - 1;
     for (size_t f = 0; f < fibres; ++f) {
-      size_t first = whole.fibre_offsets[f], last = whole.fibre_offsets[f + 1];
+      const size_t first = muscle.fibre_offsets[f], last = muscle.fibre_offsets[f + 1];
       if (last < first + 2) continue;
-      std::optional<rig::Muscle> longer;
-      if (begins_at(cut, whole, first)) {
-        longer = carried_on(whole, first, last, frontalis_origin(inputs));
-        first = 0;
-        last = longer->points.size();
-      }
-      const rig::Muscle& muscle = longer ? *longer : whole;
       const std::vector<size_t> kept = thinned(muscle.points, first, last, spacing);
       std::vector<double> along(kept.size(), 0.0);
       for (size_t k = 1; k < kept.size(); ++k)
@@ -228,9 +183,9 @@ void add_fibres(const TissueInputs& inputs, const Columns& c, rig::TissueLevel& 
       level.fibre_offsets.push_back(static_cast<uint32_t>(level.fibre_nodes.size()));
       level.fibre_muscle.push_back(static_cast<uint32_t>(m));
       level.fibre_channel.push_back(static_cast<uint32_t>(channel));
-      level.fibre_strength.push_back(whole.strength / static_cast<float>(fibres));
+      level.fibre_strength.push_back(muscle.strength / static_cast<float>(fibres));
       level.fibre_shortest.push_back(static_cast<float>(
-          std::clamp(1.0 - constants.shortest_factor * static_cast<double>(whole.peak_shortening),
+          std::clamp(1.0 - constants.shortest_factor * static_cast<double>(muscle.peak_shortening),
                      constants.shortest_least, constants.shortest_most)));
     }
   }

@@ -139,15 +139,16 @@ Opening opening_of_loop(const TissueInputs& inputs, const TriangleMesh& mesh, co
   return opening;
 }
 
-/// The outer vertices beyond which the skin goes on, or ends at the neck, behind the ears or where the
-/// frontalis arises, which the galea goes on from and holds. Where it ends within the face, as a mask does at
-/// the chin and a scan on the forehead, nothing holds it but the bone beneath.
+/// The outer vertices beyond which the skin goes on, or ends at the neck, behind the ears or on the forehead,
+/// which the galea goes on from and holds. Where it ends within the face, as a mask does at the chin, nothing
+/// holds it but the bone beneath.
 std::vector<bool> rim_of(const TissueInputs& inputs, const TriangleMesh& skin, const FaceRegion& region,
                          const std::vector<bool>& eye) {
   const Vec3 glabella = landmark(inputs, "glabella"), gnathion = landmark(inputs, "gnathion");
   // The throat begins some way below the chin: a fifth of the face's height.
   const double neck = gnathion.y() - 0.2 * (glabella.y() - gnathion.y());
-  const double forehead = frontalis_origin(inputs);
+  // The forehead is left where the brows end: an eighth of it above the glabella.
+  const double forehead = glabella.y() + 0.125 * (glabella.y() - gnathion.y());
   const double ears = std::min(landmark(inputs, "tragion_left").z(), landmark(inputs, "tragion_right").z());
   std::vector<int> triangles(region.outer.size(), 0);
   for (const fascia::Triangle& t : skin.triangles) {
@@ -209,15 +210,6 @@ double Vestibule::share(const Vec3& p) const {
 double Vestibule::side(const Vec3& p, bool left) const {
   const double blend = mechanics_.midline_blend;
   return 1.0 - smoothstep(-blend, blend, (left ? -1.0 : 1.0) * (p.x() - mouth_.x()) / half_width_);
-}
-
-double frontalis_origin(const TissueInputs& inputs) {
-  constexpr double below_hairline = 0.15;  // of a third of the face
-  const double third = face_third(inputs);
-  const auto hairline = inputs.landmarks.find("trichion");
-  return (hairline != inputs.landmarks.end() ? hairline->second.y()
-                                             : landmark(inputs, "glabella").y() + third) -
-         below_hairline * third;
 }
 
 double face_third(const TissueInputs& inputs) {

@@ -47,10 +47,6 @@ class Vestibule {
   double half_width_, top_, bottom_;
 };
 
-/// The height (y, metres) at which the frontalis arises from the galea, a little below the hairline, be there
-/// skin or not.
-double frontalis_origin(const TissueInputs& inputs);
-
 /// The height from subnasale to glabella, a third of the face, metres.
 double face_third(const TissueInputs& inputs);
 
