@@ -255,5 +255,20 @@ TEST_F(Play, LayersWeightsAndHeldValuesAddUp) {
             std::string::npos);
 }
 
+/// A host that plays the channels, not the shapes, needs what holds too.
+TEST_F(Play, WhatHoldsIsInTheAnimationOfTheChannels) {
+  const auto pointers = [](const std::string& name) {
+    const json file = gltf(name);
+    size_t count = 0;
+    for (const json& channel : file["animations"][0]["channels"])
+      if (channel["target"]["path"] == "pointer") ++count;
+    return count;
+  };
+  play("time,jawOpen\n0,0\n0.5,1\n", "--fps 8", "free.glb");
+  play("time,jawOpen\n0,0\n0.5,1\n", "--fps 8 --set zygomaticus_minor_left=0.5", "held.glb");
+  EXPECT_GT(pointers("free.glb"), 0U);
+  EXPECT_EQ(pointers("held.glb"), pointers("free.glb") + 1);
+}
+
 }  // namespace
 }  // namespace fascia::cli
