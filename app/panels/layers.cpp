@@ -9,7 +9,7 @@ namespace fascia::app {
 
 namespace {
 
-constexpr float layer_row = 28.0F;  ///< pixels
+constexpr float layer_row = 34.0F;  ///< pixels
 constexpr int most_layer_rows = 4;  ///< more scroll
 
 int layer_rows(const Workspace& work) {
