@@ -7,17 +7,9 @@
 #include <numeric>
 #include <unordered_map>
 
+#include "geometry/disjoint_sets.h"
+
 namespace fascia {
-
-namespace {
-
-int find_root(std::vector<int>& parent, int i) {
-  while (parent[i] != i)
-    i = parent[i] = parent[parent[i]];
-  return i;
-}
-
-}  // namespace
 
 // By ends, then by triangle: buckets by the lower end, each short enough to sort by insertion.
 std::vector<HalfEdge> sorted_half_edges(const std::vector<Triangle>& triangles, size_t vertex_count) {
@@ -100,17 +92,14 @@ std::vector<std::vector<int>> boundary_loops(const TriangleMesh& mesh, const Con
 }
 
 std::vector<int> components(const TriangleMesh& mesh, int* count) {
-  std::vector<int> parent(mesh.vertices.size());
-  std::iota(parent.begin(), parent.end(), 0);
+  DisjointSets sets(mesh.vertices.size());
   for (const Triangle& triangle : mesh.triangles)
-    for (int e = 1; e < 3; ++e) {
-      const int a = find_root(parent, triangle[0]), b = find_root(parent, triangle[e]);
-      parent[std::max(a, b)] = std::min(a, b);
-    }
+    for (int e = 1; e < 3; ++e)
+      sets.join(triangle[0], triangle[e]);
   std::unordered_map<int, int> number;
   std::vector<int> component(mesh.triangles.size());
   for (int t = 0; t < mesh.triangle_count(); ++t) {
-    const int root = find_root(parent, mesh.triangles[t][0]);
+    const int root = sets.of(mesh.triangles[t][0]);
     component[t] = number.try_emplace(root, static_cast<int>(number.size())).first->second;
   }
   if (count) *count = static_cast<int>(number.size());

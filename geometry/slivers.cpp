@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "geometry/connectivity.h"
+#include "geometry/disjoint_sets.h"
 
 namespace fascia {
 
@@ -33,32 +34,13 @@ Shape shape_of(const TriangleMesh& mesh, int triangle) {
   return shape;
 }
 
-/// Joins vertices, the one of lower index standing for both.
-class Joined {
- public:
-  explicit Joined(size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
-  int of(int v) {
-    while (parent_[static_cast<size_t>(v)] != v)
-      v = parent_[static_cast<size_t>(v)] = parent_[static_cast<size_t>(parent_[static_cast<size_t>(v)])];
-    return v;
-  }
-  void join(int a, int b) {
-    a = of(a);
-    b = of(b);
-    if (a != b) parent_[static_cast<size_t>(std::max(a, b))] = std::min(a, b);
-  }
-
- private:
-  std::vector<int> parent_;
-};
-
 bool has_repeated_corner(const Triangle& t) {
   return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
 }
 
 /// Collapses the short sides of needles. Returns whether there were any.
 bool collapse_needles(TriangleMesh& mesh, double height, std::vector<int>& vertex_of) {
-  Joined joined(mesh.vertices.size());
+  DisjointSets joined(mesh.vertices.size());
   bool any = false;
   for (int t = 0; t < mesh.triangle_count(); ++t) {
     const Shape shape = shape_of(mesh, t);

@@ -1,9 +1,10 @@
+#include "builder/landmarks/eye_pairs.h"
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "builder/landmarks/eye_pairs.h"
 #include "builder/landmarks/round_parts.h"
 #include "builder/spatial/mirror_plane.h"
 

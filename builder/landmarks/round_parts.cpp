@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "builder/landmarks/spheres.h"
 #include "geometry/connectivity.h"
+#include "geometry/disjoint_sets.h"
 
 namespace fascia::landmarks {
 
@@ -14,22 +14,15 @@ namespace {
 /// The part of each triangle of `mesh`, by shared edges: an eyeball that touches its lids in a vertex is a
 /// part of its own.
 std::vector<int> parts_by_edges(const TriangleMesh& mesh, int* count) {
-  std::vector<int> parent(mesh.triangles.size()), part(mesh.triangles.size(), -1);
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int t) {
-    while (parent[static_cast<size_t>(t)] != t)
-      t = parent[static_cast<size_t>(t)] = parent[static_cast<size_t>(parent[static_cast<size_t>(t)])];
-    return t;
-  };
+  DisjointSets sets(mesh.triangles.size());
   const std::vector<HalfEdge> edges = sorted_half_edges(mesh.triangles, mesh.vertices.size());
-  for (size_t e = 1; e < edges.size(); ++e) {
-    if (edges[e].low != edges[e - 1].low || edges[e].high != edges[e - 1].high) continue;
-    const int a = root(edges[e].triangle), b = root(edges[e - 1].triangle);
-    parent[static_cast<size_t>(std::max(a, b))] = std::min(a, b);
-  }
+  for (size_t e = 1; e < edges.size(); ++e)
+    if (edges[e].low == edges[e - 1].low && edges[e].high == edges[e - 1].high)
+      sets.join(edges[e].triangle, edges[e - 1].triangle);
+  std::vector<int> part(mesh.triangles.size(), -1);
   *count = 0;
   for (size_t t = 0; t < part.size(); ++t) {
-    const auto first = static_cast<size_t>(root(static_cast<int>(t)));  // no later than `t`
+    const auto first = static_cast<size_t>(sets.of(static_cast<int>(t)));  // no later than `t`
     part[t] = first == t ? (*count)++ : part[first];
   }
   return part;

@@ -69,6 +69,11 @@ struct SoundPoints {
   std::vector<Vec2> flat;
 };
 
+void check_finite(const Sketch& sketch, size_t i, const std::string& what) {
+  if (!sketch.points[i].allFinite())
+    throw Error(what + ": point " + std::to_string(i + 1) + " is not three finite numbers");
+}
+
 SoundPoints sound_points(const Sketch& sketch, const std::string& what) {
   std::vector<Vec3> points;
   for (const Vec3& p : sketch.points) {
@@ -92,18 +97,15 @@ SoundPoints sound_points(const Sketch& sketch, const std::string& what) {
 
 void check_sketch(const Sketch& sketch, const std::string& what) {
   for (size_t i = 0; i < sketch.points.size(); ++i)
-    if (!sketch.points[i].allFinite())
-      throw Error(what + ": point " + std::to_string(i + 1) + " is not three finite numbers");
+    check_finite(sketch, i, what);
   sound_points(sketch, what);
 }
 
 std::vector<Vec3> sketched_region(const Sketch& sketch, const Place& place, const Inputs& inputs,
                                   const spatial::SurfaceQuery& smas, const std::string& what) {
   for (size_t i = 0; i < sketch.points.size(); ++i) {
-    const Vec3& p = sketch.points[i];
-    if (!p.allFinite())
-      throw Error(what + ": point " + std::to_string(i + 1) + " is not three finite numbers");
-    const double off = distance_to_head(p, inputs, smas);
+    check_finite(sketch, i, what);
+    const double off = distance_to_head(sketch.points[i], inputs, smas);
     if (off > kOffHead)
       throw Error(what + ": point " + std::to_string(i + 1) + " lies " + millimetres(off) +
                   " off the head; place it on the skin, in the axes and units of the head file");

@@ -49,12 +49,6 @@ std::string names_of(const formats::Scene& scene, const Component& component) {
   return names;
 }
 
-std::optional<Vec3> landmark(const Landmarks& landmarks, const char* name) {
-  const auto at = landmarks.find(name);
-  if (at == landmarks.end()) return std::nullopt;
-  return at->second;
-}
-
 int skin_component(const formats::Scene& scene, const WeldedScene& welded,
                    const std::vector<Component>& components, const Landmarks& landmarks,
                    const PrepareOptions& options) {
@@ -99,7 +93,8 @@ struct Placed {
 };
 
 std::optional<Placed> in_mouth(const Component& component, const Landmarks& landmarks) {
-  const auto left = landmark(landmarks, "cheilion_left"), right = landmark(landmarks, "cheilion_right");
+  const auto left = find_landmark(landmarks, "cheilion_left"),
+             right = find_landmark(landmarks, "cheilion_right");
   if (!left || !right) return std::nullopt;
   const Vec3 mouth = 0.5 * (*left + *right);
   // Lengths are an adult's; the mouths of stylised heads are wider, and what is in them larger.
@@ -117,8 +112,8 @@ std::optional<Placed> in_mouth(const Component& component, const Landmarks& land
 
 std::optional<Placed> at_lids(const Component& component, const Landmarks& landmarks) {
   for (const char* side : {"left", "right"}) {
-    const auto outer = landmark(landmarks, ("exocanthion_" + std::string(side)).c_str());
-    const auto inner = landmark(landmarks, ("endocanthion_" + std::string(side)).c_str());
+    const auto outer = find_landmark(landmarks, "exocanthion_" + std::string(side));
+    const auto inner = find_landmark(landmarks, "endocanthion_" + std::string(side));
     if (!outer || !inner) continue;
     const Vec3 from = component.box.centre() - 0.5 * (*outer + *inner), size = component.box.size();
     const double width = (*outer - *inner).norm();
@@ -136,9 +131,10 @@ std::optional<Placed> at_lids(const Component& component, const Landmarks& landm
 /// Hair goes over the crown and is about as wide as the head; glasses sit before the eyes and reach from ear
 /// to ear; clothes begin below the chin.
 std::optional<Placed> about_head(const Component& component, const Landmarks& landmarks) {
-  const auto glabella = landmark(landmarks, "glabella"), menton = landmark(landmarks, "menton"),
-             nasion = landmark(landmarks, "nasion");
-  const auto ear_left = landmark(landmarks, "tragion_left"), ear_right = landmark(landmarks, "tragion_right");
+  const auto glabella = find_landmark(landmarks, "glabella"), menton = find_landmark(landmarks, "menton"),
+             nasion = find_landmark(landmarks, "nasion");
+  const auto ear_left = find_landmark(landmarks, "tragion_left"),
+             ear_right = find_landmark(landmarks, "tragion_right");
   if (!glabella || !menton || !nasion || !ear_left || !ear_right) return std::nullopt;
   const double height = (*glabella - *menton).norm(), width = (*ear_left - *ear_right).norm();
   const Bounds& box = component.box;
@@ -186,7 +182,7 @@ Zone zone_of(Part part) {
 Part of_jaw(Part upper, const NamedPart& named, const Component& component, const Landmarks& landmarks) {
   const Part lower = upper == Part::teeth_upper ? Part::teeth_lower : Part::gums_lower;
   if (named.jaw != NamedPart::Jaw::unsaid) return named.jaw == NamedPart::Jaw::lower ? lower : upper;
-  const auto mouth = landmark(landmarks, "stomion");
+  const auto mouth = find_landmark(landmarks, "stomion");
   if (!mouth) return upper;
   if (upper == Part::gums_upper && component.box.upper[1] > (*mouth)[1] + 0.004 &&
       component.box.lower[1] < (*mouth)[1] - 0.012)
@@ -216,8 +212,8 @@ Part part_of(const Component& component, const NamedPart& named, const Landmarks
 double middle_of_face(const Landmarks& landmarks) {
   double sum = 0.0, count = 0.0;
   for (const char* pair : {"exocanthion_", "endocanthion_", "cheilion_"})
-    if (const auto left = landmark(landmarks, (pair + std::string("left")).c_str()),
-        right = landmark(landmarks, (pair + std::string("right")).c_str());
+    if (const auto left = find_landmark(landmarks, pair + std::string("left")),
+        right = find_landmark(landmarks, pair + std::string("right"));
         left && right) {
       sum += (*left)[0] + (*right)[0];
       count += 2.0;
@@ -235,7 +231,7 @@ struct RowHeights {
 RowHeights tell_rows_apart(const std::vector<Component>& components, const std::vector<NamedPart>& names,
                            const Landmarks& landmarks, std::vector<Part>& parts) {
   constexpr double over = 0.006, under = 0.012;  // metres about the mouth's line that one row does not fill
-  const auto mouth = landmark(landmarks, "stomion");
+  const auto mouth = find_landmark(landmarks, "stomion");
   std::vector<size_t> pieces;
   std::vector<Bounds> boxes;
   double height = 0.0;
@@ -300,8 +296,8 @@ struct Lids {
 };
 
 std::optional<Lids> lids_of(const Landmarks& landmarks, bool is_left) {
-  const auto outer = landmark(landmarks, is_left ? "exocanthion_left" : "exocanthion_right");
-  const auto inner = landmark(landmarks, is_left ? "endocanthion_left" : "endocanthion_right");
+  const auto outer = find_landmark(landmarks, is_left ? "exocanthion_left" : "exocanthion_right");
+  const auto inner = find_landmark(landmarks, is_left ? "endocanthion_left" : "endocanthion_right");
   if (!outer || !inner) return std::nullopt;
   return Lids{0.5 * (*outer + *inner), (*outer - *inner).norm()};
 }

@@ -3,23 +3,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+
+#include "tests/shapes/grid.h"
 
 namespace fascia {
 namespace {
 
 /// A flat grid of `n` by `n` squares of two triangles each, facing up.
 TriangleMesh grid(int n) {
-  TriangleMesh mesh;
-  for (int y = 0; y <= n; ++y)
-    for (int x = 0; x <= n; ++x)
-      mesh.vertices.emplace_back(x, y, 0);
-  for (int y = 0; y < n; ++y)
-    for (int x = 0; x < n; ++x) {
-      const int a = y * (n + 1) + x, b = a + 1, c = a + n + 1, d = c + 1;
-      mesh.triangles.push_back({a, b, d});
-      mesh.triangles.push_back({a, d, c});
-    }
-  return mesh;
+  return testing::grid(n, n,
+                       [n](double u, double v) { return Vec3(std::round(u * n), std::round(v * n), 0); });
 }
 
 TEST(Flaps, OnlyTheFinIsRemoved) {
